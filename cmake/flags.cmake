@@ -1,0 +1,18 @@
+# One interface target carries every compile option, so that a target opts in with a single link line.
+add_library(tremie_flags INTERFACE)
+target_include_directories(tremie_flags INTERFACE ${PROJECT_SOURCE_DIR})
+target_compile_options(tremie_flags INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror
+  -fno-math-errno
+  # g++ 12 reports these two inside Eigen's and the standard library's inlined code.
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized -Wno-array-bounds>)
+
+if(TREMIE_NATIVE AND NOT TREMIE_SANITIZE)
+  target_compile_options(tremie_flags INTERFACE -march=native)
+endif()
+
+if(TREMIE_SANITIZE)
+  target_compile_options(tremie_flags INTERFACE -fsanitize=${TREMIE_SANITIZE} -fno-omit-frame-pointer
+                                                -fno-sanitize-recover=all)
+  target_link_options(tremie_flags INTERFACE -fsanitize=${TREMIE_SANITIZE})
+endif()
