@@ -72,7 +72,8 @@ void set_threads(Scene& scene, int threads) {
 Outcome run(const Scene& scene, const Observer& observer) {
   const double wall = wall_seconds(), cpu = cpu_seconds();
   Outcome outcome = as_input_error(scene.path, [&] {
-    return run_slump_flow(std::get<slump_flow::Scene>(scene.test), scene.measured, observer);
+    return run_slump_flow(std::get<slump_flow::Scene>(scene.test), scene.measured, scene.output.frames,
+                          observer);
   });
   outcome.cost.wall = wall_seconds() - wall;
   outcome.cost.cpu = cpu_seconds() - cpu;

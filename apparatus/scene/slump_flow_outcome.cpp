@@ -119,10 +119,10 @@ std::vector<std::string> lines_for(const slump_flow::Scene& scene, const Measure
   return lines;
 }
 
-slump_flow::Observer observe(const slump_flow::Scene& scene, const Observer& observer) {
+slump_flow::Observer observe(const slump_flow::Scene& scene, bool all_frames, const Observer& observer) {
   slump_flow::Observer result;
   result.interrupted = observer.interrupted;
-  result.on_frame = observer.on_frame;
+  if (all_frames) result.on_frame = observer.on_frame;
   if (observer.on_progress) {
     result.on_step = [&scene, &observer](const slump_flow::Sample& s) {
       observer.on_progress(
@@ -134,8 +134,10 @@ slump_flow::Observer observe(const slump_flow::Scene& scene, const Observer& obs
 
 }  // namespace
 
-Outcome run_slump_flow(const slump_flow::Scene& scene, const Measured& measured, const Observer& observer) {
-  slump_flow::Outcome raw = slump_flow::run(scene, observe(scene, observer));
+Outcome run_slump_flow(const slump_flow::Scene& scene, const Measured& measured, bool all_frames,
+                       const Observer& observer) {
+  slump_flow::Outcome raw = slump_flow::run(scene, observe(scene, all_frames, observer));
+  if (!all_frames && observer.on_frame) observer.on_frame(raw.final_frame);
   Outcome outcome;
   outcome.apparatus = "slump_flow";
   outcome.status = raw.status;
