@@ -20,7 +20,7 @@ void add_friction_stiffness_admm(const ActiveGrid<D>& grid, const std::vector<do
                                  std::vector<FrictionNode<D>>& friction, BlockSystem<D>& system) {
   for (FrictionNode<D>& f : friction) {
     const double h = grid.axes[f.normal_axis].h;
-    f.stiffness = 0.5 * viscosity * V[f.node] / (h * h);
+    f.stiffness = f.limit > 0.0 ? 0.5 * viscosity * V[f.node] / (h * h) : 0.0;
     for (int d = 0; d < D; ++d)
       if (d != f.normal_axis) system.add_diagonal(f.node, d, f.stiffness);
   }
@@ -39,13 +39,14 @@ bool update_friction_admm(std::vector<FrictionNode<D>>& friction, const std::vec
                           double tolerance) {
   double mismatch = 0.0, scale = 0.0;
   for (FrictionNode<D>& f : friction) {
+    if (f.stiffness == 0.0) continue;  // nothing presses on it
     const Vec<D> u = sliding(f, v);
     const Vec<D> a = f.force + f.stiffness * (over_relaxation * u + (1.0 - over_relaxation) * f.slip);
     const double a_norm = a.norm();
     const Vec<D> force = a_norm > f.limit ? Vec<D>(f.limit / a_norm * a) : a;
     const Vec<D> slip = (a - force) / f.stiffness;
     mismatch += (f.stiffness * f.stiffness) * std::max((u - slip).squaredNorm(), (slip - f.slip).squaredNorm());
-    scale += f.limit * f.limit + 1e-12 * (f.stiffness * f.stiffness) * u.squaredNorm();  // limits may all be zero
+    scale += f.limit * f.limit;
     f.force = force;
     f.slip = slip;
   }
