@@ -59,7 +59,7 @@ inline Sample read(const Body<Axisymmetric>& body, const StepReport& step) {
   const Points<2>& points = body.points;
   Sample s;
   s.time = body.time;
-  s.spread = spread(points);
+  s.spread = spread(points, body.grid.axes[0].h);
   s.spread_max_point = spread_of_outermost_point(points);
   s.height = centre_height(points, 2.0 * body.grid.axes[0].h);
   s.max_speed = step.max_speed;

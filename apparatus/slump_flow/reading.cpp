@@ -7,6 +7,9 @@
 namespace tremie::slump_flow {
 namespace {
 
+/// A point belongs to the outline when this many others are less than half a cell behind it; fewer are strays.
+constexpr std::size_t company = 3;
+
 struct Weighted {
   double value, volume, size;
 };
@@ -36,11 +39,14 @@ double spread_of_outermost_point(const Points<2>& points) {
   return 2.0 * r;
 }
 
-double spread(const Points<2>& points) {
+double spread(const Points<2>& points, double cell) {
   std::vector<Weighted> radii;
   for (std::size_t p = 0; p < points.size(); ++p)
     radii.push_back({points.x[p][0], points.volume(p), section_size(points, p)});
-  return 2.0 * upper_quantile(radii, 1e-3);
+  std::sort(radii.begin(), radii.end(), [](const Weighted& a, const Weighted& b) { return a.value > b.value; });
+  std::size_t i = 0;
+  while (i + company < radii.size() && radii[i].value - radii[i + company].value > 0.5 * cell) ++i;
+  return radii.empty() ? 0.0 : 2.0 * radii[i].value + radii[i].size;
 }
 
 double centre_height(const Points<2>& points, double radius) {

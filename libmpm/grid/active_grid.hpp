@@ -216,4 +216,21 @@ void activate(ActiveGrid<D>& grid, const Points<D>& points) {
   detail::number_nodes(grid);
 }
 
+/// Whether a cell lies inside the body: every neighbour holds concrete or is beyond a wall.
+template <int D>
+bool is_inside(const ActiveGrid<D>& grid, const Index<D>& cell) {
+  for (int k = 0; k < power(3, D); ++k) {
+    Index<D> n = local_offset<D>(k);
+    bool beyond_wall = false;
+    for (int d = 0; d < D; ++d) {
+      const Axis& a = grid.axes[d];
+      n[d] += cell[d] - 1;
+      if (a.periodic) n[d] = a.control(n[d]);
+      beyond_wall = beyond_wall || (a.wall_low() && n[d] < 0) || (a.wall_high() && n[d] >= a.n_cells);
+    }
+    if (!beyond_wall && grid.cell_map.at(n) < 0) return false;
+  }
+  return true;
+}
+
 }  // namespace tremie

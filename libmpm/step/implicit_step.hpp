@@ -11,6 +11,7 @@
 #include "libmpm/step/admm.hpp"
 #include "libmpm/step/newton.hpp"
 #include "libmpm/transfer/apic.hpp"
+#include "libmpm/transfer/even_out.hpp"
 
 namespace tremie {
 
@@ -21,10 +22,10 @@ struct StepSettings {
   AdmmSettings admm;
   NewtonSettings newton;
   Transfer transfer;
-  Fill fill = Fill::body;
+  EvenOut even_out;
   std::optional<double> fixed_dt;  ///< [s]; empty: chosen at every step
   double dt_max = 0.1;             ///< [s]
-  double cfl = 0.3;                ///< largest move in a step, in cells
+  double cfl = 0.6;                ///< largest move in a step, in cells
   double growth = 1.3;             ///< largest ratio of successive steps
   double friction_coefficient = 0.0;
   double wall_gap = 0.0;       ///< how near a point may come to a rigid wall [m]
@@ -231,7 +232,7 @@ StepReport implicit_step(Body<Space>& body, const Law& law, const StepSettings& 
   activate(body.grid, body.points);
   point_to_grid(body.grid, body.points, body.nodes);
   detail::carry_duals<Space>(old_cells, body.grid, body.duals);
-  lay_out_quadrature<Space>(body.grid, body.points, body.mix.tau_0, body.mix.K, settings.fill, body.quadrature);
+  lay_out_quadrature<Space>(body.grid, body.points, body.mix.tau_0, body.mix.K, body.quadrature);
   body.system.set_pattern(body.grid);
   body.v = body.nodes.v;
 
@@ -259,7 +260,10 @@ StepReport implicit_step(Body<Space>& body, const Law& law, const StepSettings& 
   // Grid to points: state first, where the points were, then the move.
   if (body.points.thixotropic()) detail::update_flocculation(body, dt, body.points);
   detail::update_volumes(problem, body.v, body.points);
+  std::vector<Vec<D>> u;
+  if (settings.even_out.on) u = even_out(problem, body.points, body.v, settings.even_out, body.system);
   grid_to_point(body.grid, body.v, v_old, settings.transfer, dt, body.points);
+  if (settings.even_out.on) shift_points<D>(body.grid, u, body.points);
   body.time += dt;
   body.dt = dt;
 

@@ -3,10 +3,9 @@
 // Where the stresses of an implicit step are integrated.
 //
 // A yield stress fluid has no memory of strain: its deviatoric stress follows from the velocity gradient of the moment
-// and from lambda. So the stresses are integrated at 2^D Gauss places a cell, each weighted with the concrete volume of
-// its part of the cell, and not at the points themselves. Points thin out where the flow stretches them, most of all in the
-// first half cell above a floor, over which a front rolls without settling on it; sums over points then give that
-// half cell, and with it the floor shear, a fraction of its volume.
+// and from lambda. So the stresses are integrated at 2^D Gauss places a cell instead of at the points, each weighted
+// with the volume of the points in its part of the cell. The cost of a solve then does not depend on the number of
+// points, and more points a cell make the weights smoother without making the solver slower.
 
 #include <array>
 #include <vector>
@@ -16,12 +15,6 @@
 #include "libmpm/points/points.hpp"
 
 namespace tremie {
-
-/// How the volumes of the Gauss places follow from the points.
-enum class Fill {
-  body,    ///< parts inside the body are full, parts at a wall follow the part above them, the rest as the points say
-  points,  ///< as the points say, everywhere
-};
 
 template <class Space>
 struct Quadrature {
@@ -51,22 +44,6 @@ Vec<D> gauss_place(int k) {
 }
 
 namespace detail {
-
-template <int D>
-bool is_inside(const ActiveGrid<D>& grid, const Index<D>& cell) {
-  for (int k = 0; k < power(3, D); ++k) {
-    Index<D> n = local_offset<D>(k);
-    bool beyond_wall = false;
-    for (int d = 0; d < D; ++d) {
-      const Axis& a = grid.axes[d];
-      n[d] += cell[d] - 1;
-      if (a.periodic) n[d] = a.control(n[d]);
-      beyond_wall = beyond_wall || (a.wall_low() && n[d] < 0) || (a.wall_high() && n[d] >= a.n_cells);
-    }
-    if (!beyond_wall && grid.cell_map.at(n) < 0) return false;
-  }
-  return true;
-}
 
 /// Number of the part of cell c that holds the place x.
 template <int D>
@@ -118,29 +95,6 @@ double mean_pressure(const ActiveGrid<D>& grid, const Points<D>& points, double 
   return sum / volume;
 }
 
-/// Full parts inside the body; elsewhere no more than full, and at a wall no less than the part farther from it.
-template <class Space>
-void fill_body(const ActiveGrid<Space::dim>& grid, const Index<Space::dim>& cell,
-               const std::array<double, power(2, Space::dim)>& full,
-               std::array<double, power(2, Space::dim)>& volume) {
-  constexpr int n = power(2, Space::dim);
-  if (is_inside<Space::dim>(grid, cell)) {
-    volume = full;
-    return;
-  }
-  for (int k = 0; k < n; ++k) volume[k] = std::min(volume[k], full[k]);
-  for (int d = 0; d < Space::dim; ++d) {
-    const Axis& a = grid.axes[d];
-    const bool low = a.wall_low() && cell[d] == 0, high = a.wall_high() && cell[d] == a.n_cells - 1;
-    for (int k = 0; k < n; ++k) {
-      const bool upper = (k >> d) & 1;
-      const int other = k ^ (1 << d);
-      if ((low && !upper) || (high && upper))
-        volume[k] = std::max(volume[k], volume[other] / full[other] * full[k]);
-    }
-  }
-}
-
 /// Mean of 1 + lambda over the points of each part of a cell, of the whole cell where a part has none.
 template <class Space>
 std::array<double, power(2, Space::dim)> mean_structure(const ActiveGrid<Space::dim>& grid,
@@ -164,24 +118,19 @@ std::array<double, power(2, Space::dim)> mean_structure(const ActiveGrid<Space::
 /// Lays out the quadrature of a step: places, volumes, yield stresses tau_y = (1 + lambda) tau_0 and pressures.
 template <class Space>
 void lay_out_quadrature(const ActiveGrid<Space::dim>& grid, const Points<Space::dim>& points, double tau_0, double K,
-                        Fill fill, Quadrature<Space>& quadrature) {
+                        Quadrature<Space>& quadrature) {
   constexpr int D = Space::dim, n = power(2, D);
   quadrature.resize(grid.cell_index.size());
-  double part = 1.0;
-  for (const Axis& a : grid.axes) part *= 0.5 * a.h;
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < grid.n_cells(); ++c) {
     const Index<D>& cell = grid.cell_index[c];
-    std::array<double, n> volume = detail::part_volumes<Space>(grid, points, c), full;
     std::array<Stencil<D>, n> st;
     std::array<Vec<D>, n> x;
     for (int k = 0; k < n; ++k) {
       x[k] = cell_place<D>(grid.axes, cell, gauss_place<D>(k));
       st[k] = stencil<D>(grid.axes, cell, gauss_place<D>(k));
-      full[k] = part * Space::measure(x[k]);
     }
-    if (fill == Fill::body) detail::fill_body<Space>(grid, cell, full, volume);
-    quadrature.V[c] = volume;
+    quadrature.V[c] = detail::part_volumes<Space>(grid, points, c);
     detail::lay_out_rows<Space>(st, x, c, quadrature);
     quadrature.p[c] = detail::mean_pressure(grid, points, K, c);
     quadrature.tau_y[c].fill(tau_0);

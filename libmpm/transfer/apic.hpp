@@ -76,6 +76,19 @@ struct PointStencil {
 
 }  // namespace detail
 
+/// Wraps a place around periodic axes. The velocity normal to a wall vanishes on it, but a finite step may still carry
+/// a point through: it stops just before.
+template <int D>
+void keep_in_domain(const std::array<Axis, D>& axes, Vec<D>& x) {
+  for (int d = 0; d < D; ++d) {
+    const Axis& a = axes[d];
+    const double margin = 1e-6 * a.h;
+    if (a.periodic) x[d] -= a.length() * std::floor((x[d] - a.origin) / a.length());
+    if (a.wall_low()) x[d] = std::max(x[d], a.origin + margin);
+    if (a.wall_high()) x[d] = std::min(x[d], a.origin + a.length() - margin);
+  }
+}
+
 /// Adds per-cell contributions to the nodes in the order of the cells: the sum does not depend on the threads.
 template <int D>
 void gather_to_nodes(const ActiveGrid<D>& grid, const std::vector<std::array<Vec<D + 1>, power(3, D)>>& local,
@@ -145,11 +158,7 @@ void grid_to_point(const ActiveGrid<D>& grid, const std::vector<Vec<D>>& v, cons
       points.C[p] = transfer.flip ? Mat<D, D>(Mat<D, D>::Zero()) : Mat<D, D>(moment * st.inverse_inertia.asDiagonal());
       points.v[p] = transfer.flip ? Vec<D>(vp + transfer.flip_blend * (points.v[p] - vp_old)) : vp;
       points.x[p] += dt * vp;
-      for (int d = 0; d < D; ++d)
-        if (grid.axes[d].periodic) {
-          const Axis& a = grid.axes[d];
-          points.x[p][d] -= a.length() * std::floor((points.x[p][d] - a.origin) / a.length());
-        }
+      keep_in_domain<D>(grid.axes, points.x[p]);
     }
   }
 }
