@@ -12,6 +12,7 @@
 namespace tremie::report {
 namespace {
 
+constexpr std::size_t most_points = 2000;  ///< of a curve
 constexpr std::array colours{"#0b5394", "#b45f06", "#38761d", "#741b47"};
 
 /// A gnuplot string in single quotes.
@@ -27,9 +28,11 @@ const scene::Column* find_column(const std::vector<scene::Column>& series, const
   return found == series.end() ? nullptr : &*found;
 }
 
+/// The curve, thinned to what a chart can show.
 std::string data_block(const std::vector<double>& x, const std::vector<double>& y, std::size_t i) {
+  const std::size_t n = std::min(x.size(), y.size()), stride = n / most_points + 1;
   std::string text = fmt::format("$d{} << EOD\n", i);
-  for (std::size_t k = 0; k < std::min(x.size(), y.size()); ++k)
+  for (std::size_t k = 0; k < n; k = k + 1 < n ? std::min(k + stride, n - 1) : n)
     if (std::isfinite(y[k])) text += fmt::format("{:.6g} {:.6g}\n", x[k], y[k]);
   return text + "EOD\n";
 }

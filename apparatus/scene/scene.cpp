@@ -77,6 +77,7 @@ Outcome run(const Scene& scene, const Observer& observer) {
   });
   outcome.cost.wall = wall_seconds() - wall;
   outcome.cost.cpu = cpu_seconds() - cpu;
+  outcome.cost.threads = std::visit([](const auto& test) { return test.threads; }, scene.test);
   outcome.cost.peak_rss_bytes = peak_rss_bytes();
   if (outcome.status == Status::failed && outcome.checks.reasons.empty())
     outcome.checks.reasons.push_back("the run did not come to its end");

@@ -39,6 +39,8 @@ herr_t write_attribute(hid_t object, const std::string& name, hid_t type, const 
 }  // namespace
 
 Hdf5File::Hdf5File(const std::filesystem::path& file) : path_(file) {
+  // After a write that failed (a full disk) the library's own clean-up at exit would try again, and crash.
+  H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are thrown, not printed
   errno = 0;
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
