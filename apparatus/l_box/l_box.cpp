@@ -50,14 +50,6 @@ std::vector<BoundaryPoint<2>> front_wall(const Scene& scene, double time) {
   return points;
 }
 
-/// Volume of the concrete over [low, high], a metre of width.
-double volume_over(const Points<2>& points, double low, double high) {
-  double V = 0.0;
-  for (std::size_t p = 0; p < points.size(); ++p)
-    if (points.x[p][0] >= low && points.x[p][0] < high) V += points.volume(p);
-  return V;
-}
-
 /// Depth of the concrete over [low, high], rows of height `row` counted from the floor up to the first that is less than half
 /// full: what clings to a wall higher up is no depth.
 double depth(const Points<2>& points, double low, double high, double row) {
