@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "rheometer/sundials_support.hpp"
@@ -186,7 +187,7 @@ void check(const CouetteFlow& flow) {
     throw std::invalid_argument("A_thix, alpha, the critical shear rate and lambda must not be negative");
 }
 
-Gap make_gap(const CouetteFlow& flow, const Instrument& in, int intervals) {
+Gap make_gap(const CouetteFlow& flow, double width, int intervals) {
   const Thixotropy& t = flow.thixotropy;
   Gap gap;
   gap.tau_0 = flow.bingham.tau_0;
@@ -195,7 +196,7 @@ Gap make_gap(const CouetteFlow& flow, const Instrument& in, int intervals) {
   gap.build_rate = t.A_thix / flow.bingham.tau_0;
   gap.gamma_c = t.gamma_c;
   gap.gated = t.kinetics == Kinetics::gated;
-  gap.dx = std::log(in.container_radius / in.vane_radius) / intervals;
+  gap.dx = width / intervals;
   for (int i = 0; i <= intervals; ++i) {
     gap.x.push_back(i * gap.dx);
     gap.stress_share.push_back(std::exp(-2.0 * gap.x.back()));
@@ -305,6 +306,34 @@ class Integrator {
 
 }  // namespace
 
+namespace {
+
+/// ln(r/R_i) as far as the material can be sheared while lambda falls: a tenth more than at time 0.
+double sheared_width(const CouetteFlow& flow, const Instrument& in) {
+  const double tau_y = static_yield_stress(flow.thixotropy.initial_flocculation, flow.bingham.tau_0);
+  const double omega = flow.omega_of_time ? flow.omega_of_time(0.0) : flow.omega;
+  return 1.1 * std::log(reiner_riwlin({tau_y, flow.bingham.mu}, omega, in).sheared_radius / in.vane_radius);
+}
+
+/// Empty where the shear reached the outer end of the resolved width.
+std::optional<CouetteDecay> solve(const CouetteFlow& flow, std::span<const double> times,
+                                  const Instrument& in, const CouetteOptions& options, double width,
+                                  bool whole) {
+  Integrator integrator(make_gap(flow, width, options.intervals), flow.thixotropy.initial_flocculation,
+                        options);
+  CouetteDecay result;
+  for (const double x : integrator.gap().x) result.radius.push_back(in.vane_radius * std::exp(x));
+  for (const double t : times) {
+    integrator.advance(t, result);
+    integrator.report(t, options.keep_profiles, in, result);
+    if (!whole && result.sheared_radius.back() >= result.radius.back()) return std::nullopt;
+  }
+  result.steps = integrator.steps();
+  return result;
+}
+
+}  // namespace
+
 CouetteDecay thixotropic_couette(const CouetteFlow& flow, std::span<const double> times, const Instrument& in,
                                  const CouetteOptions& options) {
   check(in);
@@ -312,15 +341,13 @@ CouetteDecay thixotropic_couette(const CouetteFlow& flow, std::span<const double
   if (options.intervals < 2) throw std::invalid_argument("the gap needs at least 2 intervals");
   if (!std::is_sorted(times.begin(), times.end()) || (!times.empty() && times.front() < 0.0))
     throw std::invalid_argument("the times must ascend from 0 or later");
-  Integrator integrator(make_gap(flow, in, options.intervals), flow.thixotropy.initial_flocculation, options);
-  CouetteDecay result;
-  for (const double x : integrator.gap().x) result.radius.push_back(in.vane_radius * std::exp(x));
-  for (const double t : times) {
-    integrator.advance(t, result);
-    integrator.report(t, options.keep_profiles, in, result);
+  const double gap = std::log(in.container_radius / in.vane_radius);
+  if (!options.whole_gap) {
+    const double width = sheared_width(flow, in);
+    if (width < gap)
+      if (auto result = solve(flow, times, in, options, width, false)) return *std::move(result);
   }
-  result.steps = integrator.steps();
-  return result;
+  return *solve(flow, times, in, options, gap, true);
 }
 
 double dissipated_power(const CouetteProfile& p, std::span<const double> radius, const Bingham& b,

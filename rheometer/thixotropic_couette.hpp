@@ -36,9 +36,11 @@ struct CouetteOptions {
   double relative_tolerance = 1e-7;
   double absolute_tolerance = 1e-8;  ///< of lambda; of the vane's shear stress in Pa
   bool keep_profiles = false;
+  /// false: the nodes are spent on the radii that can be sheared, with a margin; the far plug is left out.
+  bool whole_gap = true;
 };
 
-/// The gap at one time; one entry a node, from the vane outwards.
+/// The gap (or the part of it that is resolved) at one time; one entry a node, from the vane outwards.
 struct CouetteProfile {
   std::vector<double> lambda, gamma_dot;
 };
