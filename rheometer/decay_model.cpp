@@ -46,8 +46,8 @@ void DecayModel::torque(const DecayParameters& p, std::span<double> result) cons
   flow.thixotropy = {A_thix, p[3], input_.kinetics, input_.gamma_c, p[2]};
   CouetteOptions options;
   options.intervals = 100;
-  options.relative_tolerance = 1e-6;
-  options.absolute_tolerance = 1e-7;
+  options.relative_tolerance = 3e-6;
+  options.absolute_tolerance = 3e-7;
   options.whole_gap = false;
   const CouetteDecay decay = thixotropic_couette(flow, nodes_, input_.instrument, options);
   const std::vector<double> slope = slopes(nodes_, decay.torque);

@@ -256,12 +256,14 @@ LeastSquaresFit fit_least_squares(const LeastSquaresProblem& p, const LeastSquar
       r.push_back(std::sqrt(p.count[i]) * (p.observed[i] - fitted[i]) / fitted[i]);
     return r;
   };
+  LeastSquaresOptions rough = options;  // the robust passes only have to tell which readings belong
+  rough.parameter_tolerance = std::max(options.parameter_tolerance, 1e-3);
   const std::vector<double> same_size(n, median(p.observed));
-  Pass robust = minimise(p, p.start, same_size, use, 0.1, options);
+  Pass robust = minimise(p, p.start, same_size, use, 0.1, rough);
   for (int round = 0; round < 2; ++round) {
     p.model(robust.parameters, fit.fitted, {});
     const double scale = std::max(2.0 * robust_deviation(residuals(fit.fitted)), resolution);
-    robust = minimise(p, robust.parameters, fit.fitted, use, scale, options);
+    robust = minimise(p, robust.parameters, fit.fitted, use, scale, rough);
   }
   for (const std::size_t i : outliers(robust)) {
     fit.outlier[i] = 1;
