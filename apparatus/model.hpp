@@ -38,7 +38,7 @@ struct Model {
   double flip_blend = 0.95;                   ///< share of FLIP, transfer = flip alone
   std::optional<double> time_step;            ///< fixed step [s]; empty: chosen at every step
   std::array<double, 2> cell = {0.01, 0.005};  ///< [m] across, up
-  std::array<int, 2> points_per_cell = {8, 2};  ///< across, up
+  std::array<int, 2> points_per_cell = {6, 3};  ///< across, up
 };
 
 /// What makes a result trustworthy, or not (summary.json, "checks").

@@ -1,0 +1,37 @@
+// tremie new APPARATUS: prints a commented scene to start from.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "apparatus/cli/commands.hpp"
+#include "apparatus/scene/resolved.hpp"
+#include "apparatus/scene/scene.hpp"
+
+namespace tremie::cli {
+namespace {
+
+std::string template_of(const std::string& name) {
+  std::vector<std::string> known;
+  for (const auto& apparatus : scene::all_apparatus()) {
+    if (apparatus.name == name) return scene::write_template(apparatus);
+    known.push_back(apparatus.name);
+  }
+  throw scene::InputError(fmt::format("new: \"{}\" is not available; did you mean \"{}\"? Available: {}",
+                                      name, scene::nearest(name, known), fmt::join(known, ", ")));
+}
+
+}  // namespace
+
+void add_command_new(CLI::App& app, int& exit_code) {
+  auto name = std::make_shared<std::string>();
+  auto* command = app.add_subcommand("new", "Print a commented scene to start from");
+  command->add_option("apparatus", *name, "slump_flow, l_box, icar_vane or cell")->required();
+  command->callback([name, &exit_code] {
+    fmt::print("{}", template_of(*name));
+    exit_code = done;
+  });
+}
+
+}  // namespace tremie::cli

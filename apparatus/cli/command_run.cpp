@@ -1,0 +1,108 @@
+// tremie run S.toml: runs a scene and fills a folder with its result.
+
+#include <fmt/format.h>
+#include <signal.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <memory>
+
+#include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/progress.hpp"
+#include "apparatus/cli/set_option.hpp"
+#include "apparatus/report/result_files.hpp"
+#include "apparatus/report/run_folder.hpp"
+#include "apparatus/scene/scene.hpp"
+
+namespace tremie::cli {
+namespace {
+
+struct Options {
+  std::string scene, out;
+  std::vector<std::string> overrides;
+  int threads = 1;
+  bool quiet = false, force = false;
+};
+
+std::atomic<bool> stop_requested{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
+
+/// The first interrupt asks the run to stop and write what it has; a second one ends the program.
+void stop_on_interrupt() {
+  struct sigaction action = {};
+  action.sa_handler = [](int) { stop_requested = true; };
+  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+int exit_code_of(const scene::Outcome& outcome) {
+  if (outcome.status == Status::interrupted) return interrupted;
+  return outcome.checks.reasons.empty() && outcome.status == Status::completed ? done : not_to_be_trusted;
+}
+
+void print_outcome(const scene::Outcome& outcome) {
+  for (const auto& line : outcome.lines) fmt::print("{}\n", line);
+  const Checks& c = outcome.checks;
+  fmt::print("checks          volume {:+.3g} %, mass {:.1e}, {} unconverged steps, {} points lost\n",
+             100.0 * c.volume_change, c.mass_error, c.unconverged_steps, c.points_lost);
+  const Cost& cost = outcome.cost;
+  fmt::print("cost            {:.2f} s of CPU, {:.2f} s by the clock, {} steps, {} points, {:.0f} MB\n",
+             cost.cpu, cost.wall, cost.steps, cost.points, static_cast<double>(cost.peak_rss_bytes) / 1e6);
+  if (outcome.status == Status::interrupted) fmt::print("interrupted at {:.2f} s\n", cost.simulated);
+}
+
+void print_reasons(const scene::Outcome& outcome) {
+  for (const auto& reason : outcome.checks.reasons) fmt::print(stderr, "not to be trusted: {}\n", reason);
+}
+
+scene::Outcome run_and_write(const scene::Scene& scene, const Options& options,
+                             const report::RunFolder& folder, std::vector<std::string>& notes) {
+  report::ResultFiles files(folder.staging(), scene.resolved);
+  scene::Observer observer;
+  observer.interrupted = &stop_requested;
+  observer.on_frame = [&](const Frame& frame) { files.frame(frame); };
+  scene::Outcome outcome;
+  {
+    ProgressLine line;
+    if (!options.quiet) observer.on_progress = [&](const scene::Progress& progress) { line.show(progress); };
+    outcome = scene::run(scene, observer);
+  }
+  notes = files.finish(outcome);
+  return outcome;
+}
+
+int run(const Options& options) {
+  auto scene = scene::read(options.scene, options.overrides);
+  scene::set_threads(scene, options.threads);
+  report::RunFolder folder(options.out.empty() ? "runs/" + scene.name : options.out, options.force);
+  stop_on_interrupt();
+  std::vector<std::string> notes;
+  const auto outcome = run_and_write(scene, options, folder, notes);
+  folder.publish();
+  print_reasons(outcome);
+  if (!options.quiet) {
+    print_outcome(outcome);
+    for (const auto& note : notes) fmt::print("note            {}\n", note);
+    fmt::print("written to      {}\n", folder.target().string());
+  }
+  return exit_code_of(outcome);
+}
+
+}  // namespace
+
+void add_command_run(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  auto* command = app.add_subcommand("run", "Run a scene and write its result");
+  command->add_option("scene", options->scene, "Scene file (TOML)")->required();
+  command->add_option("--out", options->out, "Folder for the result (default: runs/<scene name>)");
+  add_set_option(*command, options->overrides);
+  command->add_option("--threads", options->threads, "Threads")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  command->add_flag("--quiet", options->quiet, "Print nothing but errors");
+  command->add_flag("--force", options->force, "Replace an earlier result in the folder");
+  command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace tremie::cli

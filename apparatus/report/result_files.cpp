@@ -1,0 +1,124 @@
+#include "apparatus/report/result_files.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <span>
+
+#include "apparatus/report/chart.hpp"
+#include "apparatus/report/html.hpp"
+#include "apparatus/report/picture.hpp"
+#include "apparatus/report/summary.hpp"
+#include "libmpm/io/vtp.hpp"
+#include "libmpm/io/write_error.hpp"
+#include "tremie_version.hpp"
+
+namespace tremie::report {
+namespace {
+
+struct Field {
+  const char* name;
+  int components;
+  const char* unit;
+  std::span<const double> values;
+};
+
+std::span<const double> flat(const std::vector<std::array<double, 3>>& vectors) {
+  return {vectors.empty() ? nullptr : vectors.front().data(), 3 * vectors.size()};
+}
+
+/// The fields of a frame but for its positions; what a scene does not have is not written.
+std::vector<Field> fields_of(const Frame& frame) {
+  std::vector<Field> fields{{"velocity", 3, "m/s", flat(frame.velocity)},
+                            {"volume", 1, "m^3", frame.volume},
+                            {"pressure", 1, "Pa", frame.pressure},
+                            {"shear_rate", 1, "1/s", frame.shear_rate},
+                            {"flocculation", 1, "1", frame.flocculation}};
+  std::erase_if(fields, [](const Field& field) { return field.values.empty(); });
+  return fields;
+}
+
+void write_frame_h5(io::Hdf5File& h5, const std::string& group, const Frame& frame) {
+  h5.group(group);
+  h5.attribute(group, "time_s", frame.time);
+  h5.array(group + "/position", flat(frame.position), 3, "m");
+  for (const Field& field : fields_of(frame))
+    h5.array(group + "/" + field.name, field.values, static_cast<std::size_t>(field.components), field.unit);
+}
+
+void write_frame_vtp(const std::filesystem::path& file, const Frame& frame) {
+  std::vector<io::PointField> fields;
+  for (const Field& field : fields_of(frame)) fields.push_back({field.name, field.components, field.values});
+  io::write_vtp(file, frame.time, frame.position, fields);
+}
+
+/// "spread_mm" is in mm: the unit stands behind the last underscore of a quantity's name, "_per_" reading as
+/// "/".
+std::string unit_of(const std::string& column) {
+  for (const auto& [ending, unit] : {std::pair{"_mm", "mm"},
+                                     {"_m_per_s", "m/s"},
+                                     {"_per_s", "1/s"},
+                                     {"_s", "s"},
+                                     {"_J", "J"},
+                                     {"_Pa", "Pa"},
+                                     {"_N_m", "N.m"},
+                                     {"_m", "m"}})
+    if (column.ends_with(ending)) return unit;
+  return "1";
+}
+
+void write_results(io::Hdf5File& h5, const std::string& group, const std::vector<scene::Result>& results) {
+  h5.group(group);
+  for (const auto& [name, value] : results) {
+    if (const auto* number = std::get_if<double>(&value)) h5.attribute(group, name, *number);
+    if (const auto* text = std::get_if<std::string>(&value)) h5.attribute(group, name, *text);
+    if (const auto* below = std::get_if<std::vector<scene::Result>>(&value))
+      write_results(h5, group + "/" + name, *below);
+  }
+}
+
+}  // namespace
+
+ResultFiles::ResultFiles(const std::filesystem::path& folder, const std::string& resolved)
+    : folder_(folder), resolved_(resolved), h5_(folder / "results.h5") {
+  io::write_text(folder_ / "scene.toml", resolved_);
+  h5_.attribute("/", "schema", std::int64_t{1});
+  h5_.attribute("/", "tremie_version", std::string(version));
+  h5_.attribute("/", "tremie_commit", std::string(commit));
+  h5_.attribute("/", "compiler", std::string(compiler));
+  h5_.attribute("/", "scene", resolved_);
+  h5_.group("/frames");
+}
+
+void ResultFiles::frame(const Frame& frame) {
+  if (!frames_.empty() && frames_.back().first == frame.time) return;  // the end may fall on a frame's time
+  write_frame_h5(h5_, fmt::format("/frames/{:05}", frames_.size()), frame);
+  std::filesystem::create_directories(folder_ / "frames");
+  frames_.emplace_back(frame.time, fmt::format("frames/frame_{:05}.vtp", frames_.size()));
+  write_frame_vtp(folder_ / frames_.back().second, frame);
+}
+
+void ResultFiles::write_results_h5(const scene::Outcome& outcome) {
+  h5_.attribute("/", "apparatus", outcome.apparatus);
+  h5_.attribute("/", "status", std::string(status_name(outcome.status)));
+  h5_.group("/series");
+  for (const auto& column : outcome.series)
+    h5_.array("/series/" + column.name, column.values, 1, unit_of(column.name));
+  write_results(h5_, "/results", outcome.results);
+  h5_.close();
+}
+
+std::vector<std::string> ResultFiles::finish(const scene::Outcome& outcome) {
+  std::vector<std::string> notes;
+  write_results_h5(outcome);
+  io::write_text(folder_ / "timeseries.csv", timeseries_csv(outcome.series));
+  if (!frames_.empty()) io::write_pvd(folder_ / "frames.pvd", frames_);
+  notes.push_back(draw_charts(outcome, folder_));
+  if (!frames_.empty()) notes.push_back(draw_picture(outcome, folder_, frames_.back().second));
+  io::write_text(folder_ / "report.html", report_html(outcome, resolved_, folder_));
+  io::write_text(folder_ / "summary.json", summary_json(outcome));
+  std::erase(notes, "");
+  return notes;
+}
+
+}  // namespace tremie::report

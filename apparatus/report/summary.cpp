@@ -1,0 +1,96 @@
+#include "apparatus/report/summary.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "apparatus/scene/units.hpp"
+#include "tremie_version.hpp"
+
+namespace tremie::report {
+namespace {
+
+using Json = nlohmann::ordered_json;  // keys in the order of writing; not-a-number becomes null
+
+Json to_json(const std::vector<scene::Result>& results);
+
+Json to_json(const scene::ResultValue& value) {
+  if (const auto* number = std::get_if<double>(&value)) return *number;
+  if (const auto* text = std::get_if<std::string>(&value)) return *text;
+  if (const auto* truth = std::get_if<bool>(&value)) return *truth;
+  if (const auto* below = std::get_if<std::vector<scene::Result>>(&value)) return to_json(*below);
+  return nullptr;
+}
+
+Json to_json(const std::vector<scene::Result>& results) {
+  Json json = Json::object();
+  for (const auto& [name, value] : results) json[name] = to_json(value);
+  return json;
+}
+
+Json checks_json(const Checks& checks) {
+  return {{"volume_change", checks.volume_change},
+          {"mass_error", checks.mass_error},
+          {"unconverged_steps", checks.unconverged_steps},
+          {"points_lost", checks.points_lost},
+          {"max_speed_end_m_per_s", checks.max_speed_end},
+          {"stability_limit_exceeded", checks.stability_limit_exceeded},
+          {"reasons", checks.reasons}};
+}
+
+Json cost_json(const Cost& cost) {
+  return {{"wall_s", cost.wall},
+          {"cpu_s", cost.cpu},
+          {"steps", cost.steps},
+          {"points", cost.points},
+          {"cells_active", cost.cells_active},
+          {"bytes_per_point", cost.bytes_per_point},
+          {"peak_rss_bytes", cost.peak_rss_bytes},
+          {"threads", cost.threads},
+          {"simulated_s", cost.simulated}};
+}
+
+}  // namespace
+
+const char* status_name(Status status) {
+  switch (status) {
+    case Status::completed:
+      return "completed";
+    case Status::interrupted:
+      return "interrupted";
+    case Status::failed:
+      return "failed";
+  }
+  return "failed";
+}
+
+std::string summary_json(const scene::Outcome& outcome) {
+  Json json;
+  json["schema"] = 1;
+  json["tremie"] = {{"version", version}, {"commit", commit}, {"compiler", compiler}};
+  json["apparatus"] = outcome.apparatus;
+  json["status"] = status_name(outcome.status);
+  json["results"] = to_json(outcome.results);
+  json["checks"] = checks_json(outcome.checks);
+  json["cost"] = cost_json(outcome.cost);
+  return json.dump(2) + "\n";
+}
+
+std::string timeseries_csv(const std::vector<scene::Column>& series) {
+  std::string text;
+  for (const auto& column : series) text += (text.empty() ? "" : ",") + column.name;
+  text += '\n';
+  const std::size_t rows = series.empty() ? 0 : series.front().values.size();
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t i = 0; i < series.size(); ++i) {
+      if (i > 0) text += ',';
+      const double value = series[i].values[row];
+      if (std::isfinite(value)) text += scene::write_number(value);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace tremie::report

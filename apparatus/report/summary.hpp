@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "apparatus/scene/outcome.hpp"
+
+namespace tremie::report {
+
+/// summary.json.
+std::string summary_json(const scene::Outcome& outcome);
+
+/// timeseries.csv: a column a quantity, empty fields where there is no value.
+std::string timeseries_csv(const std::vector<scene::Column>& series);
+
+/// "completed", "interrupted" or "failed".
+const char* status_name(Status status);
+
+}  // namespace tremie::report

@@ -1,0 +1,186 @@
+#include "apparatus/scene/document.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <utility>
+
+#include "apparatus/scene/input_error.hpp"
+
+namespace tremie::scene {
+namespace {
+
+struct Source {
+  const std::string& name;
+  Layer layer;
+};
+
+Node convert(const toml::node& from, const Source& source);
+
+Table convert_table(const toml::table& from, const Source& source) {
+  Table table;
+  for (const auto& [key, node] : from) table.push_back({std::string(key.str()), convert(node, source)});
+  // toml++ keeps its tables sorted by key; a person expects the order of the file.
+  std::stable_sort(table.begin(), table.end(),
+                   [](const Member& a, const Member& b) { return a.node.origin.line < b.node.origin.line; });
+  return table;
+}
+
+Array convert_array(const toml::array& from, const Source& source) {
+  Array array;
+  for (const auto& node : from) array.push_back(convert(node, source));
+  return array;
+}
+
+Node convert(const toml::node& from, const Source& source) {
+  Node node{{source.layer, source.name, static_cast<int>(from.source().begin.line)}, Other{}};
+  if (const auto* table = from.as_table()) {
+    Table members = convert_table(*table, source);
+    // A table that only dotted keys imply has no place of its own.
+    if (node.origin.line == 0 && !members.empty()) node.origin.line = members.front().node.origin.line;
+    node.value = std::move(members);
+  }
+  if (const auto* array = from.as_array()) node.value = convert_array(*array, source);
+  if (const auto* text = from.as_string()) node.value = text->get();
+  if (const auto* integer = from.as_integer()) node.value = integer->get();
+  if (const auto* number = from.as_floating_point()) node.value = number->get();
+  if (const auto* boolean = from.as_boolean()) node.value = boolean->get();
+  return node;
+}
+
+/// VALUE of --set as a TOML value; empty where it is none.
+std::optional<Node> toml_value(const std::string& text, const Source& source) {
+  if (text.find_first_of("\r\n") != std::string::npos) return std::nullopt;
+  try {
+    const toml::table table = toml::parse("value = " + text);
+    if (table.size() == 1) return convert(*table.get("value"), source);
+  } catch (const toml::parse_error&) {
+  }
+  return std::nullopt;
+}
+
+std::string trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(' ');
+  if (first == std::string::npos) return {};
+  return text.substr(first, text.find_last_not_of(' ') - first + 1);
+}
+
+/// "[5 mm, 2 mm]": the shell has eaten the quotes of a TOML array.
+Node value_or_words(const std::string& text, const Source& source) {
+  if (auto value = toml_value(text, source)) return *value;
+  const Origin origin{source.layer, source.name, 0};
+  if (!text.starts_with('[') || !text.ends_with(']')) return {origin, text};
+  Array array;
+  std::size_t start = 1;
+  while (start < text.size()) {
+    const auto end = std::min(text.find(',', start), text.size() - 1);
+    array.push_back(value_or_words(trimmed(text.substr(start, end - start)), source));
+    start = end + 1;
+  }
+  return {origin, array};
+}
+
+void set_line_of_override(Node& node) {
+  node.origin.line = 0;
+  if (auto* table = std::get_if<Table>(&node.value))
+    for (auto& member : *table) set_line_of_override(member.node);
+  if (auto* array = std::get_if<Array>(&node.value))
+    for (auto& element : *array) set_line_of_override(element);
+}
+
+}  // namespace
+
+std::string describe(const Origin& origin) {
+  const std::string prefix = origin.layer == Layer::command_line ? "--set " : "";
+  if (origin.line > 0) return fmt::format("{}{}:{}", prefix, origin.file, origin.line);
+  return prefix + origin.file;
+}
+
+Node parse_text(std::string_view text, const std::string& name, Layer layer) {
+  try {
+    Node node = convert(toml::parse(text), {name, layer});
+    node.origin.line = 1;
+    return node;
+  } catch (const toml::parse_error& error) {
+    throw InputError(
+        fmt::format("{}:{}: this is no TOML: {}", name, error.source().begin.line, error.description()));
+  }
+}
+
+Node parse_file(const std::filesystem::path& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error))
+    throw InputError(fmt::format("{}: is a folder, not a scene file", path.string()));
+  std::ifstream file(path, std::ios::binary);
+  if (!file) {
+    throw InputError(
+        fmt::format("{}: {}", path.string(),
+                    std::filesystem::exists(path, error) ? "cannot be read" : "there is no such file"));
+  }
+  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (file.bad()) throw InputError(fmt::format("{}: cannot be read", path.string()));
+  return parse_text(text, path.string(), Layer::scene);
+}
+
+const Node* find(const Node& node, std::string_view key) {
+  const auto* table = std::get_if<Table>(&node.value);
+  if (!table) return nullptr;
+  const auto found =
+      std::find_if(table->begin(), table->end(), [&](const Member& m) { return m.key == key; });
+  return found == table->end() ? nullptr : &found->node;
+}
+
+Node* find(Node& node, std::string_view key) { return const_cast<Node*>(find(std::as_const(node), key)); }
+
+Override parse_override(const std::string& argument) {
+  const auto equals = argument.find('=');
+  const auto complain = [&] {
+    return InputError(
+        fmt::format("--set {}: must read KEY=VALUE, like mix.yield_stress=\"61 Pa\"", argument));
+  };
+  if (equals == std::string::npos) throw complain();
+  Override result;
+  const std::string key = trimmed(argument.substr(0, equals));
+  for (std::size_t start = 0; start <= key.size();) {
+    const auto end = std::min(key.find('.', start), key.size());
+    if (end == start) throw complain();
+    result.path.push_back(key.substr(start, end - start));
+    start = end + 1;
+  }
+  if (result.path.empty()) throw complain();
+  result.value = value_or_words(trimmed(argument.substr(equals + 1)), {argument, Layer::command_line});
+  set_line_of_override(result.value);
+  return result;
+}
+
+void put(Node& root, const std::vector<std::string>& path, Node value) {
+  Node* node = &root;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    if (!std::holds_alternative<Table>(node->value)) *node = {value.origin, Table{}};
+    Node* next = find(*node, path[i]);
+    if (!next) {
+      auto& table = std::get<Table>(node->value);
+      table.push_back({path[i], {value.origin, Table{}}});
+      next = &table.back().node;
+    }
+    node = next;
+  }
+  const bool both_tables =
+      std::holds_alternative<Table>(node->value) && std::holds_alternative<Table>(value.value);
+  if (both_tables) {
+    merge(*node, value);
+  } else {
+    *node = std::move(value);
+  }
+}
+
+void merge(Node& under, const Node& over) {
+  under.origin = over.origin;
+  for (const Member& member : std::get<Table>(over.value)) put(under, {member.key}, member.node);
+}
+
+}  // namespace tremie::scene

@@ -1,0 +1,68 @@
+#include "apparatus/scene/keys.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace tremie::scene {
+namespace {
+
+std::string amount(const Key& key, double value) {
+  return key.kind == Kind::quantity ? write_quantity(value, key.dimension) : write_number(value);
+}
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0]++;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, replaced});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+bool contains(const Range& range, double value) {
+  const bool above = range.low_open ? value > range.low : value >= range.low;
+  const bool below = range.high_open ? value < range.high : value <= range.high;
+  return above && below;
+}
+
+std::string range_text(const Key& key) {
+  const Range& range = key.range;
+  const bool low = std::isfinite(range.low), high = std::isfinite(range.high);
+  const auto below = range.high_open ? "less than " : "at most ";
+  std::string text;
+  if (low) text += (range.low_open ? "greater than " : "at least ") + amount(key, range.low);
+  if (high) text += (low ? " and " : "") + std::string(below) + amount(key, range.high);
+  return text;
+}
+
+std::string nearest(std::string_view word, const std::vector<std::string>& words) {
+  const auto closer = [&](const std::string& a, const std::string& b) {
+    return edit_distance(word, a) < edit_distance(word, b);
+  };
+  const auto found = std::min_element(words.begin(), words.end(), closer);
+  return found == words.end() ? std::string{} : *found;
+}
+
+const Section* find_section(const Schema& schema, std::string_view name) {
+  const auto found =
+      std::find_if(schema.begin(), schema.end(), [&](const Section& s) { return s.name == name; });
+  return found == schema.end() ? nullptr : &*found;
+}
+
+const Key* find_key(const Section& section, std::string_view name) {
+  const auto found =
+      std::find_if(section.keys.begin(), section.keys.end(), [&](const Key& k) { return k.name == name; });
+  return found == section.keys.end() ? nullptr : &*found;
+}
+
+}  // namespace tremie::scene

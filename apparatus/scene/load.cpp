@@ -1,0 +1,154 @@
+#include "apparatus/scene/load.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "apparatus/scene/document.hpp"
+
+namespace tremie::scene {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string quoted_list(const std::vector<std::string>& words) {
+  std::string text;
+  for (const auto& word : words) text += (text.empty() ? "\"" : ", \"") + word + "\"";
+  return text;
+}
+
+/// The file that `mix = "…"` stands for: a name from reference_data/mixes, or a path beside the scene.
+fs::path mix_file(const std::string& name, const Origin& origin, const fs::path& scene_folder) {
+  if (name.ends_with(".toml")) return scene_folder / name;
+  for (const auto& folder : data_folders()) {
+    const fs::path file = folder / "mixes" / (name + ".toml");
+    std::error_code error;
+    if (fs::is_regular_file(file, error)) return file;
+  }
+  const auto known = mix_names();
+  throw InputError(fmt::format(
+      "{}: mix: there is no mix \"{}\"; did you mean \"{}\"? Allowed: {}, a path to a .toml file, "
+      "or a table [mix]",
+      describe(origin), name, nearest(name, known), quoted_list(known)));
+}
+
+/// Replaces `mix = "mix_a"` by that file's [mix].
+void inline_mix(Node& document, const fs::path& scene_folder) {
+  Node* mix = find(document, "mix");
+  const auto* name = mix ? std::get_if<std::string>(&mix->value) : nullptr;
+  if (!name) return;
+  const fs::path file = mix_file(*name, mix->origin, scene_folder);
+  Node text = parse_file(file);
+  Node* table = find(text, "mix");
+  if (!table || !std::holds_alternative<Table>(table->value))
+    throw InputError(fmt::format("{}:1: mix: missing table [mix]", file.string()));
+  *mix = *table;
+}
+
+void apply_overrides(Node& document, const Request& request) {
+  std::vector<Override> overrides;
+  for (const auto& argument : request.overrides) overrides.push_back(parse_override(argument));
+  const auto names_the_mix = [](const Override& o) { return o.path.size() == 1 && o.path.front() == "mix"; };
+  for (const auto& change : overrides)
+    if (names_the_mix(change)) put(document, change.path, change.value);
+  inline_mix(document, request.path.parent_path());
+  for (const auto& change : overrides)
+    if (!names_the_mix(change)) put(document, change.path, change.value);
+}
+
+const ApparatusKeys& apparatus_of(const Node& document, std::span<const ApparatusKeys> known) {
+  std::vector<std::string> allowed;
+  for (const auto& apparatus : known) allowed.push_back(apparatus.name);
+  const Node* node = find(document, "apparatus");
+  if (!node) {
+    throw InputError(fmt::format("{}: apparatus: missing key; allowed: {}", describe(document.origin),
+                                 quoted_list(allowed)));
+  }
+  const auto* name = std::get_if<std::string>(&node->value);
+  const auto found = std::find_if(known.begin(), known.end(),
+                                  [&](const ApparatusKeys& a) { return name && a.name == *name; });
+  if (found != known.end()) return *found;
+  const std::string given = name ? *name : "";
+  throw InputError(fmt::format("{}: apparatus: \"{}\" is not allowed; allowed: {} (nearest: \"{}\")",
+                               describe(node->origin), given, quoted_list(allowed), nearest(given, allowed)));
+}
+
+/// The preset's values under the scene's; nothing where the scene names none. An unknown name is left for
+/// check().
+void lay_on_preset(Node& document, const ApparatusKeys& apparatus) {
+  const Node* node = find(document, "preset");
+  const auto* name = node ? std::get_if<std::string>(&node->value) : nullptr;
+  if (!name) return;
+  for (const Preset& preset : apparatus.presets) {
+    if (preset.name != *name) continue;
+    Node under = parse_text(preset.toml, "preset " + preset.name, Layer::preset);
+    merge(under, document);
+    document = std::move(under);
+    return;
+  }
+}
+
+Schema whole_schema(const ApparatusKeys& apparatus) {
+  Schema schema{top_section(apparatus)};
+  schema.insert(schema.end(), apparatus.schema.begin(), apparatus.schema.end());
+  return schema;
+}
+
+}  // namespace
+
+Section top_section(const ApparatusKeys& apparatus) {
+  std::vector<std::string> presets;
+  for (const auto& preset : apparatus.presets) presets.push_back(preset.name);
+  Section top{.name = "", .help = apparatus.help};
+  top.keys.push_back({.name = "schema",
+                      .kind = Kind::integer,
+                      .range = between(1, 1),
+                      .fallback = "1",
+                      .help = "version of the scene's keys"});
+  top.keys.push_back(
+      {.name = "apparatus", .kind = Kind::choice, .words = {apparatus.name}, .required = true});
+  top.keys.push_back(
+      {.name = "preset", .kind = Kind::choice, .words = presets, .help = "values under the scene's own"});
+  return top;
+}
+
+std::vector<fs::path> data_folders() {
+  std::vector<fs::path> folders;
+  if (const char* set = std::getenv("TREMIE_DATA")) folders.emplace_back(set);
+  folders.emplace_back(TREMIE_SOURCE_DATA);
+  folders.emplace_back(TREMIE_INSTALLED_DATA);
+  return folders;
+}
+
+std::vector<std::string> mix_names() {
+  std::vector<std::string> names;
+  for (const auto& folder : data_folders()) {
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder / "mixes", error))
+      if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  return names;
+}
+
+Loaded load(const Request& request, std::span<const ApparatusKeys> known) {
+  Node document = request.text ? parse_text(*request.text, request.path.string(), Layer::scene)
+                               : parse_file(request.path);
+  apply_overrides(document, request);
+  const ApparatusKeys& apparatus = apparatus_of(document, known);
+  if (!find(document, "mix")) {
+    throw InputError(fmt::format("{}: mix: missing key; allowed: a table [mix] or one of {}",
+                                 describe(document.origin), quoted_list(mix_names())));
+  }
+  lay_on_preset(document, apparatus);
+  Loaded loaded{
+      request.path.stem().string(), request.path.string(), apparatus.name, whole_schema(apparatus), {}};
+  loaded.values = check(document, loaded.schema);
+  loaded.values.drop("preset");  // its values stand in the resolved scene by themselves
+  if (apparatus.settle) apparatus.settle(loaded.values);
+  return loaded;
+}
+
+}  // namespace tremie::scene

@@ -1,0 +1,44 @@
+#pragma once
+
+// From a file to checked values, for any apparatus: default < preset < scene < --set, named mixes inlined.
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "apparatus/scene/input_error.hpp"
+#include "apparatus/scene/keys.hpp"
+#include "apparatus/scene/values.hpp"
+
+namespace tremie::scene {
+
+/// A scene file and what the command line sets over it.
+struct Request {
+  std::filesystem::path path;
+  std::vector<std::string> overrides = {};  ///< "mix.yield_stress=61 Pa"
+  std::optional<std::string> text = {};     ///< the scene itself; `path` then only names it in messages
+};
+
+struct Loaded {
+  std::string name;       ///< the file's name without .toml
+  std::string path;       ///< as the user wrote it
+  std::string apparatus;  ///< "slump_flow"
+  Schema schema;          ///< with the top of the file
+  Values values;
+};
+
+/// Reads and checks a scene of one of the apparatus `known`. Throws InputError.
+Loaded load(const Request& request, std::span<const ApparatusKeys> known);
+
+/// The top of the file: schema, apparatus, preset.
+Section top_section(const ApparatusKeys& apparatus);
+
+/// Where reference_data lies: $TREMIE_DATA, the source tree, or the installed share folder.
+std::vector<std::filesystem::path> data_folders();
+
+/// The names that `mix = "…"` may have.
+std::vector<std::string> mix_names();
+
+}  // namespace tremie::scene

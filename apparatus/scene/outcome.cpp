@@ -1,0 +1,19 @@
+#include "apparatus/scene/outcome.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tremie::scene {
+
+ResultValue number(std::optional<double> value, double factor) {
+  if (!value || !std::isfinite(*value)) return std::monostate{};
+  return *value * factor;
+}
+
+const ResultValue* find_result(const Outcome& outcome, const std::string& name) {
+  const auto found = std::find_if(outcome.results.begin(), outcome.results.end(),
+                                  [&](const Result& r) { return r.name == name; });
+  return found == outcome.results.end() ? nullptr : &found->value;
+}
+
+}  // namespace tremie::scene

@@ -1,0 +1,142 @@
+#include "apparatus/scene/resolved.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace tremie::scene {
+namespace {
+
+constexpr std::size_t comment_column = 44;
+
+std::string full_name(const std::string& place, const Key& key) {
+  return place.empty() ? key.name : place + "." + key.name;
+}
+
+/// A TOML basic string.
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    if (c == '\n')
+      result += "\\n";
+    else if (c == '\t')
+      result += "\\t";
+    else if (static_cast<unsigned char>(c) < 0x20)
+      result += fmt::format("\\u{:04x}", static_cast<unsigned char>(c));
+    else
+      result += c;
+  }
+  return result + '"';
+}
+
+std::string scalar_text(const Key& key, double number) {
+  if (key.kind == Kind::quantity) return quoted(write_quantity(number, key.dimension));
+  if (key.kind == Kind::boolean) return number != 0.0 ? "true" : "false";
+  return write_number(number);
+}
+
+std::string value_text(const Key& key, const Value& value) {
+  std::vector<std::string> parts;
+  for (const auto& word : value.words) parts.push_back(quoted(word));
+  for (const double number : value.numbers) parts.push_back(scalar_text(key, number));
+  if (key.shape == Shape::one || (parts.size() == 1 && key.shape == Shape::one_or_two)) return parts.front();
+  return fmt::format("[{}]", fmt::join(parts, ", "));
+}
+
+std::string with_comment(std::string line, const std::string& comment) {
+  if (comment.empty()) return line + "\n";
+  if (line.size() < comment_column) line.resize(comment_column, ' ');
+  return line + "  # " + comment + "\n";
+}
+
+std::string origin_comment(const Value& value) {
+  const auto layer = [&]() -> std::string {
+    switch (value.origin.layer) {
+      case Layer::fallback:
+        return "default";
+      case Layer::preset:
+        return "preset";
+      case Layer::scene:
+        return "";
+      case Layer::command_line:
+        return "--set";
+    }
+    return "";
+  }();
+  if (value.note.empty()) return layer;
+  return layer.empty() ? value.note : layer + ": " + value.note;
+}
+
+std::string section_text(const Section& section, const std::string& place, const Values& values) {
+  std::string text;
+  if (!place.empty())
+    text +=
+        section.repeated ? fmt::format("\n[[{}]]\n", section.name) : fmt::format("\n[{}]\n", section.name);
+  for (const Key& key : section.keys) {
+    const std::string full = full_name(place, key);
+    if (!values.has(full)) continue;
+    const Value& value = values.at(full);
+    text += with_comment(key.name + " = " + value_text(key, value), origin_comment(value));
+  }
+  return text;
+}
+
+std::string allowed_comment(const Key& key) {
+  std::string text;
+  for (const auto& word : key.words) text += (text.empty() ? "" : " | ") + quoted(word);
+  if (!key.words.empty() && key.kind == Kind::quantity) text += " | a quantity";
+  if (key.only_with)
+    text += fmt::format("{}with {} = \"{}\"", text.empty() ? "" : ", ", key.only_with->key,
+                        fmt::join(key.only_with->words, "\" or \""));
+  return text.empty() ? key.help : key.help + (key.help.empty() ? "" : ": ") + text;
+}
+
+std::string template_value(const Key& key) {
+  const std::string text = key.fallback.empty() ? key.example : key.fallback;
+  const bool string = key.kind == Kind::quantity || key.kind == Kind::choice || key.kind == Kind::text;
+  return string && !text.starts_with('[') ? quoted(text) : text;
+}
+
+/// Whether the key applies where everything has its default.
+bool applies_by_default(const Section& section, const Key& key) {
+  if (!key.only_with) return true;
+  const Key* decider = find_key(section, key.only_with->key);
+  const auto& words = key.only_with->words;
+  return decider && std::find(words.begin(), words.end(), decider->fallback) != words.end();
+}
+
+}  // namespace
+
+std::string write_resolved(const Schema& schema, const Values& values) {
+  std::string text;
+  for (const Section& section : schema) {
+    if (section.repeated) {
+      for (std::size_t i = 0; i < values.count(section.name); ++i)
+        text += section_text(section, fmt::format("{}[{}]", section.name, i), values);
+    } else if (values.has_section(section.name)) {
+      text += section_text(section, section.name, values);
+    }
+  }
+  return text;
+}
+
+std::string write_template(const ApparatusKeys& apparatus) {
+  std::string text = fmt::format(
+      "# {}\n# Every line but [mix]'s first two may be left out: it shows its default.\n\n", apparatus.help);
+  text += fmt::format("apparatus = \"{}\"\n", apparatus.name);
+  for (const Section& section : apparatus.schema) {
+    text += fmt::format("\n# {}\n{}{}{}\n", section.help, section.repeated ? "[[" : "[", section.name,
+                        section.repeated ? "]]" : "]");
+    for (const Key& key : section.keys) {
+      const std::string value = template_value(key);
+      if (value.empty() || value == "\"\"") continue;
+      const bool active = applies_by_default(section, key) && (!key.fallback.empty() || key.required);
+      text +=
+          with_comment(fmt::format("{}{} = {}", active ? "" : "# ", key.name, value), allowed_comment(key));
+    }
+  }
+  return text;
+}
+
+}  // namespace tremie::scene

@@ -1,0 +1,97 @@
+#include "apparatus/scene/scene.hpp"
+
+#include <sys/resource.h>
+
+#include <chrono>
+#include <ctime>
+#include <stdexcept>
+
+#include "apparatus/scene/resolved.hpp"
+#include "apparatus/scene/slump_flow_outcome.hpp"
+#include "apparatus/scene/slump_flow_scene.hpp"
+
+namespace tremie::scene {
+namespace {
+
+Scene build(const Loaded& loaded) {
+  Scene scene;
+  scene.name = loaded.name;
+  scene.path = loaded.path;
+  scene.apparatus = loaded.apparatus;
+  scene.test = slump_flow_scene(loaded.values);
+  scene.measured = read_measured(loaded.values);
+  scene.output = read_output(loaded.values);
+  scene.resolved = write_resolved(loaded.schema, loaded.values);
+  scene.notes = loaded.values.notes;
+  return scene;
+}
+
+double cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+double wall_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+std::int64_t peak_rss_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return std::int64_t{usage.ru_maxrss} * 1024;
+}
+
+/// An apparatus says with std::invalid_argument that it cannot run what the scene asks for: the user's to
+/// mend.
+template <class Call>
+auto as_input_error(const std::string& path, Call call) {
+  try {
+    return call();
+  } catch (const std::invalid_argument& error) {
+    throw InputError(path + ": " + error.what());
+  }
+}
+
+}  // namespace
+
+std::vector<ApparatusKeys> all_apparatus() { return {slump_flow_keys()}; }
+
+Scene read(const std::filesystem::path& path, const std::vector<std::string>& overrides) {
+  return build(load({path, overrides}, all_apparatus()));
+}
+
+Scene read_text(const std::string& text, const std::string& name, const std::vector<std::string>& overrides) {
+  return build(load({name, overrides, text}, all_apparatus()));
+}
+
+void set_threads(Scene& scene, int threads) {
+  std::visit([&](auto& test) { test.threads = threads; }, scene.test);
+}
+
+Outcome run(const Scene& scene, const Observer& observer) {
+  const double wall = wall_seconds(), cpu = cpu_seconds();
+  Outcome outcome = as_input_error(scene.path, [&] {
+    return run_slump_flow(std::get<slump_flow::Scene>(scene.test), scene.measured, scene.output.frames,
+                          observer);
+  });
+  outcome.cost.wall = wall_seconds() - wall;
+  outcome.cost.cpu = cpu_seconds() - cpu;
+  outcome.cost.threads = std::visit([](const auto& test) { return test.threads; }, scene.test);
+  outcome.cost.peak_rss_bytes = peak_rss_bytes();
+  if (outcome.status == Status::failed && outcome.checks.reasons.empty())
+    outcome.checks.reasons.push_back("the run did not come to its end");
+  return outcome;
+}
+
+Estimate estimate(const Scene& scene) {
+  const auto e = as_input_error(
+      scene.path, [&] { return slump_flow::estimate(std::get<slump_flow::Scene>(scene.test)); });
+  return {e.points, e.cells_active, e.bytes_per_point, e.steps};
+}
+
+std::vector<std::string> uses(const Scene& scene) {
+  return slump_flow_uses(std::get<slump_flow::Scene>(scene.test));
+}
+
+}  // namespace tremie::scene

@@ -1,0 +1,129 @@
+#include "apparatus/scene/units.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+
+namespace tremie::scene {
+namespace {
+
+constexpr double two_pi = 2.0 * std::numbers::pi;
+
+constexpr std::array length_units{Unit{"m"}, Unit{"cm", 1, 100}, Unit{"mm", 1, 1000}};
+constexpr std::array time_units{Unit{"s"}, Unit{"ms", 1, 1000}, Unit{"min", 60}, Unit{"h", 3600}};
+constexpr std::array speed_units{Unit{"m/s"}, Unit{"cm/s", 1, 100}, Unit{"mm/s", 1, 1000}};
+constexpr std::array pressure_units{Unit{"Pa"}, Unit{"kPa", 1e3}, Unit{"MPa", 1e6}, Unit{"GPa", 1e9}};
+constexpr std::array viscosity_units{Unit{"Pa.s"}, Unit{"Pa·s"}, Unit{"Pa s"}, Unit{"mPa.s", 1, 1000},
+                                     Unit{"mPa·s", 1, 1000}};
+constexpr std::array density_units{Unit{"kg/m3"}, Unit{"kg/m³"}, Unit{"kg/m^3"}, Unit{"g/cm3", 1000},
+                                   Unit{"t/m3", 1000}};
+constexpr std::array rate_units{Unit{"1/s"}, Unit{"/s"}, Unit{"s^-1"}, Unit{"1/min", 1, 60}};
+constexpr std::array structuration_units{Unit{"Pa/s"}, Unit{"Pa/min", 1, 60}, Unit{"kPa/s", 1000}};
+constexpr std::array rotation_units{Unit{"rad/s"}, Unit{"rev/s", two_pi}, Unit{"rpm", two_pi, 60}};
+constexpr std::array torque_units{Unit{"N.m"}, Unit{"N·m"}, Unit{"N m"}, Unit{"mN.m", 1, 1000},
+                                  Unit{"mN·m", 1, 1000}};
+constexpr std::array acceleration_units{Unit{"m/s2"}, Unit{"m/s²"}, Unit{"m/s^2"}};
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+struct Split {
+  double number;
+  std::string_view unit;
+};
+
+/// "54 Pa" as a number and the text after it; empty where no number leads.
+std::optional<Split> split(std::string_view text) {
+  text = trimmed(text);
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc{}) return std::nullopt;
+  return Split{number, trimmed(text.substr(static_cast<std::size_t>(end - text.data())))};
+}
+
+}  // namespace
+
+std::span<const Unit> units(Dimension dimension) {
+  switch (dimension) {
+    case Dimension::length:
+      return length_units;
+    case Dimension::time:
+      return time_units;
+    case Dimension::speed:
+      return speed_units;
+    case Dimension::pressure:
+      return pressure_units;
+    case Dimension::viscosity:
+      return viscosity_units;
+    case Dimension::density:
+      return density_units;
+    case Dimension::rate:
+      return rate_units;
+    case Dimension::structuration:
+      return structuration_units;
+    case Dimension::rotation:
+      return rotation_units;
+    case Dimension::torque:
+      return torque_units;
+    case Dimension::acceleration:
+      return acceleration_units;
+  }
+  throw std::logic_error("a dimension without units");
+}
+
+std::string units_text(Dimension dimension) {
+  std::string text;
+  for (const Unit& unit : units(dimension)) text += (text.empty() ? "" : ", ") + std::string(unit.name);
+  return text;
+}
+
+double parse_quantity(std::string_view text, Dimension dimension) {
+  const auto parts = split(text);
+  const auto allowed = units_text(dimension);
+  const auto si = units(dimension).front().name;
+  if (!parts) {
+    throw std::invalid_argument(
+        fmt::format("\"{}\" does not start with a number that can be held; write a number and a unit, like "
+                    "\"1.5 {}\" (units: {})",
+                    text, si, allowed));
+  }
+  if (!std::isfinite(parts->number))
+    throw std::invalid_argument(fmt::format("\"{}\" is not a finite number (units: {})", text, allowed));
+  if (parts->unit.empty()) {
+    throw std::invalid_argument(
+        fmt::format("\"{0}\" has no unit; write \"{0} {1}\" (units: {2})", trimmed(text), si, allowed));
+  }
+  for (const Unit& unit : units(dimension)) {
+    if (parts->unit != unit.name) continue;
+    const double value = parts->number * unit.numerator / unit.denominator;
+    if (!std::isfinite(value))
+      throw std::invalid_argument(fmt::format("\"{}\" is too large to be held", text));
+    return value;
+  }
+  throw std::invalid_argument(
+      fmt::format("\"{}\" has the wrong unit \"{}\"; allowed units: {}", text, parts->unit, allowed));
+}
+
+std::string write_number(double value) {
+  const double size = std::abs(value);
+  const bool plain = size == 0.0 || (size >= 1e-4 && size < 1e12);
+  std::array<char, 64> buffer{};
+  const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
+                                          plain ? std::chars_format::fixed : std::chars_format::scientific);
+  return error == std::errc{} ? std::string(buffer.data(), end) : fmt::format("{}", value);
+}
+
+std::string write_quantity(double value, Dimension dimension) {
+  return write_number(value) + " " + std::string(units(dimension).front().name);
+}
+
+}  // namespace tremie::scene

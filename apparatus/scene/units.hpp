@@ -1,0 +1,48 @@
+#pragma once
+
+// Quantities as a person writes them ("54 Pa", "15 cm/s") and as the program holds them (SI).
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace tremie::scene {
+
+enum class Dimension {
+  length,
+  time,
+  speed,
+  pressure,
+  viscosity,
+  density,
+  rate,           ///< 1/s
+  structuration,  ///< Pa/s
+  rotation,       ///< rad/s
+  torque,
+  acceleration
+};
+
+/// One unit of a dimension: SI value = value * numerator / denominator. Two factors, so that "35 mm" and
+/// "0.035 m" are the same double.
+struct Unit {
+  std::string_view name;
+  double numerator = 1.0;
+  double denominator = 1.0;
+};
+
+/// The units that a dimension may be written in. The first is the SI unit.
+std::span<const Unit> units(Dimension dimension);
+
+/// "Pa, kPa, MPa": for messages.
+std::string units_text(Dimension dimension);
+
+/// The SI value of "54 Pa". Throws std::invalid_argument that says what is wrong and which units are allowed.
+double parse_quantity(std::string_view text, Dimension dimension);
+
+/// "54 Pa": the SI value in the SI unit, with the fewest digits that read back to the same double.
+std::string write_quantity(double value, Dimension dimension);
+
+/// The fewest digits that read back to the same double.
+std::string write_number(double value);
+
+}  // namespace tremie::scene

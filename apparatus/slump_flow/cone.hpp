@@ -1,0 +1,64 @@
+#pragma once
+
+// The Abrams cone: the concrete that fills it, and its wall while it is lifted.
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "apparatus/slump_flow/slump_flow.hpp"
+#include "libmpm/contact/rigid_wall.hpp"
+#include "libmpm/law/equation_of_state.hpp"
+#include "libmpm/points/points.hpp"
+
+namespace tremie::slump_flow {
+
+inline double inner_radius(const Cone& cone, double z) {
+  return cone.bottom_radius + (cone.top_radius - cone.bottom_radius) * z / cone.height;
+}
+
+/// Volume of the cone [m^3].
+inline double volume(const Cone& cone) {
+  const double a = cone.bottom_radius, b = cone.top_radius;
+  return std::numbers::pi * cone.height / 3.0 * (a * a + a * b + b * b);
+}
+
+/// Fills the cone with rings of points under hydrostatic pressure. Rows of height dz, each divided into rings about dr
+/// wide that end at the wall, so that the volume is the cone's to round-off.
+inline void fill(const Cone& cone, const Mix& mix, double g, double dr, double dz, Points<2>& points) {
+  const int rows = std::max(1, static_cast<int>(std::lround(cone.height / dz)));
+  const double row = cone.height / rows;
+  for (int j = 0; j < rows; ++j) {
+    const double z = (j + 0.5) * row;
+    const double low = inner_radius(cone, j * row), high = inner_radius(cone, (j + 1) * row);
+    const double R = std::sqrt((low * low + low * high + high * high) / 3.0);  // the row's volume is pi R^2 row
+    const int rings = std::max(1, static_cast<int>(std::lround(R / dr)));
+    for (int i = 0; i < rings; ++i) {
+      const double inner = R * i / rings, outer = R * (i + 1) / rings;
+      const double V = std::numbers::pi * (outer * outer - inner * inner) * row;
+      const double ln_J = ln_J_under(mix.density * g * (cone.height - z), mix.K);
+      add_point<2>(points, {0.5 * (inner + outer), z}, mix.density * V, V * std::exp(-ln_J), ln_J);
+    }
+  }
+}
+
+/// Height of the cone's rim at a time [m].
+inline double rim_height(const Scene& scene, double time) { return *scene.lift_speed * time; }
+
+/// The inner wall of the cone as it is lifted; points within `reach` of it [m] may touch it.
+inline RigidWall<2> lifted_wall(const Scene& scene, double reach) {
+  const Cone cone = scene.cone;
+  const double speed = *scene.lift_speed;
+  const double taper = cone.bottom_radius - cone.top_radius;
+  const double slant = std::hypot(cone.height, taper);
+  const Vec<2> normal(-cone.height / slant, -taper / slant);
+  return [=](const Vec<2>& x, double time) -> std::optional<WallView<2>> {
+    const double above_rim = x[1] - speed * time;
+    if (above_rim < 0.0 || above_rim > cone.height) return std::nullopt;
+    const double gap = normal.dot(x - Vec<2>(cone.bottom_radius, speed * time));
+    if (std::abs(gap) > reach) return std::nullopt;
+    return WallView<2>{gap, normal, Vec<2>(0.0, speed)};
+  };
+}
+
+}  // namespace tremie::slump_flow

@@ -1,0 +1,100 @@
+#include "apparatus/slump_flow/reading.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace tremie::slump_flow {
+namespace {
+
+/// A point belongs to the outline when this many others are less than half a cell behind it; fewer are strays.
+constexpr std::size_t company = 3;
+
+struct Weighted {
+  double value, volume, size;
+};
+
+/// The value beyond which `share` of the total volume lies, plus half the size of the point there.
+double upper_quantile(std::vector<Weighted>& sorted, double share) {
+  if (sorted.empty()) return 0.0;
+  double total = 0.0;
+  for (const Weighted& w : sorted) total += w.volume;
+  std::sort(sorted.begin(), sorted.end(), [](const Weighted& a, const Weighted& b) { return a.value > b.value; });
+  double beyond = 0.0;
+  for (const Weighted& w : sorted)
+    if ((beyond += w.volume) > share * total) return w.value + 0.5 * w.size;
+  return sorted.back().value;
+}
+
+/// Side of the square that a ring's section is [m].
+double section_size(const Points<2>& points, std::size_t p) {
+  return std::sqrt(points.volume(p) / (2.0 * std::numbers::pi * std::max(points.x[p][0], 1e-6)));
+}
+
+}  // namespace
+
+double spread_of_outermost_point(const Points<2>& points) {
+  double r = 0.0;
+  for (const auto& x : points.x) r = std::max(r, x[0]);
+  return 2.0 * r;
+}
+
+double spread(const Points<2>& points, double cell) {
+  std::vector<Weighted> radii;
+  for (std::size_t p = 0; p < points.size(); ++p)
+    radii.push_back({points.x[p][0], points.volume(p), section_size(points, p)});
+  std::sort(radii.begin(), radii.end(), [](const Weighted& a, const Weighted& b) { return a.value > b.value; });
+  std::size_t i = 0;
+  while (i + company < radii.size() && radii[i].value - radii[i + company].value > 0.5 * cell) ++i;
+  return radii.empty() ? 0.0 : 2.0 * radii[i].value + radii[i].size;
+}
+
+double centre_height(const Points<2>& points, double radius) {
+  std::vector<Weighted> heights;
+  for (std::size_t p = 0; p < points.size(); ++p)
+    if (points.x[p][0] < radius) heights.push_back({points.x[p][1], points.volume(p), section_size(points, p)});
+  return upper_quantile(heights, 1e-2);
+}
+
+std::optional<double> mean_flocculation(const Points<2>& points) {
+  if (!points.thixotropic()) return std::nullopt;
+  double sum = 0.0, volume = 0.0;
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    sum += points.volume(p) * points.lambda[p];
+    volume += points.volume(p);
+  }
+  return sum / volume;
+}
+
+double total_volume(const Points<2>& points) {
+  double V = 0.0;
+  for (std::size_t p = 0; p < points.size(); ++p) V += points.volume(p);
+  return V;
+}
+
+double volume_change(const Points<2>& points) {
+  double V0 = 0.0;
+  for (double v : points.V0) V0 += v;
+  return total_volume(points) / V0 - 1.0;
+}
+
+double total_mass(const Points<2>& points) {
+  double m = 0.0;
+  for (double mass : points.mass) m += mass;
+  return m;
+}
+
+double kinetic_energy(const Points<2>& points) {
+  double e = 0.0;
+  for (std::size_t p = 0; p < points.size(); ++p) e += 0.5 * points.mass[p] * points.v[p].squaredNorm();
+  return e;
+}
+
+std::int64_t points_lost(const Points<2>& points) {
+  std::int64_t lost = 0;
+  for (const auto& x : points.x)
+    if (!x.allFinite() || x[0] < 0.0 || x[1] < 0.0) ++lost;
+  return lost;
+}
+
+}  // namespace tremie::slump_flow

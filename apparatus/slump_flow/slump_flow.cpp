@@ -1,0 +1,63 @@
+#include "apparatus/slump_flow/slump_flow.hpp"
+
+#include <omp.h>
+
+#include <stdexcept>
+
+#include "apparatus/slump_flow/engine.hpp"
+#include "libmpm/law/yield_law.hpp"
+
+namespace tremie::slump_flow {
+namespace {
+
+void refuse_what_has_no_engine(const Scene& scene) {
+  const Model& m = scene.model;
+  if (m.space != SpaceKind::axisymmetric)
+    throw std::invalid_argument("model.space: the slump flow runs in \"axisymmetric\" for now");
+  if (m.scheme != SchemeKind::implicit)
+    throw std::invalid_argument("model.scheme: the slump flow runs with \"implicit\" for now");
+  if (m.shape != ShapeKind::b_spline)
+    throw std::invalid_argument("model.shape: the slump flow runs with \"b_spline\" for now");
+}
+
+}  // namespace
+
+Outcome run(const Scene& scene, const Observer& observer) {
+  refuse_what_has_no_engine(scene);
+  omp_set_num_threads(scene.threads);
+  switch (scene.model.yield) {
+    case YieldKind::papanastasiou:
+      return run_axisymmetric(scene, Papanastasiou{scene.model.regularisation}, observer);
+    case YieldKind::bi_viscous:
+      return run_axisymmetric(scene, BiViscous{scene.model.critical_shear_rate}, observer);
+    default:
+      return run_axisymmetric(scene, ExactBingham{}, observer);
+  }
+}
+
+Estimate estimate(const Scene& scene) {
+  refuse_what_has_no_engine(scene);
+  Body<Axisymmetric> body = filled_cone(scene);
+  activate(body.grid, body.points);
+  Estimate e;
+  e.points = static_cast<std::int64_t>(body.points.size());
+  e.cells_active = body.grid.n_cells();
+  e.bytes_per_point = bytes_per_point<2>(body.points.thixotropic());
+  const StepSettings settings = step_settings(scene);
+  // The collapse runs at about sqrt(g H) for 0.4 s at the CFL limit, the rest of the flow at the largest step.
+  const double speed = std::sqrt(gravity * scene.cone.height);
+  const double collapse = 0.4 * speed / (settings.cfl * std::min(scene.model.cell[0], scene.model.cell[1]));
+  e.steps = scene.model.time_step ? std::llround(scene.duration / *scene.model.time_step)
+                                  : std::llround(0.5 * collapse + scene.duration / settings.dt_max);
+  return e;
+}
+
+std::string spread_class(double spread) {
+  const long mm = 10 * std::lround(100.0 * spread);
+  if (mm >= 550 && mm <= 650) return "SF1";
+  if (mm >= 660 && mm <= 750) return "SF2";
+  if (mm >= 760 && mm <= 850) return "SF3";
+  return "";
+}
+
+}  // namespace tremie::slump_flow

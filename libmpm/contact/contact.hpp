@@ -1,0 +1,106 @@
+#pragma once
+
+// Contact with walls, as terms of the step's convex problem.
+//
+// Flat walls are ends of the grid's axes: the interpolatory spline there makes a prescribed velocity exact. A moving
+// rigid wall acts through the points next to it: point p may not come closer than its own half spacing,
+//   n.(v(x_p) - v_wall) >= (gap_min - gap_p) / dt,
+// one-sided, so the concrete is free to separate; no friction along it. The Coulomb floor is a yield term g |v_t| at each floor
+// node with g = coefficient * normal force.
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "libmpm/grid/active_grid.hpp"
+#include "libmpm/step/block_system.hpp"
+
+namespace tremie {
+
+/// A material point that may touch a moving rigid wall.
+template <int D>
+struct ContactPoint {
+  int cell = 0;
+  std::array<double, power(3, D)> N;  ///< shape values in that cell
+  Vec<D> normal;                      ///< from the wall into the concrete
+  double target = 0.0;                ///< least normal velocity [m/s]
+  double stiffness = 0.0;             ///< penalty [kg/s]
+  bool active = false;
+};
+
+/// A node on a wall with Coulomb friction.
+template <int D>
+struct FrictionNode {
+  int node = 0;
+  int normal_axis = 0;
+  double limit = 0.0;                       ///< coefficient * normal force [N]
+  Vec<D> force = Vec<D>::Zero();            ///< along the wall, its dual [N]
+  Vec<D> slip = Vec<D>::Zero();             ///< split sliding velocity, for ADMM [m/s]
+  double stiffness = 0.0;                   ///< ADMM's penalty [kg/s]
+};
+
+template <int D>
+double normal_velocity(const ContactPoint<D>& c, const std::vector<std::array<int, power(3, D)>>& cell_nodes,
+                       const std::vector<Vec<D>>& v) {
+  Vec<D> u = Vec<D>::Zero();
+  for (int i = 0; i < power(3, D); ++i) u += c.N[i] * v[cell_nodes[c.cell][i]];
+  return c.normal.dot(u);
+}
+
+/// Closes contacts that are violated and opens those that would pull; true if any changed.
+template <int D>
+bool update_active(std::vector<ContactPoint<D>>& contact, const std::vector<std::array<int, power(3, D)>>& cell_nodes,
+                   const std::vector<Vec<D>>& v) {
+  bool changed = false;
+  for (ContactPoint<D>& c : contact) {
+    const bool active = normal_velocity(c, cell_nodes, v) < c.target;
+    changed = changed || active != c.active;
+    c.active = active;
+  }
+  return changed;
+}
+
+template <int D>
+void add_contact_forces(const std::vector<ContactPoint<D>>& contact,
+                        const std::vector<std::array<int, power(3, D)>>& cell_nodes, const std::vector<Vec<D>>& v,
+                        Eigen::VectorXd& R) {
+  for (const ContactPoint<D>& c : contact) {
+    if (!c.active) continue;
+    const double force = c.stiffness * (c.target - normal_velocity(c, cell_nodes, v));
+    for (int i = 0; i < power(3, D); ++i) R.segment<D>(cell_nodes[c.cell][i] * D) += force * c.N[i] * c.normal;
+  }
+}
+
+template <int D>
+void add_contact_stiffness(const std::vector<ContactPoint<D>>& contact, BlockSystem<D>& system) {
+  using CellMatrix = typename BlockSystem<D>::CellMatrix;
+  for (const ContactPoint<D>& c : contact) {
+    if (!c.active) continue;
+    Vec<power(3, D) * D> row;
+    for (int i = 0; i < power(3, D); ++i) row.template segment<D>(i * D) = c.N[i] * c.normal;
+    const CellMatrix K = c.stiffness * row * row.transpose();
+    system.add_cell(c.cell, K);
+  }
+}
+
+/// Contact energy [W]: quadratic in the violation.
+template <int D>
+double contact_energy(const std::vector<ContactPoint<D>>& contact,
+                      const std::vector<std::array<int, power(3, D)>>& cell_nodes, const std::vector<Vec<D>>& v) {
+  double energy = 0.0;
+  for (const ContactPoint<D>& c : contact) {
+    const double violation = std::max(0.0, c.target - normal_velocity(c, cell_nodes, v));
+    energy += 0.5 * c.stiffness * violation * violation;
+  }
+  return energy;
+}
+
+/// Sliding velocity of a node along its wall.
+template <int D>
+Vec<D> sliding(const FrictionNode<D>& f, const std::vector<Vec<D>>& v) {
+  Vec<D> u = v[f.node];
+  u[f.normal_axis] = 0.0;
+  return u;
+}
+
+}  // namespace tremie

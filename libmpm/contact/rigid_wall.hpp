@@ -1,0 +1,51 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "libmpm/contact/contact.hpp"
+#include "libmpm/points/points.hpp"
+
+namespace tremie {
+
+/// What a moving rigid wall is to a place near it.
+template <int D>
+struct WallView {
+  double gap = 0.0;         ///< signed distance, positive in the concrete [m]
+  Vec<D> normal;            ///< from the wall into the concrete
+  Vec<D> velocity;          ///< of the wall [m/s]
+};
+
+/// A rigid wall as a signed distance with a motion; empty where the wall is too far to matter. An empty function is
+/// no wall, and costs nothing.
+template <int D>
+using RigidWall = std::function<std::optional<WallView<D>>(const Vec<D>& x, double time)>;
+
+/// Contact of the points with a wall over a step of length dt that ends at `time`.
+/// `gap_min`: how near a point may come, its half spacing [m]; `penalty`: stiffness in units of m/dt.
+template <int D>
+std::vector<ContactPoint<D>> find_contact(const ActiveGrid<D>& grid, const Points<D>& points, const RigidWall<D>& wall,
+                                          double time, double dt, double gap_min, double penalty) {
+  std::vector<ContactPoint<D>> contact;
+  if (!wall) return contact;
+  for (int c = 0; c < grid.n_cells(); ++c)
+    for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
+      const int p = grid.order[i];
+      const auto view = wall(points.x[p], time);
+      if (!view) continue;
+      const Vec<D> s = local_coordinates<D>(grid.axes, grid.cell_index[c], points.x[p]);
+      ContactPoint<D> contact_point;
+      contact_point.cell = c;
+      contact_point.N = stencil<D>(grid.axes, grid.cell_index[c], s).N;
+      contact_point.normal = view->normal;
+      // The wall already stands where it is at the end of the step: what is missing of the gap is closed by then,
+      // at most a tenth of a cell a step so that a deep overlap does not shoot a point off.
+      const double reach = 0.1 * grid.cell_size_min();
+      contact_point.target = std::min((gap_min - view->gap) / dt, reach / dt);
+      contact_point.stiffness = penalty * points.mass[p] / dt;
+      contact.push_back(contact_point);
+    }
+  return contact;
+}
+
+}  // namespace tremie

@@ -1,0 +1,236 @@
+#pragma once
+
+// The part of the background grid that holds concrete: active cells with their points, active nodes. Made anew at
+// every step from the points; its cost follows the concrete, not a box around the apparatus.
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "libmpm/grid/axis.hpp"
+#include "libmpm/points/points.hpp"
+#include "libmpm/space/spaces.hpp"
+
+namespace tremie {
+
+constexpr int power(int base, int exponent) { return exponent == 0 ? 1 : base * power(base, exponent - 1); }
+
+template <int D>
+using Index = std::array<int, D>;
+
+/// A dense block of integers over the index range [low, low + extent), -1 where nothing is.
+template <int D>
+struct IndexMap {
+  Index<D> low{}, extent{};
+  std::vector<int> value;
+
+  void reset(const Index<D>& from, const Index<D>& to) {  // both inclusive
+    low = from;
+    std::size_t n = 1;
+    for (int d = 0; d < D; ++d) n *= static_cast<std::size_t>(extent[d] = to[d] - from[d] + 1);
+    value.assign(n, -1);
+  }
+  bool contains(const Index<D>& i) const {
+    for (int d = 0; d < D; ++d)
+      if (i[d] < low[d] || i[d] >= low[d] + extent[d]) return false;
+    return true;
+  }
+  std::size_t offset(const Index<D>& i) const {
+    std::size_t o = 0;
+    for (int d = 0; d < D; ++d)
+      o = o * static_cast<std::size_t>(extent[d]) + static_cast<std::size_t>(i[d] - low[d]);
+    return o;
+  }
+  int at(const Index<D>& i) const { return contains(i) ? value[offset(i)] : -1; }
+};
+
+template <int D>
+struct ActiveGrid {
+  static constexpr int n_local = power(3, D);  ///< nodes seen by a cell
+
+  std::array<Axis, D> axes;
+
+  std::vector<Index<D>> cell_index;                     ///< of each active cell, in lexicographic order
+  std::vector<std::array<int, n_local>> cell_nodes;     ///< active node of each local control
+  std::vector<int> cell_begin;                          ///< points order[cell_begin[c] .. cell_begin[c+1]) lie in cell c
+  std::vector<int> order;                               ///< point numbers sorted by cell, ties in point order
+  std::vector<Index<D>> node_index;                     ///< control index of each active node
+  IndexMap<D> cell_map, node_map;                       ///< index -> active number
+
+  int n_cells() const { return static_cast<int>(cell_index.size()); }
+  int n_nodes() const { return static_cast<int>(node_index.size()); }
+  Vec<D> node_position(int node) const {
+    Vec<D> x;
+    for (int d = 0; d < D; ++d) x[d] = axes[d].control_position(node_index[node][d]);
+    return x;
+  }
+  double cell_size_min() const {
+    double h = axes[0].h;
+    for (const Axis& a : axes) h = std::min(h, a.h);
+    return h;
+  }
+};
+
+/// Local offset (0, 1 or 2 in each direction) of the k-th control of a cell; the last direction runs fastest.
+template <int D>
+constexpr Index<D> local_offset(int k) {
+  Index<D> o{};
+  for (int d = D - 1; d >= 0; --d, k /= 3) o[d] = k % 3;
+  return o;
+}
+
+/// Shape values and gradients of all controls of a cell at one place.
+template <int D>
+struct Stencil {
+  static constexpr int n = power(3, D);
+  std::array<double, n> N;
+  std::array<Vec<D>, n> g;
+};
+
+template <int D>
+Stencil<D> stencil(const std::array<Axis, D>& axes, const Index<D>& cell, const Vec<D>& s) {
+  std::array<SplineValues, D> one;
+  for (int d = 0; d < D; ++d) one[d] = splines(axes[d], cell[d], s[d]);
+  Stencil<D> st;
+  for (int k = 0; k < Stencil<D>::n; ++k) {
+    const Index<D> o = local_offset<D>(k);
+    double N = 1.0;
+    for (int d = 0; d < D; ++d) N *= one[d].N[o[d]];
+    st.N[k] = N;
+    for (int d = 0; d < D; ++d) {
+      double g = one[d].dN[o[d]];
+      for (int e = 0; e < D; ++e)
+        if (e != d) g *= one[e].N[o[e]];
+      st.g[k][d] = g;
+    }
+  }
+  return st;
+}
+
+/// Local coordinates in [0, 1] of the place x in a cell.
+template <int D>
+Vec<D> local_coordinates(const std::array<Axis, D>& axes, const Index<D>& cell, const Vec<D>& x) {
+  Vec<D> s;
+  for (int d = 0; d < D; ++d) s[d] = (x[d] - axes[d].origin) / axes[d].h - cell[d];
+  return s;
+}
+
+/// The place at the local coordinates s of a cell.
+template <int D>
+Vec<D> cell_place(const std::array<Axis, D>& axes, const Index<D>& cell, const Vec<D>& s) {
+  Vec<D> x;
+  for (int d = 0; d < D; ++d) x[d] = axes[d].origin + (cell[d] + s[d]) * axes[d].h;
+  return x;
+}
+
+namespace detail {
+
+template <int D>
+Index<D> cell_of(const std::array<Axis, D>& axes, const Vec<D>& x) {
+  Index<D> c;
+  for (int d = 0; d < D; ++d) c[d] = axes[d].cell_of(x[d]);
+  return c;
+}
+
+template <int D, class Visit>
+void for_each_index(const IndexMap<D>& map, Visit visit) {
+  Index<D> i = map.low;
+  for (std::size_t o = 0; o < map.value.size(); ++o) {
+    visit(i, o);
+    for (int d = D - 1; d >= 0 && ++i[d] == map.low[d] + map.extent[d]; --d) i[d] = map.low[d];
+  }
+}
+
+template <int D>
+void sort_points_by_cell(ActiveGrid<D>& grid, const std::vector<Index<D>>& cell) {
+  std::vector<int>& slot = grid.cell_map.value;
+  std::vector<int> cell_slot(cell.size());
+  std::vector<int> count(slot.size(), 0);
+  for (std::size_t p = 0; p < cell.size(); ++p) {
+    cell_slot[p] = static_cast<int>(grid.cell_map.offset(cell[p]));
+    ++count[static_cast<std::size_t>(cell_slot[p])];
+  }
+  grid.cell_index.clear();
+  grid.cell_begin.assign(1, 0);
+  for_each_index(grid.cell_map, [&](const Index<D>& i, std::size_t o) {
+    if (count[o] == 0) return;
+    slot[o] = grid.n_cells();
+    grid.cell_index.push_back(i);
+    grid.cell_begin.push_back(grid.cell_begin.back() + count[o]);
+  });
+  std::vector<int> next(grid.cell_begin.begin(), grid.cell_begin.end() - 1);
+  grid.order.resize(cell.size());
+  for (std::size_t p = 0; p < cell.size(); ++p) {
+    const int c = slot[static_cast<std::size_t>(cell_slot[p])];
+    grid.order[static_cast<std::size_t>(next[static_cast<std::size_t>(c)]++)] = static_cast<int>(p);
+  }
+}
+
+template <int D>
+void number_nodes(ActiveGrid<D>& grid) {
+  Index<D> low, high;
+  for (int d = 0; d < D; ++d) {
+    const Axis& a = grid.axes[d];
+    low[d] = a.periodic ? 0 : grid.cell_map.low[d];
+    high[d] = a.periodic ? a.n_cells - 1 : grid.cell_map.low[d] + grid.cell_map.extent[d] + 1;
+  }
+  grid.node_map.reset(low, high);
+  const auto control = [&](const Index<D>& cell, int k) {
+    const Index<D> o = local_offset<D>(k);
+    Index<D> j;
+    for (int d = 0; d < D; ++d) j[d] = grid.axes[d].control(cell[d] + o[d]);
+    return j;
+  };
+  for (const Index<D>& cell : grid.cell_index)
+    for (int k = 0; k < ActiveGrid<D>::n_local; ++k) grid.node_map.value[grid.node_map.offset(control(cell, k))] = 0;
+  grid.node_index.clear();
+  for_each_index(grid.node_map, [&](const Index<D>& j, std::size_t o) {
+    if (grid.node_map.value[o] < 0) return;
+    grid.node_map.value[o] = grid.n_nodes();
+    grid.node_index.push_back(j);
+  });
+  grid.cell_nodes.resize(grid.cell_index.size());
+  for (std::size_t c = 0; c < grid.cell_index.size(); ++c)
+    for (int k = 0; k < ActiveGrid<D>::n_local; ++k)
+      grid.cell_nodes[c][k] = grid.node_map.value[grid.node_map.offset(control(grid.cell_index[c], k))];
+}
+
+}  // namespace detail
+
+/// Finds the active cells and nodes and sorts the points by cell. Points must be finite.
+template <int D>
+void activate(ActiveGrid<D>& grid, const Points<D>& points) {
+  std::vector<Index<D>> cell(points.size());
+  Index<D> low, high;
+  for (int d = 0; d < D; ++d) low[d] = high[d] = 0;
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    cell[p] = detail::cell_of<D>(grid.axes, points.x[p]);
+    for (int d = 0; d < D; ++d) {
+      low[d] = p == 0 ? cell[p][d] : std::min(low[d], cell[p][d]);
+      high[d] = p == 0 ? cell[p][d] : std::max(high[d], cell[p][d]);
+    }
+  }
+  grid.cell_map.reset(low, high);
+  detail::sort_points_by_cell<D>(grid, cell);
+  detail::number_nodes(grid);
+}
+
+/// Whether a cell lies inside the body: every neighbour holds concrete or is beyond a wall.
+template <int D>
+bool is_inside(const ActiveGrid<D>& grid, const Index<D>& cell) {
+  for (int k = 0; k < power(3, D); ++k) {
+    Index<D> n = local_offset<D>(k);
+    bool beyond_wall = false;
+    for (int d = 0; d < D; ++d) {
+      const Axis& a = grid.axes[d];
+      n[d] += cell[d] - 1;
+      if (a.periodic) n[d] = a.control(n[d]);
+      beyond_wall = beyond_wall || (a.wall_low() && n[d] < 0) || (a.wall_high() && n[d] >= a.n_cells);
+    }
+    if (!beyond_wall && grid.cell_map.at(n) < 0) return false;
+  }
+  return true;
+}
+
+}  // namespace tremie

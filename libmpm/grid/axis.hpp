@@ -1,0 +1,82 @@
+#pragma once
+
+// One direction of the background grid: cells of size h and quadratic B-splines, three per cell.
+//
+// Cell c covers [origin + c h, origin + (c+1) h] and sees the control values c, c+1, c+2. Control j sits at
+// (j - 1/2) h from the origin (its Greville abscissa), except at a wall, where the knot vector is open: there the end
+// spline is interpolatory, its control sits on the wall and fixing it fixes the velocity on the whole wall.
+
+#include <array>
+#include <cmath>
+
+namespace tremie {
+
+/// What a flat wall at the end of an axis does to the concrete.
+enum class FaceKind {
+  open,       ///< no wall: the grid goes on as far as there is concrete
+  free_slip,  ///< normal velocity zero; also an axis or a plane of symmetry
+  friction,   ///< normal velocity zero, Coulomb friction along it
+  no_slip     ///< velocity zero
+};
+
+struct Axis {
+  double h = 1.0;       ///< cell size [m]
+  double origin = 0.0;  ///< position of the low face [m]
+  FaceKind low = FaceKind::open;
+  FaceKind high = FaceKind::open;
+  bool periodic = false;
+  int n_cells = 0;  ///< of a periodic axis, or of one with a high wall; otherwise unused
+
+  bool wall_low() const { return low != FaceKind::open; }
+  bool wall_high() const { return high != FaceKind::open; }
+  double length() const { return h * n_cells; }
+
+  int cell_of(double x) const {
+    int c = static_cast<int>(std::floor((x - origin) / h));
+    if (wall_low() && c < 0) c = 0;
+    if (wall_high() && c >= n_cells) c = n_cells - 1;
+    return c;
+  }
+  /// Control index as stored: wrapped on a periodic axis.
+  int control(int j) const { return periodic ? ((j % n_cells) + n_cells) % n_cells : j; }
+  bool on_low_wall(int j) const { return wall_low() && j == 0; }
+  bool on_high_wall(int j) const { return wall_high() && j == n_cells + 1; }
+  double control_position(int j) const {
+    if (on_low_wall(j)) return origin;
+    if (on_high_wall(j)) return origin + length();
+    return origin + (j - 0.5) * h;
+  }
+};
+
+/// Values and derivatives [1/m] of the three splines of a cell.
+struct SplineValues {
+  std::array<double, 3> N, dN;
+};
+
+/// Splines of cell c at the local coordinate s in [0, 1].
+inline SplineValues splines(const Axis& axis, int c, double s) {
+  const bool low = axis.wall_low() && c == 0;
+  const bool high = axis.wall_high() && c == axis.n_cells - 1;
+  const double t = 1.0 - s, ih = 1.0 / axis.h;
+  SplineValues v;
+  v.N[0] = low ? t * t : 0.5 * t * t;
+  v.dN[0] = (low ? -2.0 * t : -t) * ih;
+  v.N[2] = high ? s * s : 0.5 * s * s;
+  v.dN[2] = (high ? 2.0 * s : s) * ih;
+  v.N[1] = 1.0 - v.N[0] - v.N[2];
+  v.dN[1] = -v.dN[0] - v.dN[2];
+  return v;
+}
+
+/// Integral of control j's spline over the cells that exist [m]: its share of the line.
+inline double spline_integral(const Axis& axis, int j) {
+  double share = 1.0;
+  if (axis.wall_low()) share = j == 0 ? 1.0 / 3.0 : j == 1 ? 2.0 / 3.0 : share;
+  if (axis.wall_high()) {
+    const int k = axis.n_cells + 1 - j;
+    share -= k == 0 ? 2.0 / 3.0 : k == 1 ? 1.0 / 3.0 : 0.0;
+  }
+  return share * axis.h;
+}
+
+}  // namespace tremie

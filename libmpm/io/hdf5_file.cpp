@@ -1,0 +1,116 @@
+#include "libmpm/io/hdf5_file.hpp"
+
+#include <hdf5.h>
+
+#include <array>
+#include <cerrno>
+#include <type_traits>
+#include <utility>
+
+#include "libmpm/io/write_error.hpp"
+
+namespace tremie::io {
+namespace {
+
+static_assert(std::is_same_v<hid_t, std::int64_t>);
+
+/// An HDF5 handle with the function that closes it.
+class Handle {
+ public:
+  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
+  ~Handle() {
+    if (id_ >= 0) close_(id_);
+  }
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  operator hid_t() const { return id_; }
+
+ private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+herr_t write_attribute(hid_t object, const std::string& name, hid_t type, const void* value) {
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Handle attribute(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  return attribute < 0 ? -1 : H5Awrite(attribute, type, value);
+}
+
+}  // namespace
+
+Hdf5File::Hdf5File(const std::filesystem::path& file) : path_(file) {
+  // After a write that failed (a full disk) the library's own clean-up at exit would try again, and crash.
+  H5dont_atexit();
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are thrown, not printed
+  errno = 0;
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_libver_bounds(access, H5F_LIBVER_EARLIEST, H5F_LIBVER_V110);
+  file_ = H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
+  check(file_);
+}
+
+Hdf5File::~Hdf5File() {
+  if (file_ >= 0) H5Fclose(file_);
+}
+
+void Hdf5File::check(std::int64_t status) {
+  if (status < 0) fail_to_write(path_);
+}
+
+void Hdf5File::close() {
+  errno = 0;
+  check(H5Fclose(std::exchange(file_, -1)));
+}
+
+void Hdf5File::group(const std::string& path) {
+  errno = 0;
+  // Objects carry no times unless asked for; groups are said so explicitly through the creation list.
+  const Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
+  H5Pset_obj_track_times(creation, false);
+  const Handle made(H5Gcreate2(file_, path.c_str(), H5P_DEFAULT, creation, H5P_DEFAULT), H5Gclose);
+  check(made);
+}
+
+std::int64_t Hdf5File::open(const std::string& object) {
+  errno = 0;
+  const hid_t id = H5Oopen(file_, object.c_str(), H5P_DEFAULT);
+  check(id);
+  return id;
+}
+
+void Hdf5File::attribute(const std::string& object, const std::string& name, double value) {
+  const Handle id(open(object), H5Oclose);
+  check(write_attribute(id, name, H5T_NATIVE_DOUBLE, &value));
+}
+
+void Hdf5File::attribute(const std::string& object, const std::string& name, std::int64_t value) {
+  const Handle id(open(object), H5Oclose);
+  check(write_attribute(id, name, H5T_NATIVE_INT64, &value));
+}
+
+void Hdf5File::attribute(const std::string& object, const std::string& name, const std::string& value) {
+  const Handle id(open(object), H5Oclose);
+  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type, value.size() + 1);
+  H5Tset_cset(type, H5T_CSET_UTF8);
+  check(write_attribute(id, name, type, value.c_str()));
+}
+
+void Hdf5File::array(const std::string& path, std::span<const double> values, std::size_t columns,
+                     const std::string& unit) {
+  errno = 0;
+  const std::array<hsize_t, 2> size{values.size() / columns, columns};
+  const Handle space(H5Screate_simple(columns == 1 ? 1 : 2, size.data(), nullptr), H5Sclose);
+  const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  H5Pset_obj_track_times(creation, false);
+  {
+    const Handle made(
+        H5Dcreate2(file_, path.c_str(), H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, creation, H5P_DEFAULT),
+        H5Dclose);
+    check(made);
+    check(H5Dwrite(made, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
+  }
+  attribute(path, "unit", unit);
+}
+
+}  // namespace tremie::io

@@ -1,0 +1,99 @@
+#pragma once
+
+// Alternating directions for the yield problem (Glowinski; Boyd et al. 2011): the yield part sees a strain rate d of
+// its own at every Gauss place, tied to q(v) by a stress s and a penalty r,
+//
+//   v:  M (v - v*)/dt + bulk + contact + B' V [mu q(v) + s + r (q(v) - d)] = 0       one linear solve, one matrix a step
+//   d:  a = s + r (rho q + (1 - rho) d),   d <- prox(|a|) a/|a|,   s <- a - r d      closed form, place by place
+//
+// The exact Bingham law needs no regularisation: |s| <= tau_y always, and d = 0 exactly where it does not yield.
+
+#include <algorithm>
+#include <cmath>
+
+#include "libmpm/contact/friction.hpp"
+#include "libmpm/step/yield_problem.hpp"
+
+namespace tremie {
+
+struct AdmmSettings {
+  double tolerance = 1e-3;      ///< of the stress mismatch, relative to the yield stress
+  int max_iterations = 1000;
+  double over_relaxation = 1.6;  ///< rho
+  double penalty = 3.0;          ///< r / mu
+};
+
+namespace detail {
+
+/// Squares of the primal and dual mismatch and of the stress scale, weighted by volume.
+struct Mismatch {
+  double primal = 0.0, dual = 0.0, scale = 0.0;
+  bool within(double tolerance) const { return std::max(primal, dual) <= tolerance * tolerance * scale; }
+};
+
+template <class Space, class Law>
+Mismatch update_duals(const YieldProblem<Space>& problem, const Law& law, const AdmmSettings& settings, double r,
+                      const std::vector<Vec<Space::dim>>& v, Duals<Space>& duals) {
+  constexpr int n = power(2, Space::dim);
+  const auto& quad = problem.quadrature;
+  std::vector<Mismatch> part(quad.V.size());
+#pragma omp parallel for schedule(static)
+  for (int c = 0; c < problem.grid.n_cells(); ++c)
+    for (int k = 0; k < n; ++k) {
+      const double tau_y = quad.tau_y[c][k], V = quad.V[c][k];
+      auto& d = duals.rate[c][k];
+      auto& s = duals.stress[c][k];
+      const auto q = strain_rate(problem, v, c, k);
+      const Vec<Space::n_strain> a =
+          s + r * (settings.over_relaxation * q + (1.0 - settings.over_relaxation) * d);
+      const double a_norm = a.norm();
+      const Vec<Space::n_strain> d_new =
+          a_norm > 0.0 ? Vec<Space::n_strain>(law.prox(a_norm, tau_y, r) / a_norm * a) : Vec<Space::n_strain>(0.0 * a);
+      part[c].primal += V * (r * (q - d_new)).squaredNorm();
+      part[c].dual += V * (r * (d_new - d)).squaredNorm();
+      part[c].scale += V * std::pow(tau_y + problem.mu * q.norm(), 2);
+      s = a - r * d_new;
+      d = d_new;
+    }
+  Mismatch sum;
+  for (const Mismatch& m : part) sum.primal += m.primal, sum.dual += m.dual, sum.scale += m.scale;
+  return sum;
+}
+
+}  // namespace detail
+
+/// Solves the yield problem by ADMM from the guesses v and duals, which it overwrites with the solution.
+template <class Space, class Law>
+SolveReport solve_admm(YieldProblem<Space>& problem, const Law& law, const AdmmSettings& settings,
+                       BlockSystem<Space::dim>& system, std::vector<Vec<Space::dim>>& v, Duals<Space>& duals) {
+  constexpr int D = Space::dim;
+  const double r = settings.penalty * problem.mu;
+  const auto stiffness = [&](int, int) { return problem.mu + r; };
+  const auto stress = [&](int c, int k, const Vec<Space::n_strain>& q) -> Vec<Space::n_strain> {
+    return problem.mu * q + duals.stress[c][k] + r * (q - duals.rate[c][k]);
+  };
+  const auto factorise = [&] {
+    assemble(problem, stiffness, system);
+    add_friction_stiffness_admm<D>(problem.friction, system);
+    system.fix(problem.fixed);
+    return system.factorise();
+  };
+  SolveReport report;
+  if (!factorise()) return report;
+  for (; report.iterations < settings.max_iterations; ++report.iterations) {
+    Eigen::VectorXd R = residual(problem, v, stress);
+    add_friction_forces_admm<D>(problem.friction, v, R);
+    mask(problem.fixed, R);
+    const Eigen::VectorXd dv = system.solve(R);
+    for (int i = 0; i < problem.grid.n_nodes(); ++i) v[i] += dv.segment<D>(i * D);
+    const bool contact_changed = update_active<D>(problem.contact, problem.grid.cell_nodes, v);
+    const bool friction_settled = update_friction_admm<D>(problem.friction, v, settings.over_relaxation, settings.tolerance);
+    const auto mismatch = detail::update_duals(problem, law, settings, r, v, duals);
+    if (contact_changed && !factorise()) return report;
+    report.converged = mismatch.within(settings.tolerance) && friction_settled && !contact_changed;
+    if (report.converged) break;
+  }
+  return report;
+}
+
+}  // namespace tremie

@@ -1,0 +1,122 @@
+#pragma once
+
+// The symmetric positive definite system of an implicit step on the active nodes: D x D blocks, assembled from cells,
+// factorised by a sparse Cholesky method. The symbolic analysis is kept while the set of active cells is.
+
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+#include <memory>
+#include <vector>
+
+#include "libmpm/grid/active_grid.hpp"
+
+namespace tremie {
+
+template <int D>
+class BlockSystem {
+ public:
+  static constexpr int n_local = power(3, D), n_dof = n_local * D;
+  using CellMatrix = Eigen::Matrix<double, n_dof, n_dof>;
+
+  /// Lays out the matrix for this grid; cheap when the grid is the one of the last call.
+  void set_pattern(const ActiveGrid<D>& grid) {
+    if (grid.cell_nodes == cell_nodes_ && grid.n_nodes() == n_nodes_) return;
+    cell_nodes_ = grid.cell_nodes;
+    n_nodes_ = grid.n_nodes();
+    find_neighbours(grid);
+    lay_out();
+    analysed_ = false;
+  }
+  void set_zero() { std::fill(matrix_.valuePtr(), matrix_.valuePtr() + matrix_.nonZeros(), 0.0); }
+
+  /// Adds a cell's matrix; rows and columns ordered local node by local node. Only its lower half is read.
+  void add_cell(int cell, const CellMatrix& K) {
+    const auto& nodes = cell_nodes_[cell];
+    for (int a = 0; a < n_local; ++a)
+      for (int b = 0; b <= a; ++b) add_block(nodes[a], nodes[b], K.template block<D, D>(a * D, b * D), a == b);
+  }
+  void add_diagonal(int node, int d, double value) { matrix_.valuePtr()[diagonal_[node * D + d]] += value; }
+
+  void add_node_block(int node, const Mat<D, D>& block) { add_block(node, node, block, true); }
+
+  /// Fixes a component: its row and column become those of the identity. Call after assembly.
+  void fix(const std::vector<char>& fixed) {
+    const int* outer = matrix_.outerIndexPtr();
+    const int* inner = matrix_.innerIndexPtr();
+    double* value = matrix_.valuePtr();
+    for (int j = 0; j < n_nodes_ * D; ++j)
+      for (int k = outer[j]; k < outer[j + 1]; ++k)
+        if (fixed[j] || fixed[inner[k]]) value[k] = inner[k] == j ? 1.0 : 0.0;
+  }
+  /// Numerical factorisation; false where the matrix is not positive definite.
+  bool factorise() {
+    if (!analysed_) solver_->analyzePattern(matrix_);
+    analysed_ = true;
+    solver_->factorize(matrix_);
+    return solver_->info() == Eigen::Success;
+  }
+  Eigen::VectorXd solve(const Eigen::VectorXd& rhs) const { return solver_->solve(rhs); }
+  double diagonal(int dof) const { return matrix_.valuePtr()[diagonal_[dof]]; }
+
+ private:
+  /// Sorted numbers of the nodes that share a cell with each node and are not before it.
+  void find_neighbours(const ActiveGrid<D>& grid) {
+    neighbours_.assign(grid.n_nodes(), {});
+    for (const auto& nodes : grid.cell_nodes)
+      for (int a : nodes)
+        for (int b : nodes)
+          if (b >= a) neighbours_[a].push_back(b);
+    for (auto& list : neighbours_) {
+      std::sort(list.begin(), list.end());
+      list.erase(std::unique(list.begin(), list.end()), list.end());
+    }
+  }
+  void lay_out() {
+    const int n = n_nodes_ * D;
+    std::vector<int> outer(n + 1, 0);
+    for (int i = 0; i < n_nodes_; ++i)
+      for (int d = 0; d < D; ++d)
+        outer[i * D + d + 1] = outer[i * D + d] + static_cast<int>(neighbours_[i].size()) * D - d;
+    matrix_.resize(n, n);
+    matrix_.resizeNonZeros(outer[n]);
+    std::copy(outer.begin(), outer.end(), matrix_.outerIndexPtr());
+    diagonal_.resize(n);
+    for (int i = 0; i < n_nodes_; ++i)
+      for (int d = 0; d < D; ++d) {
+        int k = outer[i * D + d];
+        diagonal_[i * D + d] = k;
+        for (int j : neighbours_[i])
+          for (int e = j == i ? d : 0; e < D; ++e) matrix_.innerIndexPtr()[k++] = j * D + e;
+      }
+  }
+  void add_block(int row, int column, const Mat<D, D>& block, bool same_local_node) {
+    // On a periodic axis of one or two cells several local nodes are one active node: both halves of the cell matrix
+    // then fall on one block and both count.
+    if (row == column) {
+      for (int d = 0; d < D; ++d)
+        for (int e = d; e < D; ++e)
+          matrix_.valuePtr()[diagonal_[column * D + d] + e - d] +=
+              same_local_node ? block(e, d) : block(e, d) + block(d, e);
+      return;
+    }
+    const bool below = row > column;
+    const int i = below ? column : row, j = below ? row : column;
+    const auto& list = neighbours_[i];
+    const int slot = static_cast<int>(std::lower_bound(list.begin(), list.end(), j) - list.begin());
+    for (int d = 0; d < D; ++d) {
+      double* value = matrix_.valuePtr() + matrix_.outerIndexPtr()[i * D + d] + slot * D - d;
+      for (int e = 0; e < D; ++e) value[e] += below ? block(e, d) : block(d, e);
+    }
+  }
+
+  std::vector<std::array<int, n_local>> cell_nodes_;
+  std::vector<std::vector<int>> neighbours_;
+  std::vector<int> diagonal_;
+  int n_nodes_ = -1;
+  bool analysed_ = false;
+  Eigen::SparseMatrix<double> matrix_;
+  using Solver = Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::AMDOrdering<int>>;
+  std::unique_ptr<Solver> solver_ = std::make_unique<Solver>();
+};
+
+}  // namespace tremie

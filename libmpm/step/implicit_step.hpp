@@ -1,0 +1,274 @@
+#pragma once
+
+// One backward-Euler step of the material point method, from top to bottom.
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "libmpm/contact/rigid_wall.hpp"
+#include "libmpm/law/mix.hpp"
+#include "libmpm/step/admm.hpp"
+#include "libmpm/step/newton.hpp"
+#include "libmpm/transfer/apic.hpp"
+#include "libmpm/transfer/even_out.hpp"
+
+namespace tremie {
+
+enum class YieldMethod { automatic, admm, newton };
+
+struct StepSettings {
+  YieldMethod method = YieldMethod::automatic;
+  AdmmSettings admm;
+  NewtonSettings newton;
+  Transfer transfer;
+  EvenOut even_out;
+  std::optional<double> fixed_dt;  ///< [s]; empty: chosen at every step
+  double dt_max = 0.1;             ///< [s]
+  double cfl = 0.6;                ///< largest move in a step, in cells
+  double growth = 1.3;             ///< largest ratio of successive steps
+  double friction_coefficient = 0.0;
+  double wall_gap = 0.0;       ///< how near a point may come to a rigid wall [m]
+  double wall_penalty = 100.0;  ///< stiffness of a rigid wall, in m/dt
+};
+
+/// A body of one mix on its grid: everything that a step reads and writes.
+template <class Space>
+struct Body {
+  static constexpr int D = Space::dim;
+  Mix mix;
+  Vec<D> gravity = Vec<D>::Zero();  ///< [m/s^2]
+  Points<D> points;
+  ActiveGrid<D> grid;
+  double time = 0.0, dt = 0.0;  ///< [s]; dt of the last step
+
+  NodalState<D> nodes;        ///< of the last step, velocities at its start
+  std::vector<Vec<D>> v;      ///< nodal velocities at the end of the last step [m/s]
+  Quadrature<Space> quadrature;
+  Duals<Space> duals;
+  std::vector<FrictionNode<D>> friction;
+  BlockSystem<D> system;
+};
+
+struct StepReport {
+  double dt = 0.0;
+  bool converged = false;
+  int iterations = 0;            ///< linear solves
+  double max_speed = 0.0;        ///< of the points [m/s]
+  double shear_rate_mean = 0.0;  ///< volume mean [1/s]
+};
+
+namespace detail {
+
+template <int D>
+double max_speed(const Points<D>& points) {
+  double v2 = 0.0;
+  for (const Vec<D>& v : points.v) v2 = std::max(v2, v.squaredNorm());
+  return std::sqrt(v2);
+}
+
+/// Largest step that keeps every point's move, gravity's pull included, within settings.cfl cells.
+template <class Space>
+double choose_dt(const Body<Space>& body, const StepSettings& settings) {
+  if (settings.fixed_dt) return *settings.fixed_dt;
+  double dt = body.dt > 0.0 ? std::min(settings.dt_max, settings.growth * body.dt) : settings.dt_max;
+  for (int d = 0; d < Space::dim; ++d) {
+    double v = 0.0;
+    for (const auto& vp : body.points.v) v = std::max(v, std::abs(vp[d]));
+    const double reach = settings.cfl * body.grid.axes[d].h;
+    if (v > 0.0) dt = std::min(dt, reach / v);
+    // From rest the speed at the end of the step counts: g dt^2 <= reach.
+    const double g = std::abs(body.gravity[d]);
+    if (body.dt == 0.0 && g > 0.0) dt = std::min(dt, 0.25 * std::sqrt(reach / g));
+  }
+  return dt;
+}
+
+/// Duals of cells that were active before go on from where they were; new cells start unstressed.
+template <class Space>
+void carry_duals(const IndexMap<Space::dim>& old_map, const ActiveGrid<Space::dim>& grid, Duals<Space>& duals) {
+  Duals<Space> now;
+  now.stress.resize(grid.cell_index.size());
+  now.rate.resize(grid.cell_index.size());
+  for (int c = 0; c < grid.n_cells(); ++c) {
+    const int old = old_map.value.empty() ? -1 : old_map.at(grid.cell_index[c]);
+    for (int k = 0; k < power(2, Space::dim); ++k) {
+      now.stress[c][k].setZero();
+      now.rate[c][k].setZero();
+      if (old < 0) continue;
+      now.stress[c][k] = duals.stress[old][k];
+      now.rate[c][k] = duals.rate[old][k];
+    }
+  }
+  duals = std::move(now);
+}
+
+/// Walls at the ends of the axes: which components they prescribe (their velocity is zero), and where friction acts.
+template <int D>
+void apply_flat_walls(const ActiveGrid<D>& grid, std::vector<char>& fixed, std::vector<FrictionNode<D>>& friction,
+                      std::vector<Vec<D>>& v) {
+  fixed.assign(grid.node_index.size() * D, 0);
+  for (int i = 0; i < grid.n_nodes(); ++i)
+    for (int a = 0; a < D; ++a) {
+      const Axis& axis = grid.axes[a];
+      const int j = grid.node_index[i][a];
+      const FaceKind face = axis.on_low_wall(j) ? axis.low : axis.on_high_wall(j) ? axis.high : FaceKind::open;
+      if (face == FaceKind::open) continue;
+      for (int d = 0; d < D; ++d)
+        if (d == a || face == FaceKind::no_slip) fixed[i * D + d] = 1, v[i][d] = 0.0;
+      if (face == FaceKind::friction) {
+        FrictionNode<D> node;
+        node.node = i;
+        node.normal_axis = a;
+        friction.push_back(node);
+      }
+    }
+}
+
+/// ln J of the points from the mean divergence of their cells, the same that the step's pressure used.
+template <class Space>
+void update_volumes(const YieldProblem<Space>& problem, const std::vector<Vec<Space::dim>>& v,
+                    Points<Space::dim>& points) {
+  for (int c = 0; c < problem.grid.n_cells(); ++c) {
+    const double d_ln_J = problem.dt * divergence(problem, v, c);
+    for (int i = problem.grid.cell_begin[c]; i < problem.grid.cell_begin[c + 1]; ++i)
+      points.ln_J[problem.grid.order[i]] += d_ln_J;
+  }
+}
+
+/// lambda of every point, equation (3).
+template <class Space>
+void update_flocculation(const Body<Space>& body, double dt, Points<Space::dim>& points) {
+  std::vector<double> gamma_dot;
+  shear_rate_at_points<Space>(body.grid, body.v, points, gamma_dot);
+  for (std::size_t p = 0; p < points.size(); ++p)
+    points.lambda[p] = flocculation_step(points.lambda[p], *body.mix.thixotropy, body.mix.tau_0, points.gamma_dot[p],
+                                         gamma_dot[p], dt);
+  points.gamma_dot.swap(gamma_dot);
+}
+
+template <class Space>
+double mean_shear_rate(const YieldProblem<Space>& problem, const std::vector<Vec<Space::dim>>& v) {
+  double sum = 0.0, volume = 0.0;
+  for (int c = 0; c < problem.grid.n_cells(); ++c)
+    for (int k = 0; k < power(2, Space::dim); ++k) {
+      sum += problem.quadrature.V[c][k] * strain_rate(problem, v, c, k).norm();
+      volume += problem.quadrature.V[c][k];
+    }
+  return volume > 0.0 ? sum / volume : 0.0;
+}
+
+/// Weight and inertia that the residual of a Newton step is measured against [N].
+template <class Space>
+double force_scale(const Body<Space>& body, double dt) {
+  double scale = 0.0;
+  for (int i = 0; i < body.grid.n_nodes(); ++i)
+    scale += body.nodes.mass[i] * (body.gravity.norm() + 1e-3 * body.nodes.v[i].norm() / dt);
+  return scale;
+}
+
+/// Solves with the chosen method; `automatic` is ADMM, and Newton where ADMM does not converge.
+template <class Space, class Law>
+SolveReport solve_yield(YieldProblem<Space>& problem, const Law& law, const StepSettings& settings, Body<Space>& body) {
+  const double scale = force_scale(body, problem.dt);
+  if (settings.method == YieldMethod::newton)
+    return solve_newton(problem, law, settings.newton, scale, body.system, body.v, body.duals);
+  SolveReport report = solve_admm(problem, law, settings.admm, body.system, body.v, body.duals);
+  if (report.converged || settings.method == YieldMethod::admm) return report;
+  const int before = report.iterations;
+  report = solve_newton(problem, law, settings.newton, scale, body.system, body.v, body.duals);
+  report.iterations += before;
+  return report;
+}
+
+/// Normal forces of the friction nodes from the reactions; returns the relative change of their sum.
+template <class Space, class Law>
+double update_normal_forces(YieldProblem<Space>& problem, const Law& law, double coefficient, const Body<Space>& body) {
+  constexpr int D = Space::dim;
+  const auto stress = [&](int c, int k, const Vec<Space::n_strain>& q) -> Vec<Space::n_strain> {
+    (void)law;
+    return problem.mu * q + body.duals.stress[c][k];
+  };
+  const Eigen::VectorXd R = residual(problem, body.v, stress);
+  double change = 0.0, sum = 0.0;
+  for (FrictionNode<D>& f : problem.friction) {
+    // The reaction pushes into the concrete: against -e at a low wall, against +e at a high one.
+    const bool low = problem.grid.axes[f.normal_axis].on_low_wall(problem.grid.node_index[f.node][f.normal_axis]);
+    const double reaction = (low ? -1.0 : 1.0) * R[f.node * D + f.normal_axis];
+    const double limit = coefficient * std::max(0.0, reaction);
+    change += std::abs(limit - f.limit);
+    sum += limit;
+    f.limit = limit;
+    const double size = f.force.norm();
+    if (size > limit) f.force *= limit / size;
+  }
+  return sum > 0.0 ? change / sum : 0.0;
+}
+
+/// Friction goes on from the forces of the last step at the same nodes.
+template <class Space>
+void carry_friction(const std::vector<FrictionNode<Space::dim>>& old, const IndexMap<Space::dim>& old_nodes,
+                    const ActiveGrid<Space::dim>& grid, std::vector<FrictionNode<Space::dim>>& friction) {
+  for (auto& f : friction) {
+    const int node = old_nodes.value.empty() ? -1 : old_nodes.at(grid.node_index[f.node]);
+    const auto it = std::find_if(old.begin(), old.end(), [&](const auto& o) { return o.node == node; });
+    if (node < 0 || it == old.end()) continue;
+    f.limit = it->limit;
+    f.force = it->force;
+    f.slip = it->slip;
+  }
+}
+
+}  // namespace detail
+
+/// Advances the body by one step.
+template <class Space, class Law>
+StepReport implicit_step(Body<Space>& body, const Law& law, const StepSettings& settings,
+                         const RigidWall<Space::dim>& wall = {}) {
+  constexpr int D = Space::dim;
+  const IndexMap<D> old_cells = body.grid.cell_map, old_nodes = body.grid.node_map;
+
+  // Points to grid.
+  activate(body.grid, body.points);
+  point_to_grid(body.grid, body.points, body.nodes);
+  detail::carry_duals<Space>(old_cells, body.grid, body.duals);
+  lay_out_quadrature<Space>(body.grid, body.points, body.mix.tau_0, body.mix.K, body.quadrature);
+  body.system.set_pattern(body.grid);
+  body.v = body.nodes.v;
+
+  // The step's convex problem: inertia with gravity, viscosity and yield, bulk, walls.
+  const double dt = detail::choose_dt(body, settings);
+  const std::vector<Vec<D>> v_old = body.nodes.v;
+  for (Vec<D>& v : body.nodes.v) v += dt * body.gravity;
+  YieldProblem<Space> problem{body.grid, body.quadrature, body.nodes, dt, body.mix.mu, body.mix.K, {}, {}, {}};
+  detail::apply_flat_walls<D>(body.grid, problem.fixed, problem.friction, body.v);
+  detail::carry_friction<Space>(body.friction, old_nodes, body.grid, problem.friction);
+  problem.contact =
+      find_contact(body.grid, body.points, wall, body.time + dt, dt, settings.wall_gap, settings.wall_penalty);
+  update_active<D>(problem.contact, body.grid.cell_nodes, body.v);
+
+  // Its solution: the velocities at the end of the step.
+  SolveReport solve = detail::solve_yield(problem, law, settings, body);
+  for (int i = 0; i < 20 && !problem.friction.empty(); ++i) {
+    if (detail::update_normal_forces(problem, law, settings.friction_coefficient, body) < 0.02) break;
+    const int before = solve.iterations;
+    solve = detail::solve_yield(problem, law, settings, body);
+    solve.iterations += before;
+  }
+  body.friction = problem.friction;
+
+  // Grid to points: state first, where the points were, then the move.
+  if (body.points.thixotropic()) detail::update_flocculation(body, dt, body.points);
+  detail::update_volumes(problem, body.v, body.points);
+  std::vector<Vec<D>> u;
+  if (settings.even_out.on) u = even_out(problem, body.points, body.v, settings.even_out, body.system);
+  grid_to_point(body.grid, body.v, v_old, settings.transfer, dt, body.points);
+  if (settings.even_out.on) shift_points<D>(body.grid, u, body.points);
+  body.time += dt;
+  body.dt = dt;
+
+  return {dt, solve.converged, solve.iterations, detail::max_speed(body.points),
+          detail::mean_shear_rate(problem, body.v)};
+}
+
+}  // namespace tremie

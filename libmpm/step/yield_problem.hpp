@@ -1,0 +1,122 @@
+#pragma once
+
+// The convex problem of one backward-Euler step: find the nodal velocities v that minimise
+//
+//   1/2 (v - v*)' M (v - v*) / dt  +  sum_q V_q [mu/2 gamma_dot^2 + Phi(gamma_dot)]
+//     +  sum_c V_c [K dt/2 (div v)^2 - p div v]  +  contact,
+//
+// Phi the potential of the yield law, gamma_dot = |q| at Gauss place q, one divergence a cell. Its stationarity is
+// the momentum balance; its solvers are in admm.hpp and newton.hpp.
+
+#include <vector>
+
+#include "libmpm/contact/contact.hpp"
+#include "libmpm/grid/active_grid.hpp"
+#include "libmpm/step/block_system.hpp"
+#include "libmpm/step/quadrature.hpp"
+#include "libmpm/transfer/apic.hpp"
+
+namespace tremie {
+
+/// Stress of the yield part and, for ADMM, the split strain rate, at every Gauss place of every cell. Kept between
+/// steps by cell as a first guess.
+template <class Space>
+struct Duals {
+  using Strain = Vec<Space::n_strain>;
+  static constexpr int n = power(2, Space::dim);
+  std::vector<std::array<Strain, n>> stress;  ///< [Pa]
+  std::vector<std::array<Strain, n>> rate;    ///< [1/s]
+};
+
+template <class Space>
+struct YieldProblem {
+  static constexpr int D = Space::dim;
+  const ActiveGrid<D>& grid;
+  const Quadrature<Space>& quadrature;
+  const NodalState<D>& nodes;         ///< masses, and v* with gravity already in it
+  double dt, mu, K;
+  std::vector<char> fixed;            ///< a flag a component: prescribed by a wall
+  std::vector<ContactPoint<D>> contact;   ///< moving rigid walls
+  std::vector<FrictionNode<D>> friction;  ///< Coulomb friction on flat walls
+};
+
+struct SolveReport {
+  bool converged = false;
+  int iterations = 0;
+};
+
+/// Strain-rate vector at Gauss place k of cell c.
+template <class Space>
+Vec<Space::n_strain> strain_rate(const YieldProblem<Space>& problem, const std::vector<Vec<Space::dim>>& v, int c, int k) {
+  const auto& nodes = problem.grid.cell_nodes[c];
+  Vec<Space::n_strain> q = problem.quadrature.B[c][k][0] * v[nodes[0]];
+  for (int i = 1; i < power(3, Space::dim); ++i) q.noalias() += problem.quadrature.B[c][k][i] * v[nodes[i]];
+  return q;
+}
+
+/// Mean divergence of cell c.
+template <class Space>
+double divergence(const YieldProblem<Space>& problem, const std::vector<Vec<Space::dim>>& v, int c) {
+  const auto& nodes = problem.grid.cell_nodes[c];
+  double div = 0.0;
+  for (int i = 0; i < power(3, Space::dim); ++i) div += problem.quadrature.b[c][i].dot(v[nodes[i]]);
+  return div;
+}
+
+/// Nodal forces of everything but the yield part at velocities v: inertia, pressure and moving contact; plus the
+/// deviatoric forces of the stresses that `stress(c, k, q)` returns for the strain rate q.
+template <class Space, class Stress>
+Eigen::VectorXd residual(const YieldProblem<Space>& problem, const std::vector<Vec<Space::dim>>& v, Stress stress) {
+  constexpr int D = Space::dim, n_local = power(3, D);
+  const auto& grid = problem.grid;
+  const auto& quad = problem.quadrature;
+  std::vector<std::array<Vec<D>, n_local>> local(grid.cell_index.size());
+#pragma omp parallel for schedule(static)
+  for (int c = 0; c < grid.n_cells(); ++c) {
+    const double p = quad.p[c] - problem.K * problem.dt * divergence(problem, v, c);
+    for (int i = 0; i < n_local; ++i) local[c][i] = quad.V_cell[c] * p * quad.b[c][i];
+    for (int k = 0; k < power(2, D); ++k) {
+      const Vec<Space::n_strain> s = quad.V[c][k] * stress(c, k, strain_rate(problem, v, c, k));
+      for (int i = 0; i < n_local; ++i) local[c][i].noalias() -= quad.B[c][k][i].transpose() * s;
+    }
+  }
+  Eigen::VectorXd R(grid.n_nodes() * D);
+  for (int i = 0; i < grid.n_nodes(); ++i)
+    R.segment<D>(i * D) = problem.nodes.mass[i] / problem.dt * (problem.nodes.v[i] - v[i]);
+  for (int c = 0; c < grid.n_cells(); ++c)
+    for (int i = 0; i < n_local; ++i) R.segment<D>(grid.cell_nodes[c][i] * D) += local[c][i];
+  add_contact_forces<D>(problem.contact, grid.cell_nodes, v, R);
+  return R;
+}
+
+/// Sets to zero what walls prescribe.
+inline void mask(const std::vector<char>& fixed, Eigen::VectorXd& R) {
+  for (Eigen::Index i = 0; i < R.size(); ++i)
+    if (fixed[static_cast<std::size_t>(i)]) R[i] = 0.0;
+}
+
+/// Assembles inertia, bulk and contact, and the deviatoric stiffness V B' T B with the tangents T = tangent(c, k).
+template <class Space, class Tangent>
+void assemble(const YieldProblem<Space>& problem, Tangent tangent, BlockSystem<Space::dim>& system) {
+  constexpr int D = Space::dim, n_dof = power(3, D) * D, ns = Space::n_strain;
+  const auto& quad = problem.quadrature;
+  system.set_zero();
+  for (int c = 0; c < problem.grid.n_cells(); ++c) {
+    Eigen::Matrix<double, ns, n_dof> B;
+    Eigen::Matrix<double, n_dof, n_dof> cell = Eigen::Matrix<double, n_dof, n_dof>::Zero();
+    for (int k = 0; k < power(2, D); ++k) {
+      for (int i = 0; i < power(3, D); ++i) B.template middleCols<D>(i * D) = quad.B[c][k][i];
+      const Eigen::Matrix<double, ns, n_dof> TB = quad.V[c][k] * tangent(c, k) * B;
+      cell.noalias() += B.transpose() * TB;
+    }
+    Vec<n_dof> b;
+    for (int i = 0; i < power(3, D); ++i) b.template segment<D>(i * D) = quad.b[c][i];
+    cell.noalias() += (quad.V_cell[c] * problem.K * problem.dt * b) * b.transpose();
+    system.add_cell(c, cell);
+  }
+  for (int i = 0; i < problem.grid.n_nodes(); ++i)
+    for (int d = 0; d < D; ++d) system.add_diagonal(i, d, problem.nodes.mass[i] / problem.dt);
+  add_contact_stiffness<D>(problem.contact, system);
+}
+
+}  // namespace tremie

@@ -1,0 +1,188 @@
+#pragma once
+
+// Transfer between points and grid: affine particle-in-cell (APIC, Jiang et al. 2015), with FLIP as a blend.
+//
+// A point's affine velocity C is the least-squares slope of the nodal velocities around it under its own shape
+// values; linear and angular momentum pass both ways unchanged, next to walls too, because the inertia tensor of the
+// stencil is computed where the point is (tensor-product splines: it is diagonal).
+
+#include <array>
+#include <vector>
+
+#include "libmpm/grid/active_grid.hpp"
+#include "libmpm/points/points.hpp"
+
+namespace tremie {
+
+/// Nodal fields, one entry an active node.
+template <int D>
+struct NodalState {
+  std::vector<double> mass;           ///< [kg]
+  std::vector<Vec<D>> v;              ///< velocity after the transfer [m/s]
+};
+
+namespace detail {
+
+/// Positions of a cell's three controls in each direction.
+template <int D>
+std::array<std::array<double, 3>, D> control_positions(const std::array<Axis, D>& axes, const Index<D>& cell) {
+  std::array<std::array<double, 3>, D> xi;
+  for (int d = 0; d < D; ++d)
+    for (int k = 0; k < 3; ++k) xi[d][k] = axes[d].control_position(cell[d] + k);
+  return xi;
+}
+
+/// Shape values of one point with the arms x_i - x_p and the stencil's inverse inertia in each direction.
+template <int D>
+struct PointStencil {
+  std::array<SplineValues, D> one;
+  std::array<std::array<double, 3>, D> arm;
+  Vec<D> inverse_inertia;
+
+  PointStencil(const std::array<Axis, D>& axes, const Index<D>& cell, const std::array<std::array<double, 3>, D>& xi,
+               const Vec<D>& x) {
+    const Vec<D> s = local_coordinates<D>(axes, cell, x);
+    for (int d = 0; d < D; ++d) {
+      one[d] = splines(axes[d], cell[d], s[d]);
+      double inertia = 0.0;
+      for (int k = 0; k < 3; ++k) {
+        arm[d][k] = xi[d][k] - x[d];
+        inertia += one[d].N[k] * arm[d][k] * arm[d][k];
+      }
+      // On a wall one spline is 1 and the others 0: no slope can be seen there, and none is given.
+      inverse_inertia[d] = inertia > 1e-12 * axes[d].h * axes[d].h ? 1.0 / inertia : 0.0;
+    }
+  }
+  double N(const Index<D>& o) const {
+    double n = 1.0;
+    for (int d = 0; d < D; ++d) n *= one[d].N[o[d]];
+    return n;
+  }
+  Vec<D> arms(const Index<D>& o) const {
+    Vec<D> a;
+    for (int d = 0; d < D; ++d) a[d] = arm[d][o[d]];
+    return a;
+  }
+  Vec<D> gradient(const Index<D>& o) const {
+    Vec<D> g;
+    for (int d = 0; d < D; ++d) {
+      g[d] = one[d].dN[o[d]];
+      for (int e = 0; e < D; ++e)
+        if (e != d) g[d] *= one[e].N[o[e]];
+    }
+    return g;
+  }
+};
+
+}  // namespace detail
+
+/// Wraps a place around periodic axes. The velocity normal to a wall vanishes on it, but a finite step may still carry
+/// a point through: it stops just before.
+template <int D>
+void keep_in_domain(const std::array<Axis, D>& axes, Vec<D>& x) {
+  for (int d = 0; d < D; ++d) {
+    const Axis& a = axes[d];
+    const double margin = 1e-6 * a.h;
+    if (a.periodic) x[d] -= a.length() * std::floor((x[d] - a.origin) / a.length());
+    if (a.wall_low()) x[d] = std::max(x[d], a.origin + margin);
+    if (a.wall_high()) x[d] = std::min(x[d], a.origin + a.length() - margin);
+  }
+}
+
+/// Adds per-cell contributions to the nodes in the order of the cells: the sum does not depend on the threads.
+template <int D>
+void gather_to_nodes(const ActiveGrid<D>& grid, const std::vector<std::array<Vec<D + 1>, power(3, D)>>& local,
+                     NodalState<D>& nodes) {
+  nodes.mass.assign(grid.node_index.size(), 0.0);
+  nodes.v.assign(grid.node_index.size(), Vec<D>::Zero());
+  for (int c = 0; c < grid.n_cells(); ++c)
+    for (int k = 0; k < ActiveGrid<D>::n_local; ++k) {
+      const int i = grid.cell_nodes[c][k];
+      nodes.v[i] += local[c][k].template head<D>();
+      nodes.mass[i] += local[c][k][D];
+    }
+  for (int i = 0; i < grid.n_nodes(); ++i)
+    if (nodes.mass[i] > 0.0) nodes.v[i] /= nodes.mass[i];
+}
+
+/// Point to grid: nodal masses and velocities, momentum and angular momentum kept.
+template <int D>
+void point_to_grid(const ActiveGrid<D>& grid, const Points<D>& points, NodalState<D>& nodes) {
+  constexpr int n = power(3, D);
+  std::vector<std::array<Vec<D + 1>, n>> local(grid.cell_index.size());
+#pragma omp parallel for schedule(static)
+  for (int c = 0; c < grid.n_cells(); ++c) {
+    const auto xi = detail::control_positions<D>(grid.axes, grid.cell_index[c]);
+    for (int k = 0; k < n; ++k) local[c][k].setZero();
+    for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
+      const int p = grid.order[i];
+      const detail::PointStencil<D> st(grid.axes, grid.cell_index[c], xi, points.x[p]);
+      const Mat<D, D>& C = points.C[p];
+      for (int k = 0; k < n; ++k) {
+        const Index<D> o = local_offset<D>(k);
+        const double m = points.mass[p] * st.N(o);
+        local[c][k].template head<D>() += m * (points.v[p] + C * st.arms(o));
+        local[c][k][D] += m;
+      }
+    }
+  }
+  gather_to_nodes<D>(grid, local, nodes);
+}
+
+/// How grid velocities come back to the points.
+struct Transfer {
+  bool flip = false;
+  double flip_blend = 0.95;  ///< share of the velocity increment, the rest is PIC
+};
+
+/// Grid to point: velocities and affine velocities from the nodal velocities v at the end of the step (v_old at its
+/// start, for FLIP alone); the points move with the same v over dt.
+template <int D>
+void grid_to_point(const ActiveGrid<D>& grid, const std::vector<Vec<D>>& v, const std::vector<Vec<D>>& v_old,
+                   const Transfer& transfer, double dt, Points<D>& points) {
+#pragma omp parallel for schedule(static)
+  for (int c = 0; c < grid.n_cells(); ++c) {
+    const auto xi = detail::control_positions<D>(grid.axes, grid.cell_index[c]);
+    for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
+      const int p = grid.order[i];
+      const detail::PointStencil<D> st(grid.axes, grid.cell_index[c], xi, points.x[p]);
+      Vec<D> vp = Vec<D>::Zero(), vp_old = Vec<D>::Zero();
+      Mat<D, D> moment = Mat<D, D>::Zero();
+      for (int k = 0; k < power(3, D); ++k) {
+        const Index<D> o = local_offset<D>(k);
+        const Vec<D> Nv = st.N(o) * v[grid.cell_nodes[c][k]];
+        vp += Nv;
+        moment += Nv * st.arms(o).transpose();
+        if (transfer.flip) vp_old += st.N(o) * v_old[grid.cell_nodes[c][k]];
+      }
+      points.C[p] = transfer.flip ? Mat<D, D>(Mat<D, D>::Zero()) : Mat<D, D>(moment * st.inverse_inertia.asDiagonal());
+      points.v[p] = transfer.flip ? Vec<D>(vp + transfer.flip_blend * (points.v[p] - vp_old)) : vp;
+      points.x[p] += dt * vp;
+      keep_in_domain<D>(grid.axes, points.x[p]);
+    }
+  }
+}
+
+/// Shear rate [1/s] at every point from the nodal velocities.
+template <class Space>
+void shear_rate_at_points(const ActiveGrid<Space::dim>& grid, const std::vector<Vec<Space::dim>>& v,
+                          const Points<Space::dim>& points, std::vector<double>& gamma_dot) {
+  constexpr int D = Space::dim;
+  gamma_dot.resize(points.size());
+#pragma omp parallel for schedule(static)
+  for (int c = 0; c < grid.n_cells(); ++c) {
+    const auto xi = detail::control_positions<D>(grid.axes, grid.cell_index[c]);
+    for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
+      const int p = grid.order[i];
+      const detail::PointStencil<D> st(grid.axes, grid.cell_index[c], xi, points.x[p]);
+      Vec<Space::n_strain> q = Vec<Space::n_strain>::Zero();
+      for (int k = 0; k < power(3, D); ++k) {
+        const Index<D> o = local_offset<D>(k);
+        q += Space::strain_rows(st.N(o), st.gradient(o), points.x[p]) * v[grid.cell_nodes[c][k]];
+      }
+      gamma_dot[p] = q.norm();
+    }
+  }
+}
+
+}  // namespace tremie

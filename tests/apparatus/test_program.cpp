@@ -1,0 +1,159 @@
+// The program as a person uses it: exit codes, messages, files.
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "tests/apparatus/temporary_folder.hpp"
+
+namespace tremie {
+namespace {
+
+struct Result {
+  int code = -1;
+  std::string text;  ///< stdout and stderr
+};
+
+/// Runs a shell command in a folder.
+Result shell(const std::string& command, const std::filesystem::path& folder) {
+  const std::string whole = "cd '" + folder.string() + "' && { " + command + "; } 2>&1";
+  FILE* pipe = popen(whole.c_str(), "r");
+  Result result;
+  std::array<char, 4096> buffer{};
+  for (std::size_t n = 0; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
+    result.text.append(buffer.data(), n);
+  const int status = pclose(pipe);
+  result.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return result;
+}
+
+const std::string tremie_program = TREMIE_PROGRAM;
+
+/// A scene that is done in a moment.
+const std::string quick = R"(apparatus = "slump_flow"
+mix = "mix_c"
+[test]
+duration = "0.1 s"
+lift_speed = "instant"
+[model]
+cell = "20 mm"
+points_per_cell = 2
+[output]
+frame_interval = "0.05 s"
+)";
+
+class Program : public ::testing::Test {
+ protected:
+  void SetUp() override { test::write_file(folder_ / "quick.toml", quick); }
+
+  Result tremie(const std::string& arguments) {
+    return shell("env -u DISPLAY '" + tremie_program + "' " + arguments, folder_.path());
+  }
+  /// Nothing but the scenes that the test wrote itself.
+  bool nothing_written() const {
+    for (const auto& entry : std::filesystem::directory_iterator(folder_.path()))
+      if (entry.path().extension() != ".toml") return false;
+    return true;
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(Program, RunFillsItsFolder) {
+  const Result result = tremie("run quick.toml");
+  EXPECT_EQ(result.code, 0) << result.text;
+  const auto run = folder_ / "runs/quick";
+  const auto summary = nlohmann::json::parse(test::read_file(run / "summary.json"));
+  EXPECT_EQ(summary["status"], "completed");
+  for (const char* key :
+       {"spread_mm", "spread_max_point_mm", "height_mm", "t500_s", "stopped_at_s", "class_en12350_8",
+        "flocculation_mean_start", "flocculation_mean_end", "shear_rate_mean_peak_per_s"})
+    EXPECT_TRUE(summary["results"].contains(key)) << key;
+  EXPECT_TRUE(summary["results"]["t500_s"].is_null());
+  EXPECT_GT(summary["cost"]["cpu_s"], 0.0);
+  EXPECT_GT(summary["cost"]["peak_rss_bytes"], 1000000);
+  EXPECT_TRUE(
+      test::read_file(run / "timeseries.csv")
+          .starts_with(
+              "time_s,spread_mm,spread_max_point_mm,height_mm,max_speed_m_per_s,shear_rate_mean_per_s,"
+              "flocculation_mean,volume_change"));
+  EXPECT_TRUE(std::filesystem::exists(run / "frames.pvd"));
+}
+
+TEST_F(Program, TheResolvedSceneGivesTheSameResult) {
+  ASSERT_EQ(tremie("run quick.toml --quiet --out a").code, 0);
+  ASSERT_EQ(tremie("run a/scene.toml --quiet --out b").code, 0);
+  ASSERT_EQ(tremie("run quick.toml --quiet --out c").code, 0);
+  EXPECT_TRUE(test::read_file(folder_ / "a/timeseries.csv") == test::read_file(folder_ / "b/timeseries.csv"));
+  EXPECT_TRUE(test::read_file(folder_ / "a/results.h5") == test::read_file(folder_ / "c/results.h5"));
+}
+
+TEST_F(Program, QuietPrintsNothing) {
+  const Result result = tremie("run quick.toml --quiet");
+  EXPECT_EQ(result.text, "");
+}
+
+TEST_F(Program, AnEarlierResultIsKept) {
+  ASSERT_EQ(tremie("run quick.toml --quiet --out a").code, 0);
+  const std::string before = test::read_file(folder_ / "a/summary.json");
+  const Result again = tremie("run quick.toml --out a");
+  EXPECT_EQ(again.code, 2);
+  EXPECT_NE(again.text.find("--force"), std::string::npos);
+  EXPECT_EQ(test::read_file(folder_ / "a/summary.json"), before);
+  EXPECT_EQ(tremie("run quick.toml --quiet --out a --force").code, 0);
+}
+
+TEST_F(Program, BadInputIsExitCodeTwoAndWritesNothing) {
+  test::write_file(folder_ / "bad.toml",
+                   "apparatus = \"slump_flow\"\nmix = \"mix_a\"\n[cone]\nheight = 300\n");
+  for (const std::string arguments :
+       {"run bad.toml", "run none.toml", "run quick.toml --set mix.yield_stress=54",
+        "run quick.toml --set mix.yield_stress='-1 Pa'", "run quick.toml --set model.cell='0 mm'",
+        "run quick.toml --out quick.toml", "run quick.toml --out quick.toml/below",
+        "run quick.toml --out /proc/nowhere", "run", "run quick.toml --threads 0", "run quick.toml --colour",
+        "dance", "", "new l_bx", "check bad.toml"}) {
+    const Result result = tremie(arguments);
+    EXPECT_EQ(result.code, 2) << arguments << "\n" << result.text;
+    EXPECT_FALSE(result.text.empty()) << arguments;
+    EXPECT_TRUE(nothing_written()) << arguments;
+  }
+  EXPECT_NE(tremie("run bad.toml").text.find("bad.toml:4: cone.height"), std::string::npos);
+}
+
+TEST_F(Program, AFullDiskLeavesNothingHalfWritten) {
+  // A limit on the size of files stands in for a full disk: results.h5 passes it, and its signal is ignored.
+  const Result result =
+      shell("trap '' XFSZ; ulimit -f 8; env -u DISPLAY '" + tremie_program + "' run quick.toml --out a",
+            folder_.path());
+  EXPECT_EQ(result.code, 1) << result.text;
+  EXPECT_NE(result.text.find("cannot be written"), std::string::npos) << result.text;
+  EXPECT_TRUE(nothing_written());
+}
+
+TEST_F(Program, CheckShowsDefaultsAndWhatIsLeftOut) {
+  const Result result = tremie("check quick.toml --set mix.thixotropy=false");
+  EXPECT_EQ(result.code, 0) << result.text;
+  for (const char* part : {"# default", "flocculation: left out", "bytes a point", "active cells", "steps"})
+    EXPECT_NE(result.text.find(part), std::string::npos) << part;
+  EXPECT_TRUE(nothing_written());
+}
+
+TEST_F(Program, NewMakesASceneThatChecks) {
+  EXPECT_EQ(tremie("new slump_flow > mine.toml && '" + tremie_program + "' check mine.toml").code, 0);
+}
+
+TEST_F(Program, AnInterruptKeepsWhatThereIs) {
+  // The run is far too long to end by itself.
+  const Result result =
+      shell("env -u DISPLAY timeout -s INT --preserve-status 1 '" + tremie_program +
+                "' run quick.toml --out a --set test.duration='1000 h' --set model.time_step='1e-6 s'"
+                " --set output.frames=false",
+            folder_.path());
+  EXPECT_EQ(result.code, 130) << result.text;
+  EXPECT_EQ(nlohmann::json::parse(test::read_file(folder_ / "a/summary.json"))["status"], "interrupted");
+}
+
+}  // namespace
+}  // namespace tremie

@@ -1,0 +1,202 @@
+// What a run leaves in its folder, from an outcome made by hand.
+
+#include <gtest/gtest.h>
+#include <hdf5.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "apparatus/report/chart.hpp"
+#include "apparatus/report/result_files.hpp"
+#include "apparatus/report/run_folder.hpp"
+#include "apparatus/report/summary.hpp"
+#include "apparatus/scene/input_error.hpp"
+#include "libmpm/io/vtp.hpp"
+#include "libmpm/io/write_error.hpp"
+#include "tests/apparatus/temporary_folder.hpp"
+
+namespace tremie::report {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+scene::Outcome small_outcome() {
+  scene::Outcome outcome;
+  outcome.apparatus = "slump_flow";
+  outcome.results = {{"spread_mm", 556.0},
+                     {"t500_s", scene::number(std::nullopt)},
+                     {"class_en12350_8", std::string("SF1")},
+                     {"height_mm", scene::number(nan)},
+                     {"below", std::vector<scene::Result>{{"value", 1.5}}}};
+  outcome.checks.volume_change = -3e-4;
+  outcome.checks.reasons = {"a \"reason\""};
+  outcome.cost.steps = 300;
+  outcome.series = {
+      {"time_s", {0.0, 0.1}}, {"spread_mm", {200.0, 0.1 + 0.2}}, {"flocculation_mean", {nan, 5.0}}};
+  outcome.charts = {
+      {"spread.svg", "Spread", "t / s", "spread / mm", {"spread_mm"}, {{"measured", 590.0, 30.0}}}};
+  return outcome;
+}
+
+Frame small_frame(double time) {
+  Frame frame;
+  frame.time = time;
+  frame.position = {{0.1, 0.0, 0.2}, {0.3, 0.0, 0.4}};
+  frame.velocity = {{1, 0, 0}, {0, 0, -1}};
+  frame.volume = {1e-6, 2e-6};
+  frame.pressure = {100.0, 200.0};
+  frame.shear_rate = {0.5, 0.25};
+  return frame;
+}
+
+TEST(Summary, HasTheDocumentedKeys) {
+  const auto json = nlohmann::json::parse(summary_json(small_outcome()));
+  EXPECT_EQ(json["schema"], 1);
+  EXPECT_EQ(json["apparatus"], "slump_flow");
+  EXPECT_EQ(json["status"], "completed");
+  for (const char* key : {"version", "commit", "compiler"}) EXPECT_TRUE(json["tremie"].contains(key)) << key;
+  EXPECT_EQ(json["results"]["spread_mm"], 556.0);
+  EXPECT_TRUE(json["results"]["t500_s"].is_null());
+  EXPECT_TRUE(json["results"]["height_mm"].is_null());
+  EXPECT_EQ(json["results"]["below"]["value"], 1.5);
+  for (const char* key : {"volume_change", "mass_error", "unconverged_steps", "points_lost",
+                          "max_speed_end_m_per_s", "stability_limit_exceeded", "reasons"})
+    EXPECT_TRUE(json["checks"].contains(key)) << key;
+  EXPECT_EQ(json["checks"]["reasons"][0], "a \"reason\"");
+  for (const char* key : {"wall_s", "cpu_s", "steps", "points", "cells_active", "bytes_per_point",
+                          "peak_rss_bytes", "threads", "simulated_s"})
+    EXPECT_TRUE(json["cost"].contains(key)) << key;
+}
+
+TEST(Timeseries, UnitsInTheHeaderAndEmptyFields) {
+  EXPECT_EQ(timeseries_csv(small_outcome().series),
+            "time_s,spread_mm,flocculation_mean\n0,200,\n0.1,0.30000000000000004,5\n");
+}
+
+std::string results_h5(const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  ResultFiles files(folder, "schema = 1\n");
+  files.frame(small_frame(0.0));
+  files.frame(small_frame(0.5));
+  scene::Outcome outcome = small_outcome();
+  outcome.charts.clear();
+  files.finish(outcome);
+  return test::read_file(folder / "results.h5");
+}
+
+TEST(ResultsH5, TheSameRunMakesTheSameBytes) {
+  const test::TemporaryFolder folder;
+  const std::string first = results_h5(folder / "a");
+  EXPECT_GT(first.size(), 1000U);
+  EXPECT_TRUE(first == results_h5(folder / "b"));
+}
+
+std::vector<double> read_array(hid_t file, const char* path) {
+  const hid_t data = H5Dopen2(file, path, H5P_DEFAULT), space = H5Dget_space(data);
+  std::vector<double> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
+  H5Dread(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+  H5Sclose(space);
+  H5Dclose(data);
+  return values;
+}
+
+TEST(ResultsH5, HoldsSeriesFramesAndProvenance) {
+  const test::TemporaryFolder folder;
+  results_h5(folder / "a");
+  const hid_t file = H5Fopen((folder / "a" / "results.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  ASSERT_GE(file, 0);
+  EXPECT_EQ(read_array(file, "/series/spread_mm"), (std::vector{200.0, 0.1 + 0.2}));
+  EXPECT_EQ(read_array(file, "/frames/00001/position"), (std::vector{0.1, 0.0, 0.2, 0.3, 0.0, 0.4}));
+  EXPECT_EQ(H5Lexists(file, "/frames/00001/flocculation", H5P_DEFAULT), 0);  // not stored, not written
+  for (const char* name :
+       {"schema", "tremie_version", "tremie_commit", "compiler", "scene", "apparatus", "status"})
+    EXPECT_GT(H5Aexists(file, name), 0) << name;
+  H5Fclose(file);
+}
+
+TEST(ResultFiles, WritesEverything) {
+  const test::TemporaryFolder folder;
+  results_h5(folder / "a");
+  for (const char* name : {"scene.toml", "summary.json", "timeseries.csv", "results.h5", "frames.pvd",
+                           "frames/frame_00000.vtp", "frames/frame_00001.vtp", "report.html"})
+    EXPECT_TRUE(std::filesystem::exists(folder / "a" / name)) << name;
+  const std::string pvd = test::read_file(folder / "a" / "frames.pvd");
+  EXPECT_NE(pvd.find("timestep=\"0.5\" file=\"frames/frame_00001.vtp\""), std::string::npos);
+}
+
+TEST(Vtp, RefusesAFieldThatDoesNotFit) {
+  const test::TemporaryFolder folder;
+  const std::vector<std::array<double, 3>> points{{0, 0, 0}};
+  const std::vector<double> two{1, 2};
+  const std::vector<io::PointField> fields{{"x", 1, two}};
+  EXPECT_THROW(io::write_vtp(folder / "a.vtp", 0.0, points, fields), std::invalid_argument);
+}
+
+TEST(Chart, MeasuredValuesAreDashed) {
+  const auto outcome = small_outcome();
+  const std::string script = chart_script(outcome.charts.front(), outcome.series);
+  EXPECT_NE(script.find("590 with lines dashtype 2"), std::string::npos);
+  EXPECT_NE(script.find("0.1 0.3\n"), std::string::npos);
+}
+
+TEST(WriteText, SaysWhichFileAndWhy) {
+  try {
+    io::write_text("/dev/full", std::string(1 << 20, 'x'));
+    FAIL() << "nothing thrown";
+  } catch (const io::WriteError& error) {
+    EXPECT_NE(std::string(error.what()).find("/dev/full: cannot be written: the disk is full"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(RunFolder, AppearsWholeOrNotAtAll) {
+  const test::TemporaryFolder folder;
+  {
+    const RunFolder run(folder / "deep/er/run", false);
+    io::write_text(run.staging() / "summary.json", "{}");
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+  {
+    RunFolder run(folder / "deep/er/run", false);
+    io::write_text(run.staging() / "summary.json", "{}");
+    io::write_text(run.staging() / "scene.toml", "");
+    EXPECT_FALSE(std::filesystem::exists(folder / "deep/er/run"));
+    run.publish();
+  }
+  EXPECT_TRUE(std::filesystem::exists(folder / "deep/er/run/summary.json"));
+}
+
+void publish(const std::filesystem::path& folder, const std::string& summary, bool replace) {
+  RunFolder run(folder, replace);
+  io::write_text(run.staging() / "scene.toml", "");
+  io::write_text(run.staging() / "summary.json", summary);
+  run.publish();
+}
+
+TEST(RunFolder, AnEarlierResultIsReplacedOnlyWhenAsked) {
+  const test::TemporaryFolder folder;
+  publish(folder / "run", "1", false);
+  EXPECT_THROW(RunFolder(folder / "run", false), scene::InputError);
+  publish(folder / "run", "2", true);
+  EXPECT_EQ(test::read_file(folder / "run/summary.json"), "2");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);  // nothing else stays
+}
+
+TEST(RunFolder, AnEmptyFolderIsFilled) {
+  const test::TemporaryFolder folder;
+  publish(folder.path(), "1", false);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 2);
+}
+
+TEST(RunFolder, WhatIsNoResultIsNeverReplaced) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "thesis.txt", "years of work");
+  EXPECT_THROW(RunFolder(folder.path(), true), scene::InputError);
+  EXPECT_THROW(RunFolder(folder / "thesis.txt", true), scene::InputError);
+  EXPECT_THROW(RunFolder(folder / "thesis.txt/run", true), scene::InputError);
+  EXPECT_EQ(test::read_file(folder / "thesis.txt"), "years of work");
+}
+
+}  // namespace
+}  // namespace tremie::report

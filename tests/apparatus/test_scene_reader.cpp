@@ -1,0 +1,267 @@
+// What a scene may say, and what it is told when it says something else. Every fault names file, line and
+// key.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "apparatus/scene/resolved.hpp"
+#include "apparatus/scene/scene.hpp"
+#include "tests/apparatus/temporary_folder.hpp"
+
+namespace tremie::scene {
+namespace {
+
+const std::string mix_a = R"(apparatus = "slump_flow"
+[mix]
+yield_stress = "54 Pa"
+plastic_viscosity = "35.8 Pa.s"
+)";
+
+const std::string thixotropic = mix_a + "[mix.thixotropy]\nstructuration_rate = \"1.3 Pa/s\"\n";
+
+/// The message of a scene that must not be accepted; "" where it is.
+std::string complaint(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  try {
+    read_text(text, "bad.toml", overrides);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+::testing::AssertionResult says(const std::string& message, const std::vector<std::string>& parts) {
+  for (const auto& part : parts)
+    if (message.find(part) == std::string::npos)
+      return ::testing::AssertionFailure() << "\"" << part << "\" is not in: " << message;
+  return ::testing::AssertionSuccess();
+}
+
+const slump_flow::Scene& slump(const Scene& scene) { return std::get<slump_flow::Scene>(scene.test); }
+
+TEST(SceneReader, DefaultsAreTheDocumentedOnes) {
+  const Scene scene = read_text(thixotropic, "a.toml");
+  const auto& s = slump(scene);
+  EXPECT_EQ(s.mix.tau_0, 54.0);
+  EXPECT_EQ(s.mix.mu, 35.8);
+  EXPECT_EQ(s.mix.density, 2400.0);
+  EXPECT_EQ(s.mix.K, 1e6);
+  EXPECT_EQ(s.mix.thixotropy->A_thix, 1.3);
+  EXPECT_EQ(s.mix.thixotropy->alpha, 0.01);
+  EXPECT_EQ(s.mix.thixotropy->kinetics, Kinetics::gated);
+  EXPECT_EQ(s.mix.thixotropy->gamma_c, 0.1);
+  EXPECT_EQ(s.rest, 0.0);
+  EXPECT_EQ(s.duration, 30.0);
+  EXPECT_EQ(s.lift_speed, 0.15);
+  EXPECT_EQ(s.floor.contact, ContactKind::no_slip);
+  EXPECT_EQ(s.model.space, SpaceKind::axisymmetric);
+  EXPECT_EQ(s.model.yield, YieldKind::exact);
+  EXPECT_EQ(s.model.cell, (std::array{0.01, 0.005}));
+  EXPECT_EQ(s.model.points_per_cell, (std::array{8, 2}));
+  EXPECT_FALSE(s.model.time_step.has_value());
+  EXPECT_FALSE(slump(read_text(mix_a, "a.toml")).mix.thixotropy.has_value());
+}
+
+TEST(SceneReader, EverySceneOfTheTreeIsValid) {
+  int read_scenes = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(TREMIE_SCENES)) {
+    if (!entry.path().filename().string().starts_with("slump_flow")) continue;
+    EXPECT_NO_THROW(read(entry.path())) << entry.path();
+    ++read_scenes;
+  }
+  EXPECT_GE(read_scenes, 6);
+  EXPECT_EQ(slump(read(std::filesystem::path(TREMIE_SCENES) / "slump_flow_mix_b_rest240.toml")).rest, 240.0);
+}
+
+TEST(SceneReader, UnknownKeyNamesTheNearest) {
+  EXPECT_TRUE(says(complaint(mix_a + "yield_stres = \"54 Pa\"\n"),
+                   {"bad.toml:5: mix.yield_stres: unknown key", "\"yield_stress\"", "density"}));
+  EXPECT_TRUE(says(complaint(mix_a + "[modle]\n"), {"bad.toml:5: modle", "\"model\""}));
+  EXPECT_TRUE(says(complaint("duration = \"3 s\"\n" + mix_a), {"bad.toml:1: duration", "belongs in [test]"}));
+}
+
+TEST(SceneReader, MissingKey) {
+  EXPECT_TRUE(says(complaint("apparatus = \"slump_flow\"\n[mix]\nyield_stress = \"54 Pa\"\n"),
+                   {"bad.toml:2: mix.plastic_viscosity: missing key", "Pa.s"}));
+  EXPECT_TRUE(says(complaint("apparatus = \"slump_flow\"\n"), {"bad.toml:1: mix: missing key", "mix_a"}));
+  EXPECT_TRUE(says(complaint("mix = \"mix_a\"\n"), {"bad.toml:1: apparatus: missing key", "slump_flow"}));
+  EXPECT_TRUE(says(complaint(mix_a + "[mix.thixotropy]\n"),
+                   {"bad.toml:5: mix.thixotropy.structuration_rate: missing"}));
+}
+
+TEST(SceneReader, BareNumberShowsHowToWriteIt) {
+  EXPECT_TRUE(says(complaint(mix_a + "density = 2400\n"),
+                   {"bad.toml:5: mix.density: 2400 is a bare number", "density = \"2400 kg/m3\""}));
+  EXPECT_TRUE(
+      says(complaint(mix_a + "[test]\nrest = 240.0\n"), {"bad.toml:6: test.rest", "rest = \"240 s\""}));
+}
+
+TEST(SceneReader, WrongUnit) {
+  EXPECT_TRUE(
+      says(complaint(mix_a + "density = \"2400 kg\"\n"), {"bad.toml:5: mix.density", "wrong unit", "kg/m3"}));
+}
+
+TEST(SceneReader, OutOfRange) {
+  EXPECT_TRUE(
+      says(complaint(thixotropic, {"mix.yield_stress=-54 Pa"}), {"mix.yield_stress", "at least 0 Pa"}));
+  EXPECT_TRUE(says(complaint(mix_a + "[cone]\nheight = \"0 mm\"\n"),
+                   {"bad.toml:6: cone.height", "greater than 0 m"}));
+  EXPECT_TRUE(
+      says(complaint(mix_a + "[model]\ncell = \"0 mm\"\n"), {"bad.toml:6: model.cell", "greater than 0 m"}));
+  EXPECT_TRUE(says(complaint(mix_a + "[model]\npoints_per_cell = 0\n"),
+                   {"bad.toml:6: model.points_per_cell", "at least 1"}));
+  EXPECT_TRUE(says(complaint(mix_a + "[model]\ncell = \"1 m\"\n"),
+                   {"bad.toml:6: model.cell", "larger than the cone"}));
+  EXPECT_TRUE(says(complaint(mix_a + "[model]\ncell = \"1e-9 m\"\n"), {"bad.toml:6: model.cell", "points"}));
+  EXPECT_TRUE(says(complaint("schema = 2\n" + mix_a), {"bad.toml:1: schema"}));
+}
+
+TEST(SceneReader, NotANumber) {
+  EXPECT_TRUE(says(complaint(mix_a + "density = \"nan kg/m3\"\n"),
+                   {"bad.toml:5: mix.density", "not a finite number"}));
+  EXPECT_TRUE(says(complaint(mix_a + "density = nan\n"), {"bad.toml:5: mix.density", "not a finite number"}));
+  EXPECT_TRUE(says(complaint(thixotropic + "destructuration = inf\n"),
+                   {"bad.toml:7: mix.thixotropy.destructuration", "not a finite number"}));
+}
+
+TEST(SceneReader, YieldStressOfZeroHasNoFlocculation) {
+  EXPECT_TRUE(says(complaint(thixotropic, {"mix.yield_stress=0 Pa"}), {"mix.yield_stress", "thixotropy"}));
+  EXPECT_EQ(complaint(mix_a, {"mix.yield_stress=0 Pa"}), "");
+  EXPECT_EQ(complaint(thixotropic, {"mix.yield_stress=0 Pa", "mix.thixotropy=false"}), "");
+}
+
+TEST(SceneReader, Contradictions) {
+  EXPECT_TRUE(says(complaint(mix_a + "[floor]\ncontact = \"no_slip\"\ncoefficient = 0.3\n"),
+                   {"bad.toml:7: floor.coefficient", "friction"}));
+  EXPECT_TRUE(
+      says(complaint(mix_a + "[floor]\ncoefficient = 0.3\n"), {"bad.toml:6: floor.coefficient", "friction"}));
+  EXPECT_TRUE(says(complaint(mix_a + "[model]\nregularisation = \"5 s\"\n"),
+                   {"bad.toml:6: model.regularisation", "papanastasiou"}));
+  EXPECT_TRUE(
+      says(complaint(mix_a + "bulk_modulus = \"1 MPa\"\nyoungs_modulus = \"1 MPa\"\npoisson_ratio = 0.4\n"),
+           {"bad.toml:5: mix.bulk_modulus", "one or the other"}));
+  EXPECT_TRUE(
+      says(complaint(mix_a + "poisson_ratio = 0.4\n"), {"bad.toml:5: mix.poisson_ratio", "youngs_modulus"}));
+}
+
+TEST(SceneReader, EveryProblemIsTold) {
+  const std::string all = complaint(mix_a + "density = 2400\ncolour = \"grey\"\n[cone]\nheight = \"3 s\"\n");
+  EXPECT_TRUE(says(all, {"bad.toml:5:", "bad.toml:6:", "bad.toml:8:"}));
+  EXPECT_EQ(std::count(all.begin(), all.end(), '\n'), 2);
+}
+
+TEST(SceneReader, FilesThatCannotBeRead) {
+  const test::TemporaryFolder folder;
+  EXPECT_THROW(read(folder / "none.toml"), InputError);
+  EXPECT_THROW(read(folder.path()), InputError);
+  EXPECT_TRUE(says(complaint("apparatus = \"slump_flow\"\nmix = = 3\n"), {"bad.toml:2", "no TOML"}));
+}
+
+TEST(SceneReader, NamedMixesAndOverrides) {
+  const std::string text = "apparatus = \"slump_flow\"\nmix = \"mix_a\"\n";
+  EXPECT_EQ(slump(read_text(text, "a.toml", {"mix.yield_stress=61 Pa"})).mix.tau_0, 61.0);
+  EXPECT_EQ(slump(read_text(text, "a.toml", {"mix.yield_stress=\"61 Pa\""})).mix.tau_0, 61.0);
+  EXPECT_EQ(slump(read_text(text, "a.toml", {"mix.yield_stress=61 Pa", "mix=mix_c"})).mix.mu, 30.2);
+  EXPECT_FALSE(slump(read_text(text, "a.toml", {"mix.thixotropy=false"})).mix.thixotropy.has_value());
+  EXPECT_EQ(slump(read_text(text, "a.toml", {"model.cell=[5 mm, 2 mm]"})).model.cell,
+            (std::array{0.005, 0.002}));
+  EXPECT_EQ(slump(read_text(text, "a.toml", {"model.points_per_cell=4"})).model.points_per_cell,
+            (std::array{4, 4}));
+  EXPECT_FALSE(slump(read_text(text, "a.toml", {"test.lift_speed=instant"})).lift_speed.has_value());
+  EXPECT_EQ(read_text(text, "a.toml").measured.slump_flow_0, 0.59);
+  EXPECT_TRUE(says(complaint(text, {"mix=mix_z"}), {"--set mix=mix_z: mix", "mix_a"}));
+  EXPECT_TRUE(
+      says(complaint(text, {"mix.yield_stres=61 Pa"}), {"--set mix.yield_stres=61 Pa: mix.yield_stres"}));
+  EXPECT_TRUE(says(complaint(text, {"mix.yield_stress"}), {"KEY=VALUE"}));
+  EXPECT_TRUE(says(complaint(text, {".=3"}), {"KEY=VALUE"}));
+}
+
+TEST(SceneReader, AMixBesideTheScene) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "mine.toml",
+                   "[mix]\nyield_stress = \"70 Pa\"\nplastic_viscosity = \"20 Pa.s\"\n");
+  test::write_file(folder / "s.toml", "apparatus = \"slump_flow\"\nmix = \"mine.toml\"\n");
+  EXPECT_EQ(slump(read(folder / "s.toml")).mix.tau_0, 70.0);
+}
+
+TEST(SceneReader, ALaterLayerDropsWhatLosesItsMeaning) {
+  const std::string text = mix_a + "[floor]\ncontact = \"friction\"\ncoefficient = 0.3\n";
+  const Scene scene = read_text(text, "a.toml", {"floor.contact=no_slip"});
+  EXPECT_EQ(slump(scene).floor.contact, ContactKind::no_slip);
+  ASSERT_EQ(scene.notes.size(), 1U);
+  EXPECT_TRUE(says(scene.notes.front(), {"a.toml:7: floor.coefficient"}));
+}
+
+TEST(SceneReader, FrictionComesFromTheMix) {
+  const std::string text = "apparatus = \"slump_flow\"\nmix = \"mix_b\"\n[floor]\ncontact = \"friction\"\n";
+  EXPECT_EQ(slump(read_text(text, "a.toml")).floor.coefficient, 0.45);
+  EXPECT_EQ(slump(read_text(text, "a.toml", {"floor.coefficient=0.2"})).floor.coefficient, 0.2);
+}
+
+TEST(SceneReader, PresetLiesUnderTheScene) {
+  const std::string text = "apparatus = \"slump_flow\"\npreset = \"paper\"\nmix = \"mix_a\"\n";
+  const auto paper = slump(read_text(text, "a.toml"));
+  EXPECT_NEAR(paper.mix.K, 33.3e3, 100.0);
+  EXPECT_EQ(paper.model.scheme, SchemeKind::explicit_usf);
+  EXPECT_EQ(paper.model.shape, ShapeKind::gimp);
+  EXPECT_EQ(paper.model.regularisation, 5.0);
+  EXPECT_EQ(paper.model.time_step, 1e-4);
+  EXPECT_EQ(paper.model.space, SpaceKind::full);
+  EXPECT_EQ(paper.duration, 20.0);
+  EXPECT_EQ(paper.floor.coefficient, 0.35);
+  const auto mine = slump(read_text(text + "[model]\nyield = \"exact\"\n[test]\nduration = \"5 s\"\n",
+                                    "a.toml", {"mix.bulk_modulus=2 MPa"}));
+  EXPECT_EQ(mine.model.yield, YieldKind::exact);
+  EXPECT_EQ(mine.duration, 5.0);
+  EXPECT_EQ(mine.mix.K, 2e6);
+  EXPECT_TRUE(says(complaint(text, {"preset=papr"}), {"preset", "\"paper\""}));
+}
+
+TEST(SceneReader, EngineLimitsAreInputErrors) {
+  const Scene scene =
+      read_text("apparatus = \"slump_flow\"\npreset = \"paper\"\nmix = \"mix_a\"\n", "p.toml");
+  try {
+    run(scene);
+  } catch (const InputError& error) {
+    EXPECT_TRUE(says(error.what(), {"p.toml"}));
+    return;
+  }
+}
+
+/// The resolved text of a resolved scene is the same but for its comments, and so are all values.
+void expect_round_trip(const std::string& text, const std::vector<std::string>& overrides) {
+  const Scene first = read_text(text, "a.toml", overrides);
+  const Scene second = read_text(first.resolved, "a.toml");
+  const auto &a = slump(first), &b = slump(second);
+  EXPECT_EQ(a.mix.tau_0, b.mix.tau_0);
+  EXPECT_EQ(a.mix.mu, b.mix.mu);
+  EXPECT_EQ(a.mix.K, b.mix.K);
+  EXPECT_EQ(a.rest, b.rest);
+  EXPECT_EQ(a.lift_speed, b.lift_speed);
+  EXPECT_EQ(a.model.cell, b.model.cell);
+  EXPECT_EQ(a.model.time_step, b.model.time_step);
+  EXPECT_EQ(a.model.regularisation, b.model.regularisation);
+  EXPECT_EQ(a.floor.coefficient, b.floor.coefficient);
+  EXPECT_EQ(first.measured.source, second.measured.source);
+  const Scene third = read_text(second.resolved, "a.toml");
+  EXPECT_EQ(second.resolved, third.resolved);
+}
+
+TEST(SceneReader, ResolvedScenesReadBackBitForBit) {
+  expect_round_trip(thixotropic, {"mix.yield_stress=0.1234567890123456789 kPa", "test.rest=7.3 min"});
+  expect_round_trip("apparatus = \"slump_flow\"\npreset = \"paper\"\nmix = \"mix_c\"\n",
+                    {"model.cell=[7 mm, 3.3 mm]"});
+  expect_round_trip(
+      mix_a, {"test.lift_speed=instant", R"(mix.source="a \"quoted\" \\ source")", "model.time_step=1e-5 s"});
+  EXPECT_TRUE(says(read_text(mix_a, "a.toml").resolved, {"# default", "schema = 1"}));
+}
+
+TEST(SceneReader, TheTemplateIsAValidScene) {
+  for (const auto& apparatus : all_apparatus()) {
+    const std::string text = write_template(apparatus);
+    EXPECT_EQ(complaint(text), "") << text;
+  }
+}
+
+}  // namespace
+}  // namespace tremie::scene
