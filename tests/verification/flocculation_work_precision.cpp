@@ -19,7 +19,7 @@
 #include <sstream>
 
 #include "tests/verification/flocculation_methods.hpp"
-#include "tremie_version.hpp"
+#include "tests/verification/study_output.hpp"
 
 namespace tremie::study {
 namespace {
@@ -191,13 +191,6 @@ std::string number(double v, int digits = 2) {
   return s.str();
 }
 
-std::string processor() {
-  std::ifstream file("/proc/cpuinfo");
-  for (std::string line; std::getline(file, line);)
-    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-  return "unknown processor";
-}
-
 struct Result {
   Case c;
   std::vector<Point> points;
@@ -295,8 +288,7 @@ void write_chart(const std::vector<Result>& results, const std::string& director
   }
   out << "unset multiplot\n";
   out.close();
-  const std::string command = "cd '" + directory + "' && gnuplot flocculation_work_precision.gp";
-  if (std::system(command.c_str()) != 0) std::cerr << "gnuplot failed: no chart\n";
+  draw(directory, "flocculation_work_precision.gp");
 }
 
 int run(const std::string& directory) {
