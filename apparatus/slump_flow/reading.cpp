@@ -40,9 +40,14 @@ double spread_of_outermost_point(const Points<2>& points) {
 }
 
 double spread(const Points<2>& points, double cell) {
+  // Strays aside, the outline lies within a few cells of the outermost point; sorting those is enough.
+  double reach = 0.5 * spread_of_outermost_point(points) - 4.0 * cell;
   std::vector<Weighted> radii;
-  for (std::size_t p = 0; p < points.size(); ++p)
-    radii.push_back({points.x[p][0], points.volume(p), section_size(points, p)});
+  for (; radii.size() <= company && reach > -4.0 * cell; reach -= 4.0 * cell) {
+    radii.clear();
+    for (std::size_t p = 0; p < points.size(); ++p)
+      if (points.x[p][0] > reach) radii.push_back({points.x[p][0], points.volume(p), section_size(points, p)});
+  }
   std::sort(radii.begin(), radii.end(), [](const Weighted& a, const Weighted& b) { return a.value > b.value; });
   std::size_t i = 0;
   while (i + company < radii.size() && radii[i].value - radii[i + company].value > 0.5 * cell) ++i;

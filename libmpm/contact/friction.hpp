@@ -13,12 +13,14 @@ namespace tremie {
 /// Newton's rounding of |u| at u = 0 [m/s].
 inline constexpr double friction_rounding = 1e-5;
 
+/// ADMM's penalties: half the shear stiffness of the concrete next to each node, `viscosity` V_i / h^2, as the yield part's is
+/// `viscosity`. V: volume of the concrete around each node [m^3].
 template <int D>
-void add_friction_stiffness_admm(std::vector<FrictionNode<D>>& friction, BlockSystem<D>& system) {
+void add_friction_stiffness_admm(const ActiveGrid<D>& grid, const std::vector<double>& V, double viscosity,
+                                 std::vector<FrictionNode<D>>& friction, BlockSystem<D>& system) {
   for (FrictionNode<D>& f : friction) {
-    // The penalty is the node's own stiffness along the wall: a balance of the two that needs no tuning.
-    const int tangent = f.normal_axis == 0 ? 1 : 0;
-    f.stiffness = system.diagonal(f.node * D + tangent);
+    const double h = grid.axes[f.normal_axis].h;
+    f.stiffness = f.limit > 0.0 ? 0.5 * viscosity * V[f.node] / (h * h) : 0.0;
     for (int d = 0; d < D; ++d)
       if (d != f.normal_axis) system.add_diagonal(f.node, d, f.stiffness);
   }
@@ -37,6 +39,7 @@ bool update_friction_admm(std::vector<FrictionNode<D>>& friction, const std::vec
                           double tolerance) {
   double mismatch = 0.0, scale = 0.0;
   for (FrictionNode<D>& f : friction) {
+    if (f.stiffness == 0.0) continue;  // nothing presses on it
     const Vec<D> u = sliding(f, v);
     const Vec<D> a = f.force + f.stiffness * (over_relaxation * u + (1.0 - over_relaxation) * f.slip);
     const double a_norm = a.norm();

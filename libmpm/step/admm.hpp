@@ -60,6 +60,15 @@ Mismatch update_duals(const YieldProblem<Space>& problem, const Law& law, const 
   return sum;
 }
 
+/// Volume of the concrete around each node: an equal share of every cell that it touches [m^3].
+template <class Space>
+std::vector<double> volumes_around_nodes(const YieldProblem<Space>& problem) {
+  std::vector<double> V(problem.grid.node_index.size(), 0.0);
+  for (int c = 0; c < problem.grid.n_cells(); ++c)
+    for (int i : problem.grid.cell_nodes[c]) V[i] += problem.quadrature.V_cell[c] / power(3, Space::dim);
+  return V;
+}
+
 }  // namespace detail
 
 /// Solves the yield problem by ADMM from the guesses v and duals, which it overwrites with the solution.
@@ -74,7 +83,9 @@ SolveReport solve_admm(YieldProblem<Space>& problem, const Law& law, const AdmmS
   };
   const auto factorise = [&] {
     assemble(problem, stiffness, system);
-    add_friction_stiffness_admm<D>(problem.friction, system);
+    if (!problem.friction.empty())
+      add_friction_stiffness_admm<D>(problem.grid, detail::volumes_around_nodes(problem), problem.mu + r, problem.friction,
+                                     system);
     system.fix(problem.fixed);
     return system.factorise();
   };
