@@ -12,8 +12,9 @@ namespace tremie::icar_vane {
 namespace {
 
 constexpr double alpha_window = 5.0;         // [s]
+constexpr double end_average = 0.5;          // over which the torques at the end are averaged: blades jitter as they cross cells [s]
 constexpr double agreement = 0.01;           // of the three torques, once steady
-constexpr double steady = 1e-3;              // relative rate of change of the torque that counts as steady [1/s]
+constexpr double steady = 2e-3;              // mean rate of angular momentum over the torque that counts as steady
 
 Instrument instrument_of(const Vane& vane) {
   Instrument instrument;
@@ -62,6 +63,19 @@ double couette_reference(const Scene& scene, const Instrument& instrument) {
   return thixotropic_couette(flow, times, instrument).torque.back();
 }
 
+void average_end(const std::vector<Sample>& series, Results& r) {
+  double time = 0.0;
+  r.torque_end = r.torque_wall_end = r.torque_power_end = 0.0;
+  for (std::size_t i = series.size(); i-- > 0 && time < end_average;) {
+    const Sample& s = series[i];
+    r.torque_end += s.torque * s.time_step;
+    r.torque_wall_end += s.torque_wall * s.time_step;
+    r.torque_power_end += s.torque_power * s.time_step;
+    time += s.time_step;
+  }
+  for (double* torque : {&r.torque_end, &r.torque_wall_end, &r.torque_power_end}) *torque /= time;
+}
+
 /// lambda at the peak and the exponent of its decay from there on.
 void read_decay(Outcome& outcome) {
   Results& r = outcome.results;
@@ -93,12 +107,9 @@ std::optional<double> apparent_flocculation(const Scene& scene, double torque, d
 void read_instrument(const Scene& scene, Outcome& outcome) {
   Results& r = outcome.results;
   const Instrument instrument = instrument_of(scene.vane);
-  const Sample& last = outcome.series.back();
   for (const Sample& s : outcome.series)
     if (std::abs(s.torque) > std::abs(r.torque_peak)) r.torque_peak = s.torque;
-  r.torque_end = last.torque;
-  r.torque_wall_end = last.torque_wall;
-  r.torque_power_end = last.torque_power;
+  average_end(outcome.series, r);
   r.static_yield_stress_apparent = shear_stress_at(scene.vane.radius, std::abs(r.torque_peak), instrument);
   r.dynamic_yield_stress_apparent = shear_stress_at(scene.vane.radius, std::abs(r.torque_end), instrument);
   r.shear_rate_nominal = newtonian_shear_rate(angular_speed(std::abs(scene.speed)), instrument);
@@ -110,14 +121,16 @@ void read_instrument(const Scene& scene, Outcome& outcome) {
 }
 
 void check_torques_agree(Outcome& outcome) {
-  const auto& series = outcome.series;
-  if (series.size() < 2) return;
-  const Sample &a = series[series.size() - 2], &b = series.back();
-  const double scale = std::abs(b.torque);
-  const bool is_steady = std::abs(b.torque - a.torque) <= steady * scale * b.time_step &&
-                         std::abs(b.momentum_rate) <= agreement * scale;
-  if (!is_steady || scale == 0.0) return;
-  const double off = std::max(std::abs(b.torque_wall - b.torque), std::abs(b.torque_power - b.torque)) / scale;
+  const Results& r = outcome.results;
+  double momentum_rate = 0.0, time = 0.0;
+  for (std::size_t i = outcome.series.size(); i-- > 0 && time < end_average;) {
+    momentum_rate += outcome.series[i].momentum_rate * outcome.series[i].time_step;
+    time += outcome.series[i].time_step;
+  }
+  const double scale = std::abs(r.torque_end);
+  if (scale == 0.0 || std::abs(momentum_rate) > steady * scale * time) return;
+  const double off =
+      std::max(std::abs(r.torque_wall_end - r.torque_end), std::abs(r.torque_power_end - r.torque_end)) / scale;
   if (off > agreement)
     outcome.checks.reasons.push_back("the torques on the blades, on the wall and from the power differ by " +
                                      std::to_string(100.0 * off) + " %");
