@@ -64,7 +64,7 @@ void write_apparent(std::ofstream& out, const Apparent& a, const std::string& di
   std::ofstream script(directory + "/fit_apparent_alpha.gp");
   script << "set terminal svg size 800,520 font 'sans,13' background 'white'\nset output "
             "'fit_apparent_alpha.svg'\n"
-         << "set datafile separator ','\nset grid lc '#dddddd'\nset xrange [0:22]\nset yrange [0:0.045]\n"
+         << "set datafile separator ','\nset grid lc '#dddddd'\nset xrange [0:22]\nset yrange [0:0.06]\n"
          << "set xlabel 'window of the record in s'\nset ylabel 'alpha'\nset key top right\n"
          << "set title 'One concrete, one record, one alpha: what the paper''s reading makes of it (2 % "
             "noise, 95 % of 200 records)'\n"
