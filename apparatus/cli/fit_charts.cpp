@@ -20,15 +20,19 @@ std::string head(const char* file, const char* x, const char* y) {
       file, x, y);
 }
 
-const char* const readings = "linecolor rgb '#444444' pointtype 7 pointsize 0.4";
+/// Few readings are drawn large.
+std::string readings_style(const FitResult& r) {
+  return fmt::format("linecolor rgb '#444444' pointtype 7 pointsize {}", r.curve.x.size() < 100 ? 0.8 : 0.3);
+}
+
 const char* const line = "with lines linewidth 2 linecolor rgb '#0b5394'";
 
-std::string residual_chart(const char* x) {
+std::string residual_chart(const FitResult& r, const char* x) {
   return head("residuals.svg", x, "residual in % of the fitted torque") +
          fmt::format(
              "unset key\nplot 'fit.csv' every ::1 using 1:4 with points {}, 0 with lines linecolor rgb "
              "'#0b5394'\n",
-             readings);
+             readings_style(r));
 }
 
 /// Stress over shear rate at the vane with the band of both parameters; only where both are told.
@@ -52,7 +56,7 @@ std::string flow_curve_chart(const FitResult& r, const Instrument& in) {
              "band', '' using 1:2 {} title 'Bingham, {:.4g} Pa, {:.4g} Pa.s', '' using 1:5 with points {} "
              "title "
              "'readings'\n",
-             line, r.tau_0->value, r.mu->value, readings);
+             line, r.tau_0->value, r.mu->value, readings_style(r));
 }
 
 std::string torque_speed_chart(const FitResult& r) {
@@ -69,17 +73,17 @@ std::string torque_speed_chart(const FitResult& r) {
          fmt::format(
              "plot 'fit.csv' every ::1 using 1:2 with points {} title 'readings', '' every ::1 using 1:3 {} "
              "title 'Reiner-Riwlin'\n",
-             readings, line);
+             readings_style(r), line);
 }
 
 std::string decay_charts(const FitResult& r) {
   std::string text =
-      head("torque.svg", "time in s", "torque in N.m") +
+      head("torque.svg", "time in s", "torque in N.m") + "set xrange [0:*]\n" +
       fmt::format(
           "plot 'fit.csv' every ::1 using 1:2 with points {} title 'readings', '' every ::1 using "
           "1:3 {} title 'thixotropic Couette model'\n",
-          readings, line) +
-      residual_chart("time in s");
+          readings_style(r), line) +
+      residual_chart(r, "time in s");
   if (!r.apparent || r.lambda_apparent.empty()) return text;
   const ApparentAlpha& all = r.apparent->windows.back();
   double log_sum = 0.0, n = 0.0;  // the exponential's factor: mean of ln(lambda) + c t
@@ -88,12 +92,12 @@ std::string decay_charts(const FitResult& r) {
     log_sum += std::log(r.lambda_apparent[i]) + all.coefficient * r.curve.x[i];
     n += 1.0;
   }
-  return text + head("flocculation.svg", "time in s", "apparent lambda") +
+  return text + head("flocculation.svg", "time in s", "apparent lambda") + "set xrange [0:*]\n" +
          fmt::format(
              "plot 'fit.csv' every ::1 using 1:5 with points {} title 'from the torque', "
              "{:.6g}*exp(-{:.6g}*x) {} "
              "title 'exponential, {:.3g} 1/s'\n",
-             readings, std::exp(log_sum / n), all.coefficient, line, all.coefficient);
+             readings_style(r), std::exp(log_sum / n), all.coefficient, line, all.coefficient);
 }
 
 }  // namespace
@@ -116,7 +120,7 @@ std::string fit_csv(const FitResult& r, const Instrument&) {
 
 std::string fit_charts(const FitResult& r, const Instrument& in) {
   if (r.kind == RecordKind::torque_decay) return decay_charts(r);
-  return torque_speed_chart(r) + flow_curve_chart(r, in) + residual_chart("speed in rev/s");
+  return torque_speed_chart(r) + flow_curve_chart(r, in) + residual_chart(r, "speed in rev/s");
 }
 
 }  // namespace tremie::cli
