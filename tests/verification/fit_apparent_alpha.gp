@@ -3,7 +3,7 @@ set output 'fit_apparent_alpha.svg'
 set datafile separator ','
 set grid lc '#dddddd'
 set xrange [0:22]
-set yrange [0:0.045]
+set yrange [0:0.06]
 set xlabel 'window of the record in s'
 set ylabel 'alpha'
 set key top right
