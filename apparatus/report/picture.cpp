@@ -31,7 +31,7 @@ std::vector<std::string> arguments_for(const scene::Outcome& outcome, const std:
 
 std::string draw_picture(const scene::Outcome& outcome, const fs::path& folder, const std::string& vtp) {
   const fs::path program = picture_program();
-  if (program.empty()) return "tremie-picture is not there (built without VTK): no picture";
+  if (program.empty()) return "tremie-picture is not beside tremie (building it needs VTK): no picture";
   auto arguments = arguments_for(outcome, vtp);
   const char* display = std::getenv("DISPLAY");
   if (display && *display && run_program(program, arguments, folder) == 0) return "";

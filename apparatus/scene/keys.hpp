@@ -13,6 +13,11 @@
 //       of blades"}}};
 //
 //   double radius = values.number("vane.radius");   // metres, checked
+//
+// A repeated table [[history]] is a Section with `repeated`; its values are history[0].duration and so on,
+// for i below values.count("history"). A key of the same name at the top ("history = \"file.csv\"") is taken
+// where it is no table. Load such a scene with load({path, overrides}, {{my_keys()}}) (load.hpp), without the
+// apparatus that scene.hpp knows.
 
 #include <functional>
 #include <limits>
@@ -95,7 +100,7 @@ struct Preset {
 struct ApparatusKeys {
   std::string name;  ///< the scene's `apparatus = `
   std::string help;
-  Schema schema;  ///< the sections of the file without the top, which is the same for all
+  Schema schema;  ///< its sections; a first one without a name adds keys to the top of the file
   std::vector<Preset> presets;
   /// Rules over several keys: derive, drop, or fail. May be empty.
   std::function<void(Values&)> settle;

@@ -89,9 +89,16 @@ void lay_on_preset(Node& document, const ApparatusKeys& apparatus) {
   }
 }
 
+/// The top of the file, with what the apparatus adds to it, then the apparatus' sections.
 Schema whole_schema(const ApparatusKeys& apparatus) {
   Schema schema{top_section(apparatus)};
-  schema.insert(schema.end(), apparatus.schema.begin(), apparatus.schema.end());
+  for (const Section& section : apparatus.schema) {
+    auto& top = schema.front().keys;
+    if (section.name.empty())
+      top.insert(top.end(), section.keys.begin(), section.keys.end());
+    else
+      schema.push_back(section);
+  }
   return schema;
 }
 

@@ -89,7 +89,8 @@ std::string allowed_comment(const Key& key) {
   if (key.only_with)
     text += fmt::format("{}with {} = \"{}\"", text.empty() ? "" : ", ", key.only_with->key,
                         fmt::join(key.only_with->words, "\" or \""));
-  return text.empty() ? key.help : key.help + (key.help.empty() ? "" : ": ") + text;
+  if (!text.empty() && !key.help.empty()) text = ": " + text;
+  return (key.required ? "needed: " : "") + key.help + text;
 }
 
 std::string template_value(const Key& key) {
@@ -123,11 +124,13 @@ std::string write_resolved(const Schema& schema, const Values& values) {
 
 std::string write_template(const ApparatusKeys& apparatus) {
   std::string text = fmt::format(
-      "# {}\n# Every line but [mix]'s first two may be left out: it shows its default.\n\n", apparatus.help);
+      "# {}\n# Every line shows its default and may be left out, but for those marked \"needed\".\n\n",
+      apparatus.help);
   text += fmt::format("apparatus = \"{}\"\n", apparatus.name);
   for (const Section& section : apparatus.schema) {
-    text += fmt::format("\n# {}\n{}{}{}\n", section.help, section.repeated ? "[[" : "[", section.name,
-                        section.repeated ? "]]" : "]");
+    if (!section.name.empty())
+      text += fmt::format("\n# {}\n{}{}{}\n", section.help, section.repeated ? "[[" : "[", section.name,
+                          section.repeated ? "]]" : "]");
     for (const Key& key : section.keys) {
       const std::string value = template_value(key);
       if (value.empty() || value == "\"\"") continue;

@@ -61,45 +61,4 @@ double centre_height(const Points<2>& points, double radius) {
   return upper_quantile(heights, 1e-2);
 }
 
-std::optional<double> mean_flocculation(const Points<2>& points) {
-  if (!points.thixotropic()) return std::nullopt;
-  double sum = 0.0, volume = 0.0;
-  for (std::size_t p = 0; p < points.size(); ++p) {
-    sum += points.volume(p) * points.lambda[p];
-    volume += points.volume(p);
-  }
-  return sum / volume;
-}
-
-double total_volume(const Points<2>& points) {
-  double V = 0.0;
-  for (std::size_t p = 0; p < points.size(); ++p) V += points.volume(p);
-  return V;
-}
-
-double volume_change(const Points<2>& points) {
-  double V0 = 0.0;
-  for (double v : points.V0) V0 += v;
-  return total_volume(points) / V0 - 1.0;
-}
-
-double total_mass(const Points<2>& points) {
-  double m = 0.0;
-  for (double mass : points.mass) m += mass;
-  return m;
-}
-
-double kinetic_energy(const Points<2>& points) {
-  double e = 0.0;
-  for (std::size_t p = 0; p < points.size(); ++p) e += 0.5 * points.mass[p] * points.v[p].squaredNorm();
-  return e;
-}
-
-std::int64_t points_lost(const Points<2>& points) {
-  std::int64_t lost = 0;
-  for (const auto& x : points.x)
-    if (!x.allFinite() || x[0] < 0.0 || x[1] < 0.0) ++lost;
-  return lost;
-}
-
 }  // namespace tremie::slump_flow

@@ -1,23 +1,16 @@
 #include "apparatus/slump_flow/slump_flow.hpp"
 
-#include <omp.h>
-
 #include <stdexcept>
 
 #include "apparatus/slump_flow/engine.hpp"
-#include "libmpm/law/yield_law.hpp"
 
 namespace tremie::slump_flow {
 namespace {
 
 void refuse_what_has_no_engine(const Scene& scene) {
-  const Model& m = scene.model;
-  if (m.space != SpaceKind::axisymmetric)
+  if (scene.model.space != SpaceKind::axisymmetric)
     throw std::invalid_argument("model.space: the slump flow runs in \"axisymmetric\" for now");
-  if (m.scheme != SchemeKind::implicit)
-    throw std::invalid_argument("model.scheme: the slump flow runs with \"implicit\" for now");
-  if (m.shape != ShapeKind::b_spline)
-    throw std::invalid_argument("model.shape: the slump flow runs with \"b_spline\" for now");
+  engine::refuse_what_has_no_engine(scene.model, "slump flow");
 }
 
 }  // namespace
@@ -25,14 +18,7 @@ void refuse_what_has_no_engine(const Scene& scene) {
 Outcome run(const Scene& scene, const Observer& observer) {
   refuse_what_has_no_engine(scene);
   omp_set_num_threads(scene.threads);
-  switch (scene.model.yield) {
-    case YieldKind::papanastasiou:
-      return run_axisymmetric(scene, Papanastasiou{scene.model.regularisation}, observer);
-    case YieldKind::bi_viscous:
-      return run_axisymmetric(scene, BiViscous{scene.model.critical_shear_rate}, observer);
-    default:
-      return run_axisymmetric(scene, ExactBingham{}, observer);
-  }
+  return engine::with_law(scene.model, [&](const auto& law) { return run_axisymmetric(scene, law, observer); });
 }
 
 Estimate estimate(const Scene& scene) {

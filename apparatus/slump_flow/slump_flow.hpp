@@ -39,7 +39,7 @@ struct Sample {
   double height = 0.0;            ///< of the concrete at the centre [m]
   double max_speed = 0.0;         ///< [m/s]
   double shear_rate_mean = 0.0;   ///< volume mean [1/s]
-  std::optional<double> flocculation_mean;  ///< volume mean; empty without thixotropy
+  std::optional<double> flocculation_mean = {};  ///< volume mean; empty without thixotropy
   double volume_change = 0.0;     ///< sum V / V0 - 1
   double kinetic_energy = 0.0;    ///< [J]
   double time_step = 0.0;         ///< [s]
@@ -48,11 +48,11 @@ struct Sample {
 
 struct Results {
   double spread = 0.0, spread_max_point = 0.0, height = 0.0;  ///< [m]
-  std::optional<double> t500;        ///< [s], from the start of the lift
-  std::optional<double> stopped_at;  ///< [s]
-  std::optional<double> flocculation_mean_start, flocculation_mean_end;
+  std::optional<double> t500 = {};        ///< [s], from the start of the lift
+  std::optional<double> stopped_at = {};  ///< [s]
+  std::optional<double> flocculation_mean_start = {}, flocculation_mean_end = {};
   double shear_rate_mean_peak = 0.0;  ///< [1/s]
-  std::optional<double> mean_velocity;  ///< (SF - 200 mm) / (2 t_stop) [m/s]
+  std::optional<double> mean_velocity = {};  ///< (SF - 200 mm) / (2 t_stop) [m/s]
 };
 
 struct Outcome {

@@ -28,12 +28,12 @@ struct ContactPoint {
   bool active = false;
 };
 
-/// A node on a wall with Coulomb friction.
+/// A node on a wall with Coulomb friction, or one that the side walls of a width-averaged section hold.
 template <int D>
 struct FrictionNode {
   int node = 0;
-  int normal_axis = 0;
-  double limit = 0.0;                       ///< coefficient * normal force [N]
+  int normal_axis = 0;                      ///< -1: held against any motion in the section
+  double limit = 0.0;                       ///< coefficient * normal force, or the side walls' yield force [N]
   Vec<D> force = Vec<D>::Zero();            ///< along the wall, its dual [N]
   Vec<D> slip = Vec<D>::Zero();             ///< split sliding velocity, for ADMM [m/s]
   double stiffness = 0.0;                   ///< ADMM's penalty [kg/s]
@@ -99,7 +99,7 @@ double contact_energy(const std::vector<ContactPoint<D>>& contact,
 template <int D>
 Vec<D> sliding(const FrictionNode<D>& f, const std::vector<Vec<D>>& v) {
   Vec<D> u = v[f.node];
-  u[f.normal_axis] = 0.0;
+  if (f.normal_axis >= 0) u[f.normal_axis] = 0.0;
   return u;
 }
 

@@ -19,7 +19,7 @@ template <int D>
 void add_friction_stiffness_admm(const ActiveGrid<D>& grid, const std::vector<double>& V, double viscosity,
                                  std::vector<FrictionNode<D>>& friction, BlockSystem<D>& system) {
   for (FrictionNode<D>& f : friction) {
-    const double h = grid.axes[f.normal_axis].h;
+    const double h = f.normal_axis >= 0 ? grid.axes[f.normal_axis].h : grid.cell_size_min();
     f.stiffness = f.limit > 0.0 ? 0.5 * viscosity * V[f.node] / (h * h) : 0.0;
     for (int d = 0; d < D; ++d)
       if (d != f.normal_axis) system.add_diagonal(f.node, d, f.stiffness);
@@ -68,8 +68,10 @@ Mat<D, D> friction_tangent(const FrictionNode<D>& f, const Vec<D>& u) {
   const double rounded = std::hypot(u.norm(), friction_rounding);
   Mat<D, D> T = f.limit / rounded * Mat<D, D>::Identity();
   T -= (f.force * u.transpose() + u * f.force.transpose()) / (2.0 * rounded * rounded) ;
-  T.row(f.normal_axis).setZero();
-  T.col(f.normal_axis).setZero();
+  if (f.normal_axis >= 0) {
+    T.row(f.normal_axis).setZero();
+    T.col(f.normal_axis).setZero();
+  }
   return T;
 }
 
@@ -79,7 +81,7 @@ void update_friction_newton(std::vector<FrictionNode<D>>& friction, const std::v
   for (FrictionNode<D>& f : friction) {
     const Vec<D> u = sliding(f, v);
     Vec<D> du = dv.template segment<D>(f.node * D);
-    du[f.normal_axis] = 0.0;
+    if (f.normal_axis >= 0) du[f.normal_axis] = 0.0;
     const double rounded = std::hypot(u.norm(), friction_rounding);
     f.force = f.limit / rounded * (u + du) - f.force * (u.dot(du) / (rounded * rounded));
     const double size = f.force.norm();

@@ -28,8 +28,19 @@ struct StepSettings {
   double cfl = 0.6;                ///< largest move in a step, in cells
   double growth = 1.3;             ///< largest ratio of successive steps
   double friction_coefficient = 0.0;
+  double boundary_stiffness = 1000.0;  ///< of walls inside the grid, in m/dt
+  double side_wall_distance = 0.0;     ///< of a width-averaged section [m]; 0: plane strain, no side walls
   double wall_gap = 0.0;       ///< how near a point may come to a rigid wall [m]
   double wall_penalty = 100.0;  ///< stiffness of a rigid wall, in m/dt
+};
+
+/// Velocities of the low and the high wall of each axis [m/s]; the normal component must be zero.
+template <int D>
+struct WallVelocities {
+  std::array<std::array<Vec<D>, 2>, D> v;
+  WallVelocities() {
+    for (auto& axis : v) axis.fill(Vec<D>::Zero());
+  }
 };
 
 /// A body of one mix on its grid: everything that a step reads and writes.
@@ -40,6 +51,8 @@ struct Body {
   Vec<D> gravity = Vec<D>::Zero();  ///< [m/s^2]
   Points<D> points;
   ActiveGrid<D> grid;
+  WallVelocities<D> walls{};              ///< of the walls at the ends of the axes
+  std::vector<BoundaryPoint<D>> boundary;  ///< walls inside the grid
   double time = 0.0, dt = 0.0;  ///< [s]; dt of the last step
 
   NodalState<D> nodes;        ///< of the last step, velocities at its start
@@ -47,6 +60,7 @@ struct Body {
   Quadrature<Space> quadrature;
   Duals<Space> duals;
   std::vector<FrictionNode<D>> friction;
+  std::vector<BoundPoint<D>> bound;  ///< walls inside the grid that touched concrete in the last step
   BlockSystem<D> system;
 };
 
@@ -103,9 +117,9 @@ void carry_duals(const IndexMap<Space::dim>& old_map, const ActiveGrid<Space::di
   duals = std::move(now);
 }
 
-/// Walls at the ends of the axes: which components they prescribe (their velocity is zero), and where friction acts.
+/// Walls at the ends of the axes: which components they prescribe, and where friction acts.
 template <int D>
-void apply_flat_walls(const ActiveGrid<D>& grid, std::vector<char>& fixed, std::vector<FrictionNode<D>>& friction,
+void apply_flat_walls(const ActiveGrid<D>& grid, const WallVelocities<D>& walls, std::vector<char>& fixed, std::vector<FrictionNode<D>>& friction,
                       std::vector<Vec<D>>& v) {
   fixed.assign(grid.node_index.size() * D, 0);
   for (int i = 0; i < grid.n_nodes(); ++i)
@@ -115,7 +129,10 @@ void apply_flat_walls(const ActiveGrid<D>& grid, std::vector<char>& fixed, std::
       const FaceKind face = axis.on_low_wall(j) ? axis.low : axis.on_high_wall(j) ? axis.high : FaceKind::open;
       if (face == FaceKind::open) continue;
       for (int d = 0; d < D; ++d)
-        if (d == a || face == FaceKind::no_slip) fixed[i * D + d] = 1, v[i][d] = 0.0;
+        if (d == a || face == FaceKind::no_slip) {
+          fixed[i * D + d] = 1;
+          v[i][d] = walls.v[a][axis.on_low_wall(j) ? 0 : 1][d];
+        }
       if (face == FaceKind::friction) {
         FrictionNode<D> node;
         node.node = i;
@@ -192,6 +209,7 @@ double update_normal_forces(YieldProblem<Space>& problem, const Law& law, double
   const Eigen::VectorXd R = residual(problem, body.v, stress);
   double change = 0.0, sum = 0.0;
   for (FrictionNode<D>& f : problem.friction) {
+    if (f.normal_axis < 0) continue;
     // The reaction pushes into the concrete: against -e at a low wall, against +e at a high one.
     const bool low = problem.grid.axes[f.normal_axis].on_low_wall(problem.grid.node_index[f.node][f.normal_axis]);
     const double reaction = (low ? -1.0 : 1.0) * R[f.node * D + f.normal_axis];
@@ -205,15 +223,43 @@ double update_normal_forces(YieldProblem<Space>& problem, const Law& law, double
   return sum > 0.0 ? change / sum : 0.0;
 }
 
+/// The side walls of a section averaged over the width W: the concrete sticks to them, so they hold each node with the
+/// yield stress and, for the parabola between two plates, the viscous stress 6 mu v / W on both sides.
+template <class Space>
+void add_side_walls(double W, YieldProblem<Space>& problem) {
+  constexpr int D = Space::dim;
+  const auto& grid = problem.grid;
+  std::vector<double> V(grid.node_index.size(), 0.0), limit(grid.node_index.size(), 0.0);
+  for (int c = 0; c < grid.n_cells(); ++c)
+    for (int k = 0; k < power(2, D); ++k) {
+      const Stencil<D> st = stencil<D>(grid.axes, grid.cell_index[c], gauss_place<D>(k));
+      for (int i = 0; i < power(3, D); ++i) {
+        V[grid.cell_nodes[c][i]] += st.N[i] * problem.quadrature.V[c][k];
+        limit[grid.cell_nodes[c][i]] += st.N[i] * problem.quadrature.V[c][k] * problem.quadrature.tau_y[c][k] * 2.0 / W;
+      }
+    }
+  problem.drag.resize(V.size());
+  for (std::size_t i = 0; i < V.size(); ++i) {
+    problem.drag[i] = 12.0 * problem.mu / (W * W) * V[i];
+    FrictionNode<D> held;
+    held.node = static_cast<int>(i);
+    held.normal_axis = -1;
+    held.limit = limit[i];
+    problem.friction.push_back(held);
+  }
+}
+
 /// Friction goes on from the forces of the last step at the same nodes.
 template <class Space>
 void carry_friction(const std::vector<FrictionNode<Space::dim>>& old, const IndexMap<Space::dim>& old_nodes,
                     const ActiveGrid<Space::dim>& grid, std::vector<FrictionNode<Space::dim>>& friction) {
+  std::vector<int> last_at(old_nodes.value.size(), -1);  // by old node: the last of its entries, walls before held nodes
+  for (std::size_t k = 0; k < old.size(); ++k) last_at[old[k].node] = static_cast<int>(k);
   for (auto& f : friction) {
     const int node = old_nodes.value.empty() ? -1 : old_nodes.at(grid.node_index[f.node]);
-    const auto it = std::find_if(old.begin(), old.end(), [&](const auto& o) { return o.node == node; });
-    if (node < 0 || it == old.end()) continue;
-    f.limit = it->limit;
+    if (node < 0 || last_at[node] < 0 || old[last_at[node]].normal_axis != f.normal_axis) continue;
+    const FrictionNode<Space::dim>* it = &old[last_at[node]];
+    if (f.normal_axis >= 0) f.limit = it->limit;
     f.force = it->force;
     f.slip = it->slip;
   }
@@ -240,8 +286,10 @@ StepReport implicit_step(Body<Space>& body, const Law& law, const StepSettings& 
   const double dt = detail::choose_dt(body, settings);
   const std::vector<Vec<D>> v_old = body.nodes.v;
   for (Vec<D>& v : body.nodes.v) v += dt * body.gravity;
-  YieldProblem<Space> problem{body.grid, body.quadrature, body.nodes, dt, body.mix.mu, body.mix.K, {}, {}, {}};
-  detail::apply_flat_walls<D>(body.grid, problem.fixed, problem.friction, body.v);
+  YieldProblem<Space> problem{body.grid, body.quadrature, body.nodes, dt, body.mix.mu, body.mix.K, {}, {}, {}, {}, {}};
+  detail::apply_flat_walls<D>(body.grid, body.walls, problem.fixed, problem.friction, body.v);
+  if (settings.side_wall_distance > 0.0) detail::add_side_walls(settings.side_wall_distance, problem);
+  problem.bound = find_bound_points(body.grid, body.nodes, body.boundary, dt, settings.boundary_stiffness);
   detail::carry_friction<Space>(body.friction, old_nodes, body.grid, problem.friction);
   problem.contact =
       find_contact(body.grid, body.points, wall, body.time + dt, dt, settings.wall_gap, settings.wall_penalty);
@@ -256,6 +304,7 @@ StepReport implicit_step(Body<Space>& body, const Law& law, const StepSettings& 
     solve.iterations += before;
   }
   body.friction = problem.friction;
+  body.bound = problem.bound;
 
   // Grid to points: state first, where the points were, then the move.
   if (body.points.thixotropic()) detail::update_flocculation(body, dt, body.points);

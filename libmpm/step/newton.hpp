@@ -37,7 +37,9 @@ double energy(const YieldProblem<Space>& problem, const Law& law, const std::vec
       sum += quad.V[c][k] * (0.5 * problem.mu * gamma_dot * gamma_dot + law.potential(gamma_dot, quad.tau_y[c][k]));
     }
   }
-  return sum + contact_energy<Space::dim>(problem.contact, problem.grid.cell_nodes, v) +
+  for (std::size_t i = 0; i < problem.drag.size(); ++i) sum += 0.5 * problem.drag[i] * v[i].squaredNorm();
+  return sum + bound_energy<Space::dim>(problem.bound, problem.grid.cell_nodes, v) +
+         contact_energy<Space::dim>(problem.contact, problem.grid.cell_nodes, v) +
          friction_energy<Space::dim>(problem.friction, v);
 }
 

@@ -10,6 +10,7 @@
 
 #include <vector>
 
+#include "libmpm/contact/boundary_points.hpp"
 #include "libmpm/contact/contact.hpp"
 #include "libmpm/grid/active_grid.hpp"
 #include "libmpm/step/block_system.hpp"
@@ -37,7 +38,9 @@ struct YieldProblem {
   double dt, mu, K;
   std::vector<char> fixed;            ///< a flag a component: prescribed by a wall
   std::vector<ContactPoint<D>> contact;   ///< moving rigid walls
-  std::vector<FrictionNode<D>> friction;  ///< Coulomb friction on flat walls
+  std::vector<FrictionNode<D>> friction;  ///< Coulomb friction on flat walls, yield drag of side walls
+  std::vector<BoundPoint<D>> bound;       ///< walls inside the grid
+  std::vector<double> drag;               ///< viscous drag of side walls, a node each [kg/s]; empty: none
 };
 
 struct SolveReport {
@@ -83,9 +86,12 @@ Eigen::VectorXd residual(const YieldProblem<Space>& problem, const std::vector<V
   Eigen::VectorXd R(grid.n_nodes() * D);
   for (int i = 0; i < grid.n_nodes(); ++i)
     R.segment<D>(i * D) = problem.nodes.mass[i] / problem.dt * (problem.nodes.v[i] - v[i]);
+  for (std::size_t i = 0; i < problem.drag.size(); ++i)
+    R.segment<D>(static_cast<Eigen::Index>(i) * D) -= problem.drag[i] * v[i];
   for (int c = 0; c < grid.n_cells(); ++c)
     for (int i = 0; i < n_local; ++i) R.segment<D>(grid.cell_nodes[c][i] * D) += local[c][i];
   add_contact_forces<D>(problem.contact, grid.cell_nodes, v, R);
+  add_bound_forces<D>(problem.bound, grid.cell_nodes, v, R);
   return R;
 }
 
@@ -115,8 +121,10 @@ void assemble(const YieldProblem<Space>& problem, Tangent tangent, BlockSystem<S
     system.add_cell(c, cell);
   }
   for (int i = 0; i < problem.grid.n_nodes(); ++i)
-    for (int d = 0; d < D; ++d) system.add_diagonal(i, d, problem.nodes.mass[i] / problem.dt);
+    for (int d = 0; d < D; ++d)
+      system.add_diagonal(i, d, problem.nodes.mass[i] / problem.dt + (problem.drag.empty() ? 0.0 : problem.drag[i]));
   add_contact_stiffness<D>(problem.contact, system);
+  add_bound_stiffness<D>(problem.bound, system);
 }
 
 }  // namespace tremie

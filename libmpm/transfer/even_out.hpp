@@ -55,6 +55,10 @@ std::vector<Vec<Space::dim>> even_out(const YieldProblem<Space>& problem, const 
   }
   for (int i = 0; i < grid.n_nodes(); ++i)
     for (int d = 0; d < D; ++d) system.add_diagonal(i, d, problem.nodes.mass[i]);
+  // Walls inside the grid let nothing through here either.
+  std::vector<BoundPoint<D>> bound = problem.bound;
+  for (BoundPoint<D>& b : bound) b.stiffness *= problem.dt;
+  add_bound_stiffness<D>(bound, system);
   std::vector<char> fixed(R.size(), 0);
   for (int i = 0; i < grid.n_nodes(); ++i)
     for (int d = 0; d < D; ++d)
