@@ -45,6 +45,14 @@ Vec<D> gauss_place(int k) {
 
 namespace detail {
 
+/// Local coordinates of the middle of part k.
+template <int D>
+Vec<D> part_middle(int k) {
+  Vec<D> s;
+  for (int d = 0; d < D; ++d) s[d] = (k >> d) & 1 ? 0.75 : 0.25;
+  return s;
+}
+
 /// Number of the part of cell c that holds the place x.
 template <int D>
 int part_of(const ActiveGrid<D>& grid, int c, const Vec<D>& x) {
@@ -131,6 +139,10 @@ void lay_out_quadrature(const ActiveGrid<Space::dim>& grid, const Points<Space::
       st[k] = stencil<D>(grid.axes, cell, gauss_place<D>(k));
     }
     quadrature.V[c] = detail::part_volumes<Space>(grid, points, c);
+    // A full part must weigh what the Gauss rule gives its place, or a uniform pressure would push: in a ring the place
+    // does not lie at the part's middle radius.
+    for (int k = 0; k < n; ++k)
+      quadrature.V[c][k] *= Space::measure(x[k]) / Space::measure(cell_place<D>(grid.axes, cell, detail::part_middle<D>(k)));
     detail::lay_out_rows<Space>(st, x, c, quadrature);
     quadrature.p[c] = detail::mean_pressure(grid, points, K, c);
     quadrature.tau_y[c].fill(tau_0);
