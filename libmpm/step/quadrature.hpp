@@ -59,9 +59,12 @@ std::array<double, power(2, D)> place_shares(const Vec<D>& s) {
   return share;
 }
 
-/// Volumes of the Gauss places of cell c, and 1 + lambda times volume where the points have lambda.
+/// Volumes of the Gauss places of cell c, and 1 + lambda times volume where the points have lambda. A place weighs what
+/// the Gauss rule gives it in a full cell, or a uniform pressure would push: in a ring that is the points' sections times
+/// the place's own measure, not theirs.
 template <class Space>
 void add_up_points(const ActiveGrid<Space::dim>& grid, const Points<Space::dim>& points, int c,
+                   const std::array<Vec<Space::dim>, power(2, Space::dim)>& places,
                    std::array<double, power(2, Space::dim)>& volume,
                    std::array<double, power(2, Space::dim)>& structure) {
   volume.fill(0.0);
@@ -70,11 +73,16 @@ void add_up_points(const ActiveGrid<Space::dim>& grid, const Points<Space::dim>&
     const int p = grid.order[i];
     const auto share =
         place_shares<Space::dim>(local_coordinates<Space::dim>(grid.axes, grid.cell_index[c], points.x[p]));
-    const double V = points.volume(p), factor = points.thixotropic() ? 1.0 + points.lambda[p] : 1.0;
+    const double section = points.volume(p) / Space::measure(points.x[p]);
+    const double factor = points.thixotropic() ? 1.0 + points.lambda[p] : 1.0;
     for (std::size_t k = 0; k < share.size(); ++k) {
-      volume[k] += share[k] * V;
-      structure[k] += share[k] * V * factor;
+      volume[k] += share[k] * section;
+      structure[k] += share[k] * section * factor;
     }
+  }
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    volume[k] *= Space::measure(places[k]);
+    structure[k] *= Space::measure(places[k]);
   }
 }
 
@@ -125,7 +133,7 @@ void lay_out_quadrature(const ActiveGrid<Space::dim>& grid, const Points<Space::
       st[k] = stencil<D>(grid.axes, cell, gauss_place<D>(k));
     }
     std::array<double, n> structure;
-    detail::add_up_points<Space>(grid, points, c, quadrature.V[c], structure);
+    detail::add_up_points<Space>(grid, points, c, x, quadrature.V[c], structure);
     for (int k = 0; k < n; ++k)
       quadrature.tau_y[c][k] = quadrature.V[c][k] > 0.0 ? tau_0 * structure[k] / quadrature.V[c][k] : tau_0;
     detail::lay_out_rows<Space>(st, x, c, quadrature);
