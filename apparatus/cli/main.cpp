@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <exception>
 
+#include "apparatus/cli/command_cell.hpp"
+#include "apparatus/cli/command_fit.hpp"
 #include "apparatus/cli/commands.hpp"
 #include "apparatus/scene/input_error.hpp"
 #include "tremie_version.hpp"
@@ -18,6 +20,8 @@ int run(int argc, char** argv) {
   tremie::cli::add_command_run(app, exit_code);
   tremie::cli::add_command_check(app, exit_code);
   tremie::cli::add_command_new(app, exit_code);
+  tremie::cli::add_command_cell(app, exit_code);
+  tremie::cli::add_command_fit(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -43,7 +43,7 @@ struct Papanastasiou {
 
   double secant(double gamma_dot, double tau_y) const {
     const double x = m * gamma_dot;
-    if (x < 1e-5) return tau_y * m * (1.0 - 0.5 * x);
+    if (x < 1e-5) return tau_y * m * (1.0 - 0.5 * x + x * x / 6.0);
     return tau_y * -std::expm1(-x) / gamma_dot;
   }
   double slope(double gamma_dot, double tau_y) const {
@@ -86,9 +86,9 @@ inline double Papanastasiou::prox(double a, double tau_y, double r) const {
   if (a <= 0.0) return 0.0;
   double d = std::max(a / (tau_y * m + r), (a - tau_y) / r);  // both lie below the root
   for (int i = 0; i < 60; ++i) {
-    const double e = std::exp(-m * d);
-    const double residual = a - tau_y * (1.0 - e) - r * d;
-    const double step = residual / (tau_y * m * e + r);
+    const double missing = std::expm1(-m * d);  // 1 - e^{-m d} would lose its digits at small m d
+    const double residual = a + tau_y * missing - r * d;
+    const double step = residual / (tau_y * m * (1.0 + missing) + r);
     d += step;
     if (std::abs(step) <= 1e-14 * d) break;
   }

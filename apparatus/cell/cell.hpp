@@ -1,0 +1,46 @@
+#pragma once
+
+// `apparatus = "cell"`: one material cell at a prescribed shear rate, from a scene to a result in one call
+// each.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "apparatus/model.hpp"
+#include "apparatus/scene/keys.hpp"
+#include "apparatus/scene/outcome.hpp"
+#include "rheometer/material_cell.hpp"
+
+namespace tremie::cell {
+
+/// A checked scene, SI units.
+struct Scene {
+  std::string name;  ///< the file's name without .toml
+  MaterialCell cell;
+  YieldKind yield = YieldKind::exact;
+  double regularisation = 0.0;       ///< m [s], papanastasiou alone
+  double critical_shear_rate = 0.0;  ///< gamma_c [1/s], bi_viscous alone
+  std::string resolved;  ///< the same scene as TOML, a CSV history as tables; reads back to the same scene
+};
+
+/// True where the file's `apparatus` is "cell". Throws scene::InputError where it is no TOML.
+bool is_cell(const std::filesystem::path& path);
+
+/// The keys of the scene.
+scene::ApparatusKeys keys();
+
+/// Reads and checks; a CSV history lies beside the scene. Throws scene::InputError.
+Scene read(const std::filesystem::path& path, const std::vector<std::string>& overrides = {});
+
+/// A scene from its text; `name` stands for the file in messages and for the folder of a CSV history.
+Scene read_text(const std::string& text, const std::string& name,
+                const std::vector<std::string>& overrides = {});
+
+/// Runs the cell with the scene's law. Throws scene::InputError where the history cannot be run.
+CellResult run(const Scene& scene);
+
+/// The result under the names of timeseries.csv and summary.json.
+scene::Outcome outcome(const Scene& scene, const CellResult& result);
+
+}  // namespace tremie::cell

@@ -1,0 +1,93 @@
+#include "apparatus/cli/command_cell.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apparatus/cell/cell.hpp"
+#include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/rheometer_files.hpp"
+#include "apparatus/cli/set_option.hpp"
+#include "apparatus/report/html.hpp"
+#include "apparatus/report/result_files.hpp"
+#include "apparatus/report/run_folder.hpp"
+#include "libmpm/io/write_error.hpp"
+
+namespace tremie::cli {
+namespace {
+
+struct Options {
+  std::string scene, out;
+  std::vector<std::string> overrides;
+  int threads = 1;
+  bool quiet = false, force = false;
+};
+
+/// Stress over shear rate: the loop that a person looks for, with time as colour.
+std::string flow_curve_script(const std::string& title) {
+  return "set terminal svg size 720,440 dynamic background rgb 'white' font 'sans,14'\nset output "
+         "'flow_curve.svg'\n"
+         "set datafile separator ','\nset grid linecolor rgb '#dddddd'\nset border 3\nset tics nomirror out\n"
+         "set xlabel 'shear rate in 1/s'\nset ylabel 'shear stress in Pa'\nset cblabel 'time in s'\nunset "
+         "key\n"
+         "set palette defined (0 '#0b5394', 1 '#e0a030')\nset title '" +
+         title +
+         "' noenhanced\n"
+         "plot 'timeseries.csv' every ::1 using 2:3:1 with lines linewidth 2 linecolor palette\n";
+}
+
+std::vector<std::string> write(const cell::Scene& scene, scene::Outcome outcome,
+                               const std::filesystem::path& folder) {
+  report::ResultFiles files(folder, scene.resolved);
+  std::vector<std::string> notes = files.finish(outcome);
+  if (outcome.charts.empty() ||
+      outcome.charts.front().file != "stress.svg") {  // nothing flowed: no flow curve
+    io::write_text(folder / "summary.json", summary_of(outcome).dump(2) + "\n");
+    return notes;
+  }
+  std::string title = scene.name;
+  std::erase(title, '\'');
+  const std::string note = draw(folder, flow_curve_script(title));
+  if (!note.empty()) notes.push_back(note);
+  outcome.charts.insert(outcome.charts.begin(), {"flow_curve.svg", scene.name, "", "", {}, {}});
+  io::write_text(folder / "report.html", report::report_html(outcome, scene.resolved, folder));
+  io::write_text(folder / "summary.json", summary_of(outcome).dump(2) + "\n");
+  return notes;
+}
+
+int run(const Options& options) {
+  const Stopwatch watch;
+  const cell::Scene scene = cell::read(options.scene, options.overrides);
+  report::RunFolder folder(options.out.empty() ? "runs/" + scene.name : options.out, options.force);
+  const CellResult result = cell::run(scene);
+  scene::Outcome outcome = cell::outcome(scene, result);
+  watch.stop(outcome.cost);
+  const std::vector<std::string> notes = write(scene, outcome, folder.staging());
+  folder.publish();
+  for (const auto& reason : outcome.checks.reasons) fmt::print(stderr, "not to be trusted: {}\n", reason);
+  if (!options.quiet) {
+    for (const auto& line : outcome.lines) fmt::print("{}\n", line);
+    for (const auto& note : notes) fmt::print("note                 {}\n", note);
+    fmt::print("written to           {}\n", folder.target().string());
+  }
+  return outcome.checks.reasons.empty() ? done : not_to_be_trusted;
+}
+
+}  // namespace
+
+void add_command_cell(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  auto* command =
+      app.add_subcommand("cell", "Run the law alone, in one material cell at a prescribed shear rate");
+  command->add_option("scene", options->scene, "Scene file (TOML) with apparatus = \"cell\"")->required();
+  command->add_option("--out", options->out, "Folder for the result (default: runs/<scene name>)");
+  add_set_option(*command, options->overrides);
+  command->add_option("--threads", options->threads, "Threads; a cell needs one")->check(CLI::Range(1, 1024));
+  command->add_flag("--quiet", options->quiet, "Print nothing but errors");
+  command->add_flag("--force", options->force, "Replace an earlier result in the folder");
+  command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace tremie::cli

@@ -1,0 +1,110 @@
+// The thixotropic Couette reference refined in r and in t.
+//
+//   Mix A after 240 s of rest, 0.25 rev/s, alpha = 0.0358; gated and roussel kinetics. Differences are taken
+//   to the finest solution, 3200 intervals at a tolerance of 1e-9. Published: T = 2.36, 1.63, 1.38, 1.24 N m
+//   at 0, 5, 10, 20 s.
+//
+//   couette_convergence DIR     writes couette_convergence.md, couette_decay.csv, .gp and .svg into DIR
+
+#include <cmath>
+#include <iomanip>
+
+#include "rheometer/thixotropic_couette.hpp"
+#include "tests/verification/study_output.hpp"
+
+namespace tremie::study {
+namespace {
+
+const std::vector<double> times{0.0, 5.0, 10.0, 20.0};
+
+CouetteFlow mix_a(Kinetics kinetics) {
+  return {{54.0, 35.8}, {1.3, 0.0358, kinetics, 0.1, 1.3 * 240.0 / 54.0}, angular_speed(0.25), {}};
+}
+
+CouetteDecay solve(Kinetics kinetics, int intervals, double tolerance) {
+  CouetteOptions options;
+  options.intervals = intervals;
+  options.relative_tolerance = tolerance;
+  options.absolute_tolerance = 0.1 * tolerance;
+  options.keep_profiles = true;
+  return thixotropic_couette(mix_a(kinetics), times, {}, options);
+}
+
+void write_rows(std::ofstream& out, Kinetics kinetics, const char* name, const CouetteDecay& finest) {
+  const auto row = [&](int intervals, double tolerance) {
+    const CouetteDecay d = solve(kinetics, intervals, tolerance);
+    out << "| " << name << " | " << intervals << " | " << std::setprecision(1) << std::scientific << tolerance
+        << " |";
+    for (std::size_t i = 0; i < times.size(); ++i) out << ' ' << d.torque[i] / finest.torque[i] - 1.0 << " |";
+    const CouetteFlow flow = mix_a(kinetics);
+    double power = 0.0;
+    for (std::size_t i = 0; i < times.size(); ++i)
+      power = std::max(power, std::abs(dissipated_power(d.profile[i], d.radius, flow.bingham) /
+                                           (d.torque[i] * flow.omega) -
+                                       1.0));
+    out << ' ' << power << " | " << d.steps << " |\n" << std::defaultfloat;
+  };
+  for (const int intervals : {50, 100, 200, 400, 800, 1600}) row(intervals, 1e-8);
+  for (const double tolerance : {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8}) row(800, tolerance);
+}
+
+void write_decay(const std::string& directory) {
+  std::ofstream out(directory + "/couette_decay.csv");
+  out << "time_s,torque_gated_N_m,torque_roussel_N_m,sheared_radius_gated_mm,sheared_radius_roussel_mm\n";
+  std::vector<double> t;
+  for (int i = 0; i <= 200; ++i) t.push_back(0.1 * i);
+  const CouetteDecay gated = thixotropic_couette(mix_a(Kinetics::gated), t);
+  const CouetteDecay roussel = thixotropic_couette(mix_a(Kinetics::roussel), t);
+  for (std::size_t i = 0; i < t.size(); ++i)
+    out << t[i] << ',' << gated.torque[i] << ',' << roussel.torque[i] << ',' << 1e3 * gated.sheared_radius[i]
+        << ',' << 1e3 * roussel.sheared_radius[i] << '\n';
+  out.close();
+  std::ofstream script(directory + "/couette_decay.gp");
+  script
+      << "set terminal svg size 1000,420 font 'sans,13' background 'white'\nset output 'couette_decay.svg'\n"
+         "set datafile separator ','\nset grid lc '#dddddd'\nset xlabel 'time in s'\nset multiplot layout "
+         "1,2\n"
+         "set ylabel 'torque in N m'\nset yrange [0:2.5]\n"
+         "$stated << EOD\n0,2.36\n5,1.63\n10,1.38\n20,1.24\nEOD\n"
+         "plot 'couette_decay.csv' using 1:2 skip 1 with lines lw 2 lc '#0072b2' title 'gated', "
+         "'' using 1:3 skip 1 with lines lw 2 dt 2 lc '#d55e00' title 'roussel', "
+         "$stated using 1:2 with points pt 7 lc 'black' title 'published, gated', "
+         "0.801 with lines dt 3 lc 'black' title 'dynamic Reiner-Riwlin torque'\n"
+         "set ylabel 'sheared as far as, in mm'\nset yrange [63.5:95]\n"
+         "plot 'couette_decay.csv' using 1:4 skip 1 with lines lw 2 lc '#0072b2' title 'gated', "
+         "'' using 1:5 skip 1 with lines lw 2 dt 2 lc '#d55e00' title 'roussel'\nunset multiplot\n";
+  script.close();
+  draw(directory, "couette_decay.gp");
+}
+
+void run(const std::string& directory) {
+  std::ofstream out(directory + "/couette_convergence.md");
+  out << "# Thixotropic Couette flow: convergence in r and t\n\n"
+      << made_by("study_couette") << "\n\n"
+      << "Mix A after 240 s of rest, 0.25 rev/s, alpha = 0.0358. The torque at four times, relative to that "
+         "of 3200 "
+         "intervals at a tolerance\nof 1e-9; the largest relative difference between T Omega and the "
+         "dissipated power; "
+         "IDA's steps. The chart is couette_decay.svg.\n\n"
+      << "| kinetics | intervals | tolerance | T(0) | T(5 s) | T(10 s) | T(20 s) | power | steps |\n"
+         "|---|---|---|---|---|---|---|---|---|\n";
+  for (const auto& [kinetics, name] : {std::pair{Kinetics::gated, "gated"}, {Kinetics::roussel, "roussel"}}) {
+    const CouetteDecay finest = solve(kinetics, 3200, 1e-9);
+    write_rows(out, kinetics, name, finest);
+    out << "| " << name << " | 3200 | 1e-9 |" << std::setprecision(7);
+    for (const double torque : finest.torque) out << ' ' << torque << " N m |";
+    out << " | " << finest.steps << " |\n";
+  }
+  write_decay(directory);
+}
+
+}  // namespace
+}  // namespace tremie::study
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::cerr << "usage: couette_convergence DIR\n";
+    return 2;
+  }
+  tremie::study::run(argv[1]);
+}
