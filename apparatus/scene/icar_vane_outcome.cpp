@@ -35,6 +35,7 @@ ResultValue reiner_riwlin_of(const std::optional<icar_vane::ReinerRiwlin>& r) {
 
 std::vector<Result> results_of(const icar_vane::Scene& scene, const icar_vane::Results& r) {
   const auto window = r.alpha_apparent ? std::optional(r.alpha_window) : std::nullopt;
+  const auto nominal = scene.speeds.empty() ? std::optional(r.shear_rate_nominal) : std::nullopt;
   return {{"torque_peak_N_m", number(r.torque_peak)},
           {"torque_end_N_m", number(r.torque_end)},
           {"torque_wall_end_N_m", number(r.torque_wall_end)},
@@ -43,7 +44,7 @@ std::vector<Result> results_of(const icar_vane::Scene& scene, const icar_vane::R
           {"flocculation_apparent_start", number(r.flocculation_apparent_start)},
           {"alpha_apparent", number(r.alpha_apparent)},
           {"alpha_window_s", number(window)},
-          {"shear_rate_nominal_per_s", number(r.shear_rate_nominal)},
+          {"shear_rate_nominal_per_s", number(nominal)},
           {"static_yield_stress_apparent_Pa", number(r.static_yield_stress_apparent)},
           {"dynamic_yield_stress_apparent_Pa", number(r.dynamic_yield_stress_apparent)},
           {"torque_couette_reference_N_m", number(r.torque_couette_reference)},

@@ -170,9 +170,12 @@ void check_cells(const Values& values, const icar_vane::Scene& scene) {
                             points, most_points));
 }
 
-/// rad/s as rev/s, in the digits that a person would have written: "0.1 rev/s" stays 0.1.
+/// rad/s as rev/s, in the digits that a person would have written where those mean the same: "0.1 rev/s"
+/// stays 0.1.
 double revolutions(double omega) {
-  return std::strtod(fmt::format("{:.15g}", omega / two_pi).c_str(), nullptr);
+  const double exact = omega / two_pi;
+  const double short_one = std::strtod(fmt::format("{:.15g}", exact).c_str(), nullptr);
+  return short_one * two_pi == omega ? short_one : exact;
 }
 
 void read_schedule(const Values& values, icar_vane::Scene& scene) {
