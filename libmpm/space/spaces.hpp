@@ -22,7 +22,7 @@ inline constexpr double inv_sqrt3 = 0.57735026918962576451;
 
 /// Coordinates (r, z) with z up; volumes are those of the whole ring, 2 pi r dr dz. q = (rr - zz, (rr + zz - 2 tt)/sqrt 3, 2 rz).
 struct Axisymmetric {
-  static constexpr int dim = 2, n_strain = 3;
+  static constexpr int dim = 2, n_strain = 3, up = 1;
   static constexpr bool advects = true;  ///< points move with the flow through the grid
   static double measure(const Vec<2>& x) { return 2.0 * std::numbers::pi * x[0]; }
   static double hoop(double N, const Vec<2>& x) { return N / x[0]; }
@@ -38,7 +38,7 @@ struct Axisymmetric {
 
 /// Coordinates (x, y) with y up; volumes per metre of width. q = (xx - yy, (xx + yy)/sqrt 3, 2 xy).
 struct PlaneStrain {
-  static constexpr int dim = 2, n_strain = 3;
+  static constexpr int dim = 2, n_strain = 3, up = 1;
   static constexpr bool advects = true;
   static double measure(const Vec<2>&) { return 1.0; }
   static Mat<3, 2> strain_rows(double, const Vec<2>& g, const Vec<2>&) {
@@ -61,7 +61,7 @@ struct Couette {
 
 /// Coordinates (x, y, z) with z up. q = (xx - yy, (xx + yy - 2 zz)/sqrt 3, 2 xy, 2 yz, 2 xz).
 struct ThreeD {
-  static constexpr int dim = 3, n_strain = 5;
+  static constexpr int dim = 3, n_strain = 5, up = 2;
   static constexpr bool advects = true;
   static double measure(const Vec<3>&) { return 1.0; }
   static Mat<5, 3> strain_rows(double, const Vec<3>& g, const Vec<3>&) {
