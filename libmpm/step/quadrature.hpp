@@ -2,10 +2,11 @@
 
 // Where the stresses of an implicit step are integrated.
 //
-// A yield stress fluid has no memory of strain: its deviatoric stress follows from the velocity gradient of the moment
-// and from lambda. So the stresses are integrated at 2^D Gauss places a cell instead of at the points, each weighted
-// with the volume of the points in its part of the cell. The cost of a solve then does not depend on the number of
-// points, and more points a cell make the weights smoother without making the solver slower.
+// A yield stress fluid has no memory of strain: its deviatoric stress follows from the velocity gradient of
+// the moment and from lambda. So the stresses are integrated at 2^D Gauss places a cell instead of at the
+// points, each weighted with the volume of the points in its part of the cell, or with the part's own where
+// the cell lies inside the body. The cost of a solve then does not depend on the number of points, and more
+// points a cell make the weights smoother without making the solver slower.
 
 #include <array>
 #include <vector>
@@ -22,19 +23,20 @@ struct Quadrature {
   static constexpr int n_places = power(2, D), n_local = power(3, D);
   using StrainRows = std::array<Mat<n_strain, D>, n_local>;
 
-  std::vector<std::array<StrainRows, n_places>> B;     ///< strain rows, [1/m]
-  std::vector<std::array<Vec<D>, n_local>> b;          ///< rows of the cell's mean divergence [1/m]
-  std::vector<std::array<double, n_places>> V;         ///< concrete volume of each place [m^3]
-  std::vector<std::array<double, n_places>> tau_y;     ///< yield stress there [Pa]
-  std::vector<double> V_cell;                          ///< sum of V [m^3]
-  std::vector<double> p;                               ///< pressure at the start of the step [Pa]
+  std::vector<std::array<StrainRows, n_places>> B;  ///< strain rows, [1/m]
+  std::vector<std::array<Vec<D>, n_local>> b;       ///< rows of the cell's mean divergence [1/m]
+  std::vector<std::array<double, n_places>> V;      ///< concrete volume of each place [m^3]
+  std::vector<std::array<double, n_places>> tau_y;  ///< yield stress there [Pa]
+  std::vector<double> V_cell;                       ///< sum of V [m^3]
+  std::vector<double> p;                            ///< pressure at the start of the step [Pa]
 
   void resize(std::size_t n) {
     B.resize(n), b.resize(n), V.resize(n), tau_y.resize(n), V_cell.resize(n), p.resize(n);
   }
 };
 
-/// Local coordinates of Gauss place k, and the bit pattern of its part: bit d set means the upper half in direction d.
+/// Local coordinates of Gauss place k, and the bit pattern of its part: bit d set means the upper half in
+/// direction d.
 template <int D>
 Vec<D> gauss_place(int k) {
   constexpr double offset = 0.28867513459481288;  // 1 / (2 sqrt 3)
@@ -74,10 +76,22 @@ std::array<double, power(2, Space::dim)> part_volumes(const ActiveGrid<Space::di
   return volume;
 }
 
+/// Volumes of the parts of a full cell, as the Gauss rule has them.
+template <class Space>
+std::array<double, power(2, Space::dim)> full_volumes(
+    const std::array<Axis, Space::dim>& axes, const std::array<Vec<Space::dim>, power(2, Space::dim)>& x) {
+  double part = 1.0;
+  for (const Axis& axis : axes) part *= 0.5 * axis.h;
+  std::array<double, power(2, Space::dim)> volume;
+  for (std::size_t k = 0; k < volume.size(); ++k) volume[k] = part * Space::measure(x[k]);
+  return volume;
+}
+
 /// Strain rows at every place and the rows of the cell's mean divergence.
 template <class Space>
 void lay_out_rows(const std::array<Stencil<Space::dim>, power(2, Space::dim)>& st,
-                  const std::array<Vec<Space::dim>, power(2, Space::dim)>& x, int c, Quadrature<Space>& quadrature) {
+                  const std::array<Vec<Space::dim>, power(2, Space::dim)>& x, int c,
+                  Quadrature<Space>& quadrature) {
   constexpr int n = power(2, Space::dim), n_local = power(3, Space::dim);
   double V_cell = 0.0;
   for (int k = 0; k < n; ++k) V_cell += quadrature.V[c][k];
@@ -123,10 +137,11 @@ std::array<double, power(2, Space::dim)> mean_structure(const ActiveGrid<Space::
 
 }  // namespace detail
 
-/// Lays out the quadrature of a step: places, volumes, yield stresses tau_y = (1 + lambda) tau_0 and pressures.
+/// Lays out the quadrature of a step: places, volumes, yield stresses tau_y = (1 + lambda) tau_0 and
+/// pressures.
 template <class Space>
-void lay_out_quadrature(const ActiveGrid<Space::dim>& grid, const Points<Space::dim>& points, double tau_0, double K,
-                        Quadrature<Space>& quadrature) {
+void lay_out_quadrature(const ActiveGrid<Space::dim>& grid, const Points<Space::dim>& points, double tau_0,
+                        double K, Quadrature<Space>& quadrature) {
   constexpr int D = Space::dim, n = power(2, D);
   quadrature.resize(grid.cell_index.size());
 #pragma omp parallel for schedule(static)
@@ -138,11 +153,17 @@ void lay_out_quadrature(const ActiveGrid<Space::dim>& grid, const Points<Space::
       x[k] = cell_place<D>(grid.axes, cell, gauss_place<D>(k));
       st[k] = stencil<D>(grid.axes, cell, gauss_place<D>(k));
     }
-    quadrature.V[c] = detail::part_volumes<Space>(grid, points, c);
-    // A full part must weigh what the Gauss rule gives its place, or a uniform pressure would push: in a ring the place
-    // does not lie at the part's middle radius.
-    for (int k = 0; k < n; ++k)
-      quadrature.V[c][k] *= Space::measure(x[k]) / Space::measure(cell_place<D>(grid.axes, cell, detail::part_middle<D>(k)));
+    if (is_inside<D>(grid, cell)) {
+      // Counting points there would make the pressure push whenever one crosses from part to part.
+      quadrature.V[c] = detail::full_volumes<Space>(grid.axes, x);
+    } else {
+      quadrature.V[c] = detail::part_volumes<Space>(grid, points, c);
+      // A full part must weigh what the Gauss rule gives its place, or a uniform pressure would push: in a
+      // ring the place does not lie at the part's middle radius.
+      for (int k = 0; k < n; ++k)
+        quadrature.V[c][k] *=
+            Space::measure(x[k]) / Space::measure(cell_place<D>(grid.axes, cell, detail::part_middle<D>(k)));
+    }
     detail::lay_out_rows<Space>(st, x, c, quadrature);
     quadrature.p[c] = detail::mean_pressure(grid, points, K, c);
     quadrature.tau_y[c].fill(tau_0);
