@@ -122,12 +122,14 @@ std::int64_t points_lost(const std::array<Axis, D>& axes, const Points<D>& point
   return lost;
 }
 
-/// Place of a point for the frames: an axisymmetric section lies in the plane (r, 0, z), a plane one in (x, y, 0).
+/// Place of a point for the frames: an axisymmetric section lies in the plane (r, 0, z), a plane one in (x, y, 0),
+/// circling concrete on the line (r, 0, 0).
 template <class Space>
 std::array<double, 3> in_space(const Vec<Space::dim>& x) {
   if constexpr (Space::dim == 3) return {x[0], x[1], x[2]};
-  if constexpr (std::is_same_v<Space, Axisymmetric>) return {x[0], 0.0, x[1]};
-  return {x[0], x[1], 0.0};
+  else if constexpr (Space::dim == 1) return {x[0], 0.0, 0.0};
+  else if constexpr (std::is_same_v<Space, Axisymmetric>) return {x[0], 0.0, x[1]};
+  else return {x[0], x[1], 0.0};
 }
 
 /// Shear rates where the points are now [1/s], from their own velocities: the body's grid is that of the last step's
@@ -148,6 +150,7 @@ std::vector<double> shear_rates_now(const Body<Space>& body) {
   return gamma_dot;
 }
 
+/// The body's points as they are now. The velocity of circling concrete is (0, v_theta, 0).
 template <class Space>
 Frame frame_of(const Body<Space>& body) {
   const auto& points = body.points;
@@ -156,6 +159,7 @@ Frame frame_of(const Body<Space>& body) {
   for (std::size_t p = 0; p < points.size(); ++p) {
     frame.position.push_back(in_space<Space>(points.x[p]));
     frame.velocity.push_back(in_space<Space>(points.v[p]));
+    if constexpr (Space::dim == 1) frame.velocity.back() = {0.0, points.v[p][0], 0.0};
     frame.volume.push_back(points.volume(p));
     frame.pressure.push_back(pressure(points.ln_J[p], body.mix.K));
   }

@@ -25,10 +25,11 @@ std::vector<double> slopes(const std::vector<double>& x, const std::vector<doubl
 
 }  // namespace
 
-DecayModel::DecayModel(const FitInput& input, std::vector<double> times) : input_(input) {
-  constexpr int intervals = 120;
+DecayModel::DecayModel(const FitInput& input, const std::vector<double>& times, int intervals)
+    : input_(input), intervals_(intervals) {
+  constexpr int pieces = 120;
   const double end = times.back();
-  for (int i = 0; i <= intervals; ++i) nodes_.push_back(end * i * i / (intervals * intervals));
+  for (int i = 0; i <= pieces; ++i) nodes_.push_back(end * i * i / (pieces * pieces));
   for (const double t : times) {
     const auto above = std::upper_bound(nodes_.begin(), nodes_.end() - 1, t);
     const auto i = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, above - nodes_.begin() - 1));
@@ -45,7 +46,7 @@ void DecayModel::torque(const DecayParameters& p, std::span<double> result) cons
   const double A_thix = input_.rest ? p[2] * p[0] / *input_.rest : 0.0;
   flow.thixotropy = {A_thix, p[3], input_.kinetics, input_.gamma_c, p[2]};
   CouetteOptions options;
-  options.intervals = 100;
+  options.intervals = intervals_;
   options.relative_tolerance = 3e-6;
   options.absolute_tolerance = 3e-7;
   options.whole_gap = false;

@@ -18,7 +18,8 @@ using DecayParameters = std::array<double, 4>;
 /// solve serves a record of any length.
 class DecayModel {
  public:
-  DecayModel(const FitInput& input, std::vector<double> times);
+  /// `intervals` of the model in r (CouetteOptions).
+  DecayModel(const FitInput& input, const std::vector<double>& times, int intervals);
 
   /// Torque [N m] at the times of the record. Throws std::runtime_error where the integrator gives up.
   void torque(const DecayParameters& p, std::span<double> result) const;
@@ -30,6 +31,7 @@ class DecayModel {
   };
 
   FitInput input_;
+  int intervals_;
   std::vector<double> nodes_;
   std::vector<Place> places_;
 };

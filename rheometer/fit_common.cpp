@@ -95,6 +95,12 @@ void report(const Readings& readings, const LeastSquaresFit& fit, FitResult& res
   }
   result.scatter = fit.scatter;
   result.correlation = fit.correlation;
+  // An instrument's readings scatter by a few per cent; at this size the record is another material, unit or
+  // speed.
+  if (fit.scatter > 0.25)
+    result.reasons.push_back("the fitted curve misses the readings by " +
+                             std::to_string(std::lround(100.0 * fit.scatter)) +
+                             " % (root mean square): check units, speed and what was given as known");
 }
 
 }  // namespace fitting

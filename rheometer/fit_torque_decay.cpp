@@ -46,7 +46,7 @@ std::size_t rising_rows(const Readings& r) {
   const double low = *peak - std::max(6.0 * scatter_of(r.torque), 0.05 * *peak);
   const auto limit = static_cast<std::size_t>(peak - smooth.begin());
   std::size_t n = 0;
-  while (n < limit && r.torque[n] < low) ++n;
+  while (n < limit && smooth[n] < low) ++n;
   return n;
 }
 
@@ -208,6 +208,9 @@ LeastSquaresFit least_squares(const DecayModel& model, const Readings& r, const 
 // --- the report
 // ---------------------------------------------------------------------------------------------------
 
+/// Error of a parameter by the model's grid and tolerance, relative: no interval is narrower than this.
+constexpr double model_error = 5e-4;
+
 /// Estimates of the parameters and of what follows from them, by the delta method.
 struct Teller {
   const Layout& layout;
@@ -228,7 +231,8 @@ struct Teller {
 
   std::optional<Estimate> operator()(double value, const DecayParameters& gradient, double scale) const {
     const auto v = variance(gradient);
-    return v ? tell(value, *v, fit.degrees_of_freedom, scale) : std::nullopt;
+    const double own = model_error * value;
+    return v ? tell(value, *v + own * own, fit.degrees_of_freedom, scale) : std::nullopt;
   }
 };
 
@@ -315,7 +319,8 @@ FitResult fit_torque_decay(const TorqueRecord& record, const FitInput& in) {
   if (!(r.x.back() > 0.0)) throw std::invalid_argument("all rows have the same time");
 
   Layout layout = first_guess(r, in);
-  const DecayModel model(in, r.x);
+  // so many rows tell more than the usual grid's error of 1e-4 of the torque
+  const DecayModel model(in, r.x, record.torque.size() > 20000 ? 200 : 100);
   search_alpha(model, r, in, layout);
   const LeastSquaresFit fit = least_squares(model, r, layout);
   const Teller told{layout, fit, layout.with(fit.parameters)};

@@ -35,7 +35,10 @@ struct Evaluation : ceres::EvaluationCallback {
     fitted.resize(problem.observed.size());
     jacobian.resize(evaluate_jacobians ? entries : 0);
     at = parameters;
-    valid = problem.model(parameters, fitted, jacobian);
+    const auto finite = [](const std::vector<double>& v) {
+      return std::all_of(v.begin(), v.end(), [](double x) { return std::isfinite(x); });
+    };
+    valid = problem.model(parameters, fitted, jacobian) && finite(fitted) && finite(jacobian);
   }
 };
 

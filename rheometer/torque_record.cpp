@@ -42,6 +42,14 @@ void require_not_negative(const std::vector<double>& column, const NumberTable& 
                                     std::string(quantity) + " is negative; give its magnitude, 0 or more"));
 }
 
+/// A wrong unit in the header shows as a size that no rheometer has.
+void require_below(const std::vector<double>& column, const NumberTable& table, std::size_t position,
+                   double most, const std::string& what, const std::string& name) {
+  for (std::size_t i = 0; i < column.size(); ++i)
+    if (column[i] > most)
+      throw RecordError(at_position(name, table.line[i], position, what + "; is the header's unit right?"));
+}
+
 }  // namespace
 
 TorqueRecord parse_torque_record(std::string_view text, const std::string& name) {
@@ -61,6 +69,8 @@ TorqueRecord parse_torque_record(std::string_view text, const std::string& name)
   record.kind = has_time ? RecordKind::torque_decay : RecordKind::flow_curve;
   require_not_negative(table.column[2], table, table.position[2], "the torque", name);
   if (has_speed) require_not_negative(table.column[1], table, table.position[1], "the speed", name);
+  require_below(table.column[2], table, table.position[2], 1e4, "the torque is above 10000 N.m", name);
+  require_below(table.column[1], table, table.position[1], 1e3, "the speed is above 1000 rad/s", name);
   for (std::size_t i = 1; has_time && i < table.line.size(); ++i)
     if (table.column[0][i] < table.column[0][i - 1])
       throw RecordError(at_position(name, table.line[i], table.position[0],

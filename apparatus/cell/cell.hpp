@@ -24,6 +24,9 @@ struct Scene {
   std::string resolved;  ///< the same scene as TOML, a CSV history as tables; reads back to the same scene
 };
 
+/// True where the file's `apparatus` is "cell". Throws scene::InputError where it is no TOML.
+bool is_cell(const std::filesystem::path& path);
+
 /// The keys of the scene.
 scene::ApparatusKeys keys();
 

@@ -55,12 +55,15 @@ scene::Outcome outcome(const Scene& scene, const CellResult& result) {
   o.cost.steps = result.steps;
   o.cost.points = 1;
   o.cost.simulated = last.time;
-  o.charts = {{"stress.svg",
-               scene.name + ": shear stress",
-               "time in s",
-               "shear stress in Pa",
-               {"shear_stress_Pa"},
-               {}}};
+  const bool any_stress = std::any_of(result.samples.begin(), result.samples.end(),
+                                      [](const CellSample& s) { return s.shear_stress.has_value(); });
+  if (any_stress)
+    o.charts = {{"stress.svg",
+                 scene.name + ": shear stress",
+                 "time in s",
+                 "shear stress in Pa",
+                 {"shear_stress_Pa"},
+                 {}}};
   if (scene.cell.mix.thixotropy)
     o.charts.push_back(
         {"flocculation.svg", scene.name + ": flocculation", "time in s", "lambda", {"flocculation"}, {}});

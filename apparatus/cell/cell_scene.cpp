@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "apparatus/cell/cell.hpp"
+#include "apparatus/scene/document.hpp"
 #include "apparatus/scene/input_error.hpp"
 #include "apparatus/scene/load.hpp"
 #include "apparatus/scene/resolved.hpp"
@@ -29,6 +30,7 @@ Section top_section() {
       .keys = {
           {.name = "history",
            .kind = Kind::text,
+           .example = "history.csv",
            .help = "a CSV of time_s,shear_rate_per_s beside the scene, in place of the tables [[history]]"}}};
 }
 
@@ -60,25 +62,26 @@ Section test_section() {
 
 Section model_section() {
   Section section{.name = "model", .help = "How it is computed."};
-  section.keys = {{.name = "yield", .kind = Kind::choice, .words = scene::names(yield_words), .fallback = "exact"},
-                  {.name = "regularisation",
-                   .dimension = Dimension::time,
-                   .range = scene::positive,
-                   .fallback = "5 s",
-                   .only_with = scene::Condition{"yield", {"papanastasiou"}},
-                   .help = "m"},
-                  {.name = "critical_shear_rate",
-                   .dimension = Dimension::rate,
-                   .range = scene::positive,
-                   .fallback = "0.01 1/s",
-                   .only_with = scene::Condition{"yield", {"bi_viscous"}},
-                   .help = "gamma_c of the yield law"},
-                  {.name = "time_step",
-                   .dimension = Dimension::time,
-                   .range = scene::positive,
-                   .words = {"auto"},
-                   .fallback = "auto",
-                   .help = "of the flocculation's update; auto: about 2000 over the history"}};
+  section.keys = {
+      {.name = "yield", .kind = Kind::choice, .words = scene::names(yield_words), .fallback = "exact"},
+      {.name = "regularisation",
+       .dimension = Dimension::time,
+       .range = scene::positive,
+       .fallback = "5 s",
+       .only_with = scene::Condition{"yield", {"papanastasiou"}},
+       .help = "m"},
+      {.name = "critical_shear_rate",
+       .dimension = Dimension::rate,
+       .range = scene::positive,
+       .fallback = "0.01 1/s",
+       .only_with = scene::Condition{"yield", {"bi_viscous"}},
+       .help = "gamma_c of the yield law"},
+      {.name = "time_step",
+       .dimension = Dimension::time,
+       .range = scene::positive,
+       .words = {"auto"},
+       .fallback = "auto",
+       .help = "of the flocculation's update; auto: about 2000 over the history"}};
   return section;
 }
 
@@ -152,6 +155,13 @@ scene::ApparatusKeys keys() {
   keys.schema.push_back(history_section());
   keys.schema.push_back(model_section());
   return keys;
+}
+
+bool is_cell(const std::filesystem::path& path) {
+  const scene::Node document = scene::parse_file(path);
+  const scene::Node* node = scene::find(document, "apparatus");
+  const auto* name = node ? std::get_if<std::string>(&node->value) : nullptr;
+  return name && *name == "cell";
 }
 
 Scene read(const std::filesystem::path& path, const std::vector<std::string>& overrides) {

@@ -42,6 +42,11 @@ std::vector<std::string> write(const cell::Scene& scene, scene::Outcome outcome,
                                const std::filesystem::path& folder) {
   report::ResultFiles files(folder, scene.resolved);
   std::vector<std::string> notes = files.finish(outcome);
+  if (outcome.charts.empty() ||
+      outcome.charts.front().file != "stress.svg") {  // nothing flowed: no flow curve
+    io::write_text(folder / "summary.json", summary_of(outcome).dump(2) + "\n");
+    return notes;
+  }
   std::string title = scene.name;
   std::erase(title, '\'');
   const std::string note = draw(folder, flow_curve_script(title));

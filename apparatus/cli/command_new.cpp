@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "apparatus/cell/cell.hpp"
 #include "apparatus/cli/commands.hpp"
 #include "apparatus/scene/resolved.hpp"
 #include "apparatus/scene/scene.hpp"
@@ -14,7 +15,9 @@ namespace {
 
 std::string template_of(const std::string& name) {
   std::vector<std::string> known;
-  for (const auto& apparatus : scene::all_apparatus()) {
+  std::vector<scene::ApparatusKeys> all = scene::all_apparatus();
+  all.push_back(cell::keys());
+  for (const auto& apparatus : all) {
     if (apparatus.name == name) return scene::write_template(apparatus);
     known.push_back(apparatus.name);
   }

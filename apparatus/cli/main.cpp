@@ -5,6 +5,7 @@
 #include <exception>
 
 #include "apparatus/cli/command_cell.hpp"
+#include "apparatus/cli/command_fit.hpp"
 #include "apparatus/cli/commands.hpp"
 #include "apparatus/scene/input_error.hpp"
 #include "tremie_version.hpp"
@@ -20,6 +21,7 @@ int run(int argc, char** argv) {
   tremie::cli::add_command_check(app, exit_code);
   tremie::cli::add_command_new(app, exit_code);
   tremie::cli::add_command_cell(app, exit_code);
+  tremie::cli::add_command_fit(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -50,6 +50,16 @@ std::string bands(const scene::Chart& chart) {
   return text;
 }
 
+/// Whether some curve of it has two finite points: gnuplot fails on a chart without.
+bool can_be_drawn(const scene::Chart& chart, const std::vector<scene::Column>& columns) {
+  const auto has_two = [&](const std::string& name) {
+    const auto* column = find_column(columns, name);
+    return column && std::count_if(column->values.begin(), column->values.end(),
+                                   [](double v) { return std::isfinite(v); }) >= 2;
+  };
+  return std::any_of(chart.columns.begin(), chart.columns.end(), has_two);
+}
+
 }  // namespace
 
 std::string chart_script(const scene::Chart& chart, const std::vector<scene::Column>& series) {
@@ -65,8 +75,9 @@ std::string chart_script(const scene::Chart& chart, const std::vector<scene::Col
     const auto* column = find_column(series, chart.columns[i]);
     if (!column || series.empty()) continue;
     text += data_block(series.front().values, column->values, i);
+    const std::string label = i < chart.labels.size() ? chart.labels[i] : "computed";
     const std::string title =
-        chart.columns.size() + chart.references.size() > 1 ? "title " + quoted("computed") : "notitle";
+        chart.columns.size() + chart.references.size() > 1 ? "title " + quoted(label) : "notitle";
     plots += fmt::format("{}$d{} using 1:2 with lines linewidth 2 linecolor rgb '{}' {}",
                          plots.empty() ? "" : ", ", i, colours[i % colours.size()], title);
   }
@@ -81,11 +92,13 @@ std::string chart_script(const scene::Chart& chart, const std::vector<scene::Col
 }
 
 std::string draw_charts(const scene::Outcome& outcome, const std::filesystem::path& folder) {
-  if (outcome.charts.empty() || outcome.series.empty() || outcome.series.front().values.size() < 2) return {};
+  std::string script;
+  for (const auto& chart : outcome.charts)
+    if (const auto& columns = columns_of(chart, outcome); can_be_drawn(chart, columns))
+      script += chart_script(chart, columns) + "reset\n";
+  if (script.empty()) return {};
   const auto gnuplot = find_program("gnuplot");
   if (gnuplot.empty()) return "gnuplot is not installed: no charts";
-  std::string script;
-  for (const auto& chart : outcome.charts) script += chart_script(chart, outcome.series) + "reset\n";
   const auto file = folder / ".charts.gp";
   io::write_text(file, script);
   const auto code = run_program(gnuplot, {file.filename().string()}, folder);

@@ -57,6 +57,7 @@ void write_frame_vtp(const std::filesystem::path& file, const Frame& frame) {
 std::string unit_of(const std::string& column) {
   for (const auto& [ending, unit] : {std::pair{"_mm", "mm"},
                                      {"_m_per_s", "m/s"},
+                                     {"_rev_per_s", "rev/s"},
                                      {"_per_s", "1/s"},
                                      {"_s", "s"},
                                      {"_J", "J"},
@@ -104,6 +105,12 @@ void ResultFiles::write_results_h5(const scene::Outcome& outcome) {
   h5_.group("/series");
   for (const auto& column : outcome.series)
     h5_.array("/series/" + column.name, column.values, 1, unit_of(column.name));
+  for (const auto& table : outcome.tables) {
+    const std::string group = fmt::format("/{}", std::filesystem::path(table.file).stem().string());
+    h5_.group(group);
+    for (const auto& column : table.columns)
+      h5_.array(group + "/" + column.name, column.values, 1, unit_of(column.name));
+  }
   write_results(h5_, "/results", outcome.results);
   h5_.close();
 }
@@ -111,10 +118,12 @@ void ResultFiles::write_results_h5(const scene::Outcome& outcome) {
 std::vector<std::string> ResultFiles::finish(const scene::Outcome& outcome) {
   std::vector<std::string> notes;
   write_results_h5(outcome);
-  io::write_text(folder_ / "timeseries.csv", timeseries_csv(outcome.series));
+  io::write_text(folder_ / "timeseries.csv", columns_csv(outcome.series));
+  for (const auto& table : outcome.tables) io::write_text(folder_ / table.file, columns_csv(table.columns));
   if (!frames_.empty()) io::write_pvd(folder_ / "frames.pvd", frames_);
   notes.push_back(draw_charts(outcome, folder_));
-  if (!frames_.empty()) notes.push_back(draw_picture(outcome, folder_, frames_.back().second));
+  if (!frames_.empty() && outcome.pictured)
+    notes.push_back(draw_picture(outcome, folder_, frames_.back().second));
   io::write_text(folder_ / "report.html", report_html(outcome, resolved_, folder_));
   io::write_text(folder_ / "summary.json", summary_json(outcome));
   std::erase(notes, "");

@@ -1,7 +1,7 @@
 #pragma once
 
-// Everything that a run leaves in its folder (scene.toml, summary.json, timeseries.csv, results.h5, frames,
-// charts, report.html). Frames are written as they come, the rest at the end.
+// Everything that a run leaves in its folder (scene.toml, summary.json, timeseries.csv, other tables,
+// results.h5, frames, charts, report.html). Frames are written as they come, the rest at the end.
 
 #include <filesystem>
 #include <string>

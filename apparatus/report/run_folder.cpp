@@ -13,7 +13,9 @@ namespace fs = std::filesystem;
 
 bool is_earlier_result(const fs::path& folder) {
   std::error_code error;
-  return fs::exists(folder / "summary.json", error) && fs::exists(folder / "scene.toml", error);
+  // a run leaves its scene, a fit its readings
+  return fs::exists(folder / "summary.json", error) &&
+         (fs::exists(folder / "scene.toml", error) || fs::exists(folder / "fit.csv", error));
 }
 
 [[noreturn]] void refuse(const fs::path& folder, const std::string& why) {

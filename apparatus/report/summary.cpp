@@ -77,7 +77,7 @@ std::string summary_json(const scene::Outcome& outcome) {
   return json.dump(2) + "\n";
 }
 
-std::string timeseries_csv(const std::vector<scene::Column>& series) {
+std::string columns_csv(const std::vector<scene::Column>& series) {
   std::string text;
   for (const auto& column : series) text += (text.empty() ? "" : ",") + column.name;
   text += '\n';

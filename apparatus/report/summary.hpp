@@ -9,8 +9,8 @@ namespace tremie::report {
 /// summary.json.
 std::string summary_json(const scene::Outcome& outcome);
 
-/// timeseries.csv: a column a quantity, empty fields where there is no value.
-std::string timeseries_csv(const std::vector<scene::Column>& series);
+/// timeseries.csv and its like: a column a quantity, empty fields where there is no value.
+std::string columns_csv(const std::vector<scene::Column>& series);
 
 /// "completed", "interrupted" or "failed".
 const char* status_name(Status status);

@@ -115,6 +115,7 @@ Section top_section(const ApparatusKeys& apparatus) {
                       .help = "version of the scene's keys"});
   top.keys.push_back(
       {.name = "apparatus", .kind = Kind::choice, .words = {apparatus.name}, .required = true});
+  if (presets.empty()) return top;
   top.keys.push_back(
       {.name = "preset", .kind = Kind::choice, .words = presets, .help = "values under the scene's own"});
   return top;

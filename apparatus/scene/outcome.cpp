@@ -16,4 +16,12 @@ const ResultValue* find_result(const Outcome& outcome, const std::string& name) 
   return found == outcome.results.end() ? nullptr : &found->value;
 }
 
+const std::vector<Column>& columns_of(const Chart& chart, const Outcome& outcome) {
+  static const std::vector<Column> none;
+  if (chart.table.empty()) return outcome.series;
+  const auto found = std::find_if(outcome.tables.begin(), outcome.tables.end(),
+                                  [&](const ResultTable& t) { return t.file == chart.table; });
+  return found == outcome.tables.end() ? none : found->columns;
+}
+
 }  // namespace tremie::scene

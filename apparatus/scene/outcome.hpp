@@ -48,6 +48,14 @@ struct Chart {
   std::string title, x_label, y_label;
   std::vector<std::string> columns;  ///< their names
   std::vector<Reference> references;
+  std::vector<std::string> labels = {};  ///< of the columns, where there are several
+  std::string table = {};                ///< file of the table that the columns are in; empty: the series
+};
+
+/// Columns over something else than the series' time, in a file of its own and in results.h5.
+struct ResultTable {
+  std::string file;  ///< "profile.csv"
+  std::vector<Column> columns;
 };
 
 struct Outcome {
@@ -60,10 +68,15 @@ struct Outcome {
   std::vector<Chart> charts;
   std::vector<std::string> lines;  ///< the result for a person, a line each
   bool axisymmetric = false;       ///< points lie in the plane (r, 0, z) of a body of revolution
+  bool pictured = true;            ///< tremie-picture has a way to draw it
+  std::vector<ResultTable> tables = {};
 };
 
 /// The value of a result by its name; nullptr where there is none.
 const ResultValue* find_result(const Outcome& outcome, const std::string& name);
+
+/// The columns that a chart draws from; empty where the outcome has no such table.
+const std::vector<Column>& columns_of(const Chart& chart, const Outcome& outcome);
 
 /// What a caller may want to see while a run goes on. Every member may be empty.
 struct Progress {

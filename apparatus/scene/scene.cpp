@@ -6,6 +6,10 @@
 #include <ctime>
 #include <stdexcept>
 
+#include "apparatus/scene/icar_vane_outcome.hpp"
+#include "apparatus/scene/icar_vane_scene.hpp"
+#include "apparatus/scene/l_box_outcome.hpp"
+#include "apparatus/scene/l_box_scene.hpp"
 #include "apparatus/scene/resolved.hpp"
 #include "apparatus/scene/slump_flow_outcome.hpp"
 #include "apparatus/scene/slump_flow_scene.hpp"
@@ -13,12 +17,34 @@
 namespace tremie::scene {
 namespace {
 
+std::variant<slump_flow::Scene, l_box::Scene, icar_vane::Scene> test_of(const Loaded& loaded) {
+  if (loaded.apparatus == "l_box") return l_box_scene(loaded.values);
+  if (loaded.apparatus == "icar_vane") return icar_vane_scene(loaded.values);
+  return slump_flow_scene(loaded.values);
+}
+
+Outcome run_test(const slump_flow::Scene& test, const Scene& scene, const Observer& observer) {
+  return run_slump_flow(test, scene.measured, scene.output.frames, observer);
+}
+
+Outcome run_test(const l_box::Scene& test, const Scene& scene, const Observer& observer) {
+  return run_l_box(test, scene.output.frames, observer);
+}
+
+Outcome run_test(const icar_vane::Scene& test, const Scene& scene, const Observer& observer) {
+  return run_icar_vane(test, scene.output.frames, observer);
+}
+
+std::vector<std::string> uses_of(const slump_flow::Scene& test) { return slump_flow_uses(test); }
+std::vector<std::string> uses_of(const l_box::Scene& test) { return l_box_uses(test); }
+std::vector<std::string> uses_of(const icar_vane::Scene& test) { return icar_vane_uses(test); }
+
 Scene build(const Loaded& loaded) {
   Scene scene;
   scene.name = loaded.name;
   scene.path = loaded.path;
   scene.apparatus = loaded.apparatus;
-  scene.test = slump_flow_scene(loaded.values);
+  scene.test = test_of(loaded);
   scene.measured = read_measured(loaded.values);
   scene.output = read_output(loaded.values);
   scene.resolved = write_resolved(loaded.schema, loaded.values);
@@ -55,7 +81,7 @@ auto as_input_error(const std::string& path, Call call) {
 
 }  // namespace
 
-std::vector<ApparatusKeys> all_apparatus() { return {slump_flow_keys()}; }
+std::vector<ApparatusKeys> all_apparatus() { return {slump_flow_keys(), l_box_keys(), icar_vane_keys()}; }
 
 Scene read(const std::filesystem::path& path, const std::vector<std::string>& overrides) {
   return build(load({path, overrides}, all_apparatus()));
@@ -72,8 +98,7 @@ void set_threads(Scene& scene, int threads) {
 Outcome run(const Scene& scene, const Observer& observer) {
   const double wall = wall_seconds(), cpu = cpu_seconds();
   Outcome outcome = as_input_error(scene.path, [&] {
-    return run_slump_flow(std::get<slump_flow::Scene>(scene.test), scene.measured, scene.output.frames,
-                          observer);
+    return std::visit([&](const auto& test) { return run_test(test, scene, observer); }, scene.test);
   });
   outcome.cost.wall = wall_seconds() - wall;
   outcome.cost.cpu = cpu_seconds() - cpu;
@@ -85,13 +110,15 @@ Outcome run(const Scene& scene, const Observer& observer) {
 }
 
 Estimate estimate(const Scene& scene) {
-  const auto e = as_input_error(
-      scene.path, [&] { return slump_flow::estimate(std::get<slump_flow::Scene>(scene.test)); });
-  return {e.points, e.cells_active, e.bytes_per_point, e.steps};
+  const auto estimate_test = [](const auto& test) {
+    const auto e = estimate(test);  // the apparatus' own
+    return Estimate{e.points, e.cells_active, e.bytes_per_point, e.steps};
+  };
+  return as_input_error(scene.path, [&] { return std::visit(estimate_test, scene.test); });
 }
 
 std::vector<std::string> uses(const Scene& scene) {
-  return slump_flow_uses(std::get<slump_flow::Scene>(scene.test));
+  return std::visit([](const auto& test) { return uses_of(test); }, scene.test);
 }
 
 }  // namespace tremie::scene

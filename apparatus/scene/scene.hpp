@@ -11,6 +11,8 @@
 #include <variant>
 #include <vector>
 
+#include "apparatus/icar_vane/icar_vane.hpp"
+#include "apparatus/l_box/l_box.hpp"
 #include "apparatus/model.hpp"
 #include "apparatus/scene/input_error.hpp"
 #include "apparatus/scene/keys.hpp"
@@ -26,7 +28,7 @@ struct Scene {
   std::string name;       ///< the file's name without .toml
   std::string path;       ///< as the user wrote it
   std::string apparatus;  ///< "slump_flow"
-  std::variant<slump_flow::Scene> test;
+  std::variant<slump_flow::Scene, l_box::Scene, icar_vane::Scene> test;
   Measured measured;
   Output output;
   std::string resolved;  ///< the same scene as TOML, every value in SI; reads back to the same scene

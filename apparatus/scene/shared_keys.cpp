@@ -209,7 +209,7 @@ Floor read_floor(const Values& values) {
   return floor;
 }
 
-Section model_section(const std::vector<std::string>& spaces) {
+Section model_section(const std::vector<std::string>& spaces, const ModelDefaults& defaults) {
   return {.name = "model",
           .help = "How it is computed.",
           .keys = {
@@ -251,13 +251,14 @@ Section model_section(const std::vector<std::string>& spaces) {
                .dimension = Dimension::length,
                .range = positive,
                .shape = Shape::one_or_two,
-               .fallback = "[\"10 mm\", \"5 mm\"]",
-               .help = "[across, up], or one length"},
+               .fallback = defaults.cell,
+               .example = "5 mm",
+               .help = defaults.cell_help},
               {.name = "points_per_cell",
                .kind = Kind::integer,
                .range = between(1, 64),
                .shape = Shape::one_or_two,
-               .fallback = "[8, 2]",
+               .fallback = defaults.points_per_cell,
                .help = "[across, up], or one number for each direction"},
           }};
 }

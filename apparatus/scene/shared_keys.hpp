@@ -34,8 +34,15 @@ Section floor_section();
 void settle_floor(Values& values);
 Floor read_floor(const Values& values);
 
+/// The defaults of [model] that differ from apparatus to apparatus, as in TOML.
+struct ModelDefaults {
+  std::string cell = "[\"10 mm\", \"5 mm\"]";  ///< empty: settled by the apparatus
+  std::string points_per_cell = "[8, 2]";
+  std::string cell_help = "[across, up], or one length";
+};
+
 /// [model], with the spaces that an apparatus has; the first is its default.
-Section model_section(const std::vector<std::string>& spaces);
+Section model_section(const std::vector<std::string>& spaces, const ModelDefaults& defaults = {});
 Model read_model(const Values& values);
 
 /// [output].

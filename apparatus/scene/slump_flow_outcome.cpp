@@ -3,21 +3,19 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
+
+#include "apparatus/scene/outcome_parts.hpp"
 
 namespace tremie::scene {
 namespace {
 
-constexpr double mm = 1e3;  ///< millimetres in a metre
 // Accepted for tremie concrete by the sources of Wilkes, Kumar and Biscontin (EFFC/DFI).
 constexpr double tremie_range_low = 0.450, tremie_range_high = 0.650;
 
 bool in_tremie_range(double spread) { return spread >= tremie_range_low && spread <= tremie_range_high; }
 
 ResultValue class_of(double spread) {
-  const std::string name = std::isfinite(spread) ? slump_flow::spread_class(spread) : "";
-  if (name.empty()) return std::monostate{};
-  return name;
+  return word_or_null(std::isfinite(spread) ? slump_flow::spread_class(spread) : "");
 }
 
 std::vector<Result> results_of(const slump_flow::Results& r) {
@@ -34,13 +32,6 @@ std::vector<Result> results_of(const slump_flow::Results& r) {
           {"within_tremie_range", in_tremie_range(r.spread)}};
 }
 
-template <class Read>
-Column column(const char* name, const std::vector<slump_flow::Sample>& series, Read read) {
-  Column result{name, {}};
-  for (const auto& sample : series) result.values.push_back(read(sample));
-  return result;
-}
-
 std::vector<Column> columns_of(const std::vector<slump_flow::Sample>& s, bool thixotropic) {
   using Sample = slump_flow::Sample;
   std::vector<Column> columns{
@@ -51,9 +42,8 @@ std::vector<Column> columns_of(const std::vector<slump_flow::Sample>& s, bool th
       column("max_speed_m_per_s", s, [](const Sample& x) { return x.max_speed; }),
       column("shear_rate_mean_per_s", s, [](const Sample& x) { return x.shear_rate_mean; })};
   if (thixotropic) {
-    columns.push_back(column("flocculation_mean", s, [](const Sample& x) {
-      return x.flocculation_mean.value_or(std::numeric_limits<double>::quiet_NaN());
-    }));
+    columns.push_back(
+        column("flocculation_mean", s, [](const Sample& x) { return or_nan(x.flocculation_mean); }));
   }
   columns.push_back(column("volume_change", s, [](const Sample& x) { return x.volume_change; }));
   columns.push_back(column("kinetic_energy_J", s, [](const Sample& x) { return x.kinetic_energy; }));
@@ -94,10 +84,6 @@ std::vector<Chart> charts_of(const slump_flow::Scene& scene, const Measured& mea
   return charts;
 }
 
-std::string seconds_or(std::optional<double> value, const char* otherwise) {
-  return value ? fmt::format("{:.2f} s", *value) : otherwise;
-}
-
 std::vector<std::string> lines_for(const slump_flow::Scene& scene, const Measured& measured,
                                    const slump_flow::Results& r) {
   const std::string cls = std::isfinite(r.spread) ? slump_flow::spread_class(r.spread) : "";
@@ -110,9 +96,7 @@ std::vector<std::string> lines_for(const slump_flow::Scene& scene, const Measure
   if (r.mean_velocity) lines.push_back(fmt::format("mean velocity   {:.1f} mm/s", *r.mean_velocity * mm));
   lines.push_back(fmt::format("tremie concrete {} the accepted 450 to 650 mm",
                               in_tremie_range(r.spread) ? "within" : "outside of"));
-  if (r.flocculation_mean_start && r.flocculation_mean_end)
-    lines.push_back(fmt::format("flocculation    {:.3g} at the start, {:.3g} at the end",
-                                *r.flocculation_mean_start, *r.flocculation_mean_end));
+  add_flocculation_line(r.flocculation_mean_start, r.flocculation_mean_end, lines);
   for (const auto& reference : references_for(scene.rest, measured))
     lines.push_back(
         fmt::format("measured        {:.0f} mm, +/- {:.0f} mm", reference.value, reference.tolerance));
@@ -155,10 +139,7 @@ Outcome run_slump_flow(const slump_flow::Scene& scene, const Measured& measured,
 
 std::vector<std::string> slump_flow_uses(const slump_flow::Scene& scene) {
   const Model& model = scene.model;
-  std::vector<std::string> lines;
-  lines.push_back(scene.mix.thixotropy
-                      ? "flocculation: stored and updated at every point"
-                      : "flocculation: left out (no [mix.thixotropy]): not stored, not computed");
+  std::vector<std::string> lines{flocculation_use(scene.mix)};
   lines.push_back(scene.floor.contact == ContactKind::friction
                       ? "floor friction: Coulomb's, at every floor node"
                       : "floor friction: left out (floor.contact)");
@@ -167,10 +148,7 @@ std::vector<std::string> slump_flow_uses(const slump_flow::Scene& scene) {
   lines.push_back(model.space == SpaceKind::axisymmetric
                       ? "third dimension: left out (model.space = \"axisymmetric\")"
                       : "third dimension: computed");
-  lines.push_back(model.yield == YieldKind::exact ? "regularisation: left out (model.yield = \"exact\")"
-                                                  : "regularisation: of the yield law");
-  lines.push_back(model.transfer == TransferKind::flip ? "FLIP blend: in the transfer"
-                                                       : "FLIP blend: left out (model.transfer = \"apic\")");
+  add_model_uses(model, lines);
   return lines;
 }
 

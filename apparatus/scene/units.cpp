@@ -25,6 +25,8 @@ constexpr std::array density_units{Unit{"kg/m3"}, Unit{"kg/m³"}, Unit{"kg/m^3"}
 constexpr std::array rate_units{Unit{"1/s"}, Unit{"/s"}, Unit{"s^-1"}, Unit{"1/min", 1, 60}};
 constexpr std::array structuration_units{Unit{"Pa/s"}, Unit{"Pa/min", 1, 60}, Unit{"kPa/s", 1000}};
 constexpr std::array rotation_units{Unit{"rad/s"}, Unit{"rev/s", two_pi}, Unit{"rpm", two_pi, 60}};
+constexpr std::array angle_units{Unit{"rad"}, Unit{"deg", std::numbers::pi, 180},
+                                 Unit{"°", std::numbers::pi, 180}};
 constexpr std::array torque_units{Unit{"N.m"}, Unit{"N·m"}, Unit{"N m"}, Unit{"mN.m", 1, 1000},
                                   Unit{"mN·m", 1, 1000}};
 constexpr std::array acceleration_units{Unit{"m/s2"}, Unit{"m/s²"}, Unit{"m/s^2"}};
@@ -72,6 +74,8 @@ std::span<const Unit> units(Dimension dimension) {
       return structuration_units;
     case Dimension::rotation:
       return rotation_units;
+    case Dimension::angle:
+      return angle_units;
     case Dimension::torque:
       return torque_units;
     case Dimension::acceleration:

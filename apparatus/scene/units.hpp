@@ -18,6 +18,7 @@ enum class Dimension {
   rate,           ///< 1/s
   structuration,  ///< Pa/s
   rotation,       ///< rad/s
+  angle,          ///< rad
   torque,
   acceleration
 };

@@ -72,4 +72,12 @@ void Values::drop(std::string_view key) {
   if (found != entries.end()) entries.erase(found);
 }
 
+void Values::drop_beside(std::string_view key, std::string_view decider, const std::string& why) {
+  if (!has(key)) return;
+  if (given(key) && layer(key) >= layer(decider)) fail(key, why);
+  if (layer(key) > Layer::preset)
+    notes.push_back(fmt::format("{}: {} {}", describe(at(key).origin), key, why));
+  drop(key);
+}
+
 }  // namespace tremie::scene

@@ -55,6 +55,9 @@ class Values {
   /// For rules over several keys.
   void set_number(std::string_view key, double value, Layer layer, const std::string& note);
   void drop(std::string_view key);
+  /// Drops what has no meaning beside `decider`: quietly where it is a default, with a note where a later
+  /// layer decided; throws InputError where the decider's own layer gave it. `why` follows the key's name.
+  void drop_beside(std::string_view key, std::string_view decider, const std::string& why);
 
   std::map<std::string, Value, std::less<>> entries;
   std::map<std::string, Origin, std::less<>> sections;  ///< those present, with the place of their header

@@ -28,6 +28,7 @@ struct StepSettings {
   double cfl = 0.6;                ///< largest move in a step, in cells
   double growth = 1.3;             ///< largest ratio of successive steps
   double friction_coefficient = 0.0;
+  bool keep_forces = false;    ///< fill Body::wall_force and Body::dissipation
   double boundary_stiffness = 1000.0;  ///< of walls inside the grid, in m/dt
   double side_wall_distance = 0.0;     ///< of a width-averaged section [m]; 0: plane strain, no side walls
   double wall_gap = 0.0;       ///< how near a point may come to a rigid wall [m]
@@ -61,6 +62,8 @@ struct Body {
   Duals<Space> duals;
   std::vector<FrictionNode<D>> friction;
   std::vector<BoundPoint<D>> bound;  ///< walls inside the grid that touched concrete in the last step
+  double dissipation = 0.0;          ///< power of the stresses in the last step [W], if asked for
+  std::vector<Vec<D>> wall_force;    ///< of the flat walls on each node in the last step [N], if asked for
   BlockSystem<D> system;
 };
 
@@ -86,7 +89,7 @@ template <class Space>
 double choose_dt(const Body<Space>& body, const StepSettings& settings) {
   if (settings.fixed_dt) return *settings.fixed_dt;
   double dt = body.dt > 0.0 ? std::min(settings.dt_max, settings.growth * body.dt) : settings.dt_max;
-  for (int d = 0; d < Space::dim; ++d) {
+  for (int d = 0; d < Space::dim && Space::advects; ++d) {
     double v = 0.0;
     for (const auto& vp : body.points.v) v = std::max(v, std::abs(vp[d]));
     const double reach = settings.cfl * body.grid.axes[d].h;
@@ -223,6 +226,26 @@ double update_normal_forces(YieldProblem<Space>& problem, const Law& law, double
   return sum > 0.0 ? change / sum : 0.0;
 }
 
+/// Forces of the flat walls, which balance what is left of every prescribed component, and the dissipated power.
+template <class Space>
+void keep_forces(const YieldProblem<Space>& problem, Body<Space>& body) {
+  constexpr int D = Space::dim;
+  body.dissipation = 0.0;
+  const auto stress = [&](int c, int k, const Vec<Space::n_strain>& q) -> Vec<Space::n_strain> {
+    return problem.mu * q + body.duals.stress[c][k];
+  };
+  for (int c = 0; c < problem.grid.n_cells(); ++c)
+    for (int k = 0; k < power(2, D); ++k) {
+      const auto q = strain_rate(problem, body.v, c, k);
+      body.dissipation += problem.quadrature.V[c][k] * stress(c, k, q).dot(q);
+    }
+  const Eigen::VectorXd R = residual(problem, body.v, stress);
+  body.wall_force.assign(body.v.size(), Vec<D>::Zero());
+  for (int i = 0; i < problem.grid.n_nodes(); ++i)
+    for (int d = 0; d < D; ++d)
+      if (problem.fixed[i * D + d]) body.wall_force[i][d] = -R[i * D + d];
+}
+
 /// The side walls of a section averaged over the width W: the concrete sticks to them, so they hold each node with the
 /// yield stress and, for the parabola between two plates, the viscous stress 6 mu v / W on both sides.
 template <class Space>
@@ -305,14 +328,16 @@ StepReport implicit_step(Body<Space>& body, const Law& law, const StepSettings& 
   }
   body.friction = problem.friction;
   body.bound = problem.bound;
+  if (settings.keep_forces) detail::keep_forces(problem, body);
 
   // Grid to points: state first, where the points were, then the move.
   if (body.points.thixotropic()) detail::update_flocculation(body, dt, body.points);
   detail::update_volumes(problem, body.v, body.points);
-  std::vector<Vec<D>> u;
-  if (settings.even_out.on) u = even_out(problem, body.points, body.v, settings.even_out, body.system);
-  grid_to_point(body.grid, body.v, v_old, settings.transfer, dt, body.points);
-  if (settings.even_out.on) shift_points<D>(body.grid, u, body.points);
+  const bool even = Space::advects && settings.even_out.on;
+  const std::vector<Vec<D>> u =
+      even ? even_out(problem, body.points, body.v, settings.even_out, body.system) : std::vector<Vec<D>>{};
+  grid_to_point(body.grid, body.v, v_old, settings.transfer, Space::advects ? dt : 0.0, body.points);
+  if (even) shift_points<D>(body.grid, u, body.points);
   body.time += dt;
   body.dt = dt;
 

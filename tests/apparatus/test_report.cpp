@@ -69,7 +69,7 @@ TEST(Summary, HasTheDocumentedKeys) {
 }
 
 TEST(Timeseries, UnitsInTheHeaderAndEmptyFields) {
-  EXPECT_EQ(timeseries_csv(small_outcome().series),
+  EXPECT_EQ(columns_csv(small_outcome().series),
             "time_s,spread_mm,flocculation_mean\n0,200,\n0.1,0.30000000000000004,5\n");
 }
 

@@ -32,6 +32,7 @@ TEST(Units, EveryWayToWriteAQuantity) {
   EXPECT_EQ(parse_quantity("1.3 Pa/s", Dimension::structuration), 1.3);
   EXPECT_DOUBLE_EQ(parse_quantity("15 rpm", Dimension::rotation),
                    parse_quantity("0.25 rev/s", Dimension::rotation));
+  EXPECT_DOUBLE_EQ(parse_quantity("22.5 deg", Dimension::angle), 0.39269908169872414);
   EXPECT_DOUBLE_EQ(parse_quantity("0.25 rev/s", Dimension::rotation), 1.5707963267948966);
 }
 

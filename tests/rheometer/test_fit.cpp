@@ -175,6 +175,17 @@ TEST(FitTorqueDecay, IsNotMovedByOutliers) {
   EXPECT_TRUE(inside(f.lambda_0, lambda_0));
 }
 
+// A torque ten times too small for the material that is given (a wrong unit, say) cannot be fitted, and the
+// result says so.
+TEST(FitTorqueDecay, SaysWhenTheCurveMissesTheReadings) {
+  TorqueRecord record = torque_decay(exact_decay(even_times(60, 20.0)), 0.01);
+  for (double& torque : record.torque) torque *= 0.1;
+  const FitResult f = fit(record, decay_input());
+  ASSERT_EQ(f.reasons.size(), 1u);
+  EXPECT_NE(f.reasons[0].find("misses the readings"), std::string::npos);
+  EXPECT_FALSE(f.alpha.has_value());
+}
+
 // A flat torque has nothing that breaks down: no alpha can be read from it, and none is reported.
 TEST(FitTorqueDecay, AFlatTorqueTellsNoAlpha) {
   TorqueRecord record;

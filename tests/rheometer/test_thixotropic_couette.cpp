@@ -160,6 +160,9 @@ TEST(ThixotropicCouette, RefusesWhatHasNoMeaning) {
   flow.bingham.mu = 0.0;
   EXPECT_THROW(thixotropic_couette(flow, std::vector{1.0}), std::invalid_argument);
   EXPECT_THROW(thixotropic_couette(mix_a_rested(), std::vector{1.0, 0.5}), std::invalid_argument);
+  flow = mix_a_rested();
+  flow.thixotropy.initial_flocculation = 1e307;  // overflows: an error, not a number
+  EXPECT_THROW(thixotropic_couette(flow, std::vector{1.0}), std::runtime_error);
 }
 
 }  // namespace

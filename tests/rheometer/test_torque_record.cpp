@@ -87,6 +87,8 @@ TEST(TorqueRecord, SaysWhereAndWhatIsWrong) {
   expect_message("time_s,torque_N_m\n0,5,2,25\n", "data.csv:2:2: ", "decimal comma");
   expect_message("time_s,torque_N_m\n0\n", "data.csv:2:1: ", "1 columns");
   expect_message(std::string("\xFF\xFEt\0i\0", 6), "data.csv:1:1: ", "UTF-16");
+  expect_message("speed_rpm,torque_N_m\n30,1e300\n", "data.csv:2:2: ", "unit");
+  expect_message("speed_rpm,torque_N_m\n1e9,1\n", "data.csv:2:1: ", "unit");
   EXPECT_THROW(read_torque_record("/nonexistent/data.csv"), RecordError);
   EXPECT_THROW(read_torque_record("/"), RecordError);
 }

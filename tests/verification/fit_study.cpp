@@ -64,10 +64,9 @@ void write_apparent(std::ofstream& out, const Apparent& a, const std::string& di
   std::ofstream script(directory + "/fit_apparent_alpha.gp");
   script << "set terminal svg size 800,520 font 'sans,13' background 'white'\nset output "
             "'fit_apparent_alpha.svg'\n"
-         << "set datafile separator ','\nset grid lc '#dddddd'\nset xrange [0:22]\nset yrange [0:0.045]\n"
+         << "set datafile separator ','\nset grid lc '#dddddd'\nset xrange [0:22]\nset yrange [0:0.06]\n"
          << "set xlabel 'window of the record in s'\nset ylabel 'alpha'\nset key top right\n"
-         << "set title 'One concrete, one record, one alpha: what the paper''s reading makes of it (2 % "
-            "noise, 95 % of 200 records)'\n"
+         << "set title 'One concrete, one alpha (2 % noise; bars: 95 % of 200 records)'\n"
          << "low = " << quantile(a.fitted, 0.025) << "; high = " << quantile(a.fitted, 0.975)
          << "; fitted = " << median(a.fitted) << "\n"
          << "set object 1 rectangle from 0,low to 22,high fc '#009e73' fs solid 0.2 noborder behind\n"

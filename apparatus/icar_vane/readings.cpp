@@ -1,0 +1,139 @@
+#include "apparatus/icar_vane/readings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "rheometer/apparent_alpha.hpp"
+#include "rheometer/reiner_riwlin.hpp"
+#include "rheometer/thixotropic_couette.hpp"
+
+namespace tremie::icar_vane {
+namespace {
+
+constexpr double alpha_window = 5.0;         // [s]
+constexpr double end_average = 0.5;          // over which the torques at the end are averaged: blades jitter as they cross cells [s]
+constexpr double agreement = 0.01;           // of the three torques, once steady
+constexpr double steady = 2e-3;              // mean rate of angular momentum over the torque that counts as steady
+
+Instrument instrument_of(const Vane& vane) {
+  Instrument instrument;
+  instrument.vane_radius = vane.radius;
+  instrument.vane_height = vane.height;
+  instrument.container_radius = vane.container_radius;
+  return instrument;
+}
+
+/// Mean torque over the last part of every hold of a flow curve.
+std::vector<CurvePoint> flow_curve(const Scene& scene, const std::vector<Sample>& series) {
+  std::vector<CurvePoint> curve;
+  for (std::size_t k = 0; k < scene.speeds.size(); ++k) {
+    const double end = scene.pre_shear_time + static_cast<double>(k + 1) * scene.hold_time;
+    double sum = 0.0, time = 0.0;
+    for (const Sample& s : series) {
+      if (s.time > end * (1.0 + 1e-12) || s.time <= end - scene.average_time) continue;
+      sum += s.torque * s.time_step;
+      time += s.time_step;
+    }
+    if (time > 0.0) curve.push_back({scene.speeds[k], sum / time});
+  }
+  return curve;
+}
+
+std::optional<ReinerRiwlin> reported_bingham(const std::vector<CurvePoint>& curve, const Instrument& instrument) {
+  std::vector<FlowPoint> points;
+  for (const CurvePoint& p : curve) points.push_back({angular_speed(std::abs(p.speed)), std::abs(p.torque)});
+  if (points.size() < 2) return std::nullopt;
+  const Bingham b = bingham_from_flow_curve(points, instrument);
+  return ReinerRiwlin{b.tau_0, b.mu};
+}
+
+/// Torque at the end between solid cylinders, by the rheometer's references.
+double couette_reference(const Scene& scene, const Instrument& instrument) {
+  const double omega = angular_speed(std::abs(scene.speed));
+  const Bingham bingham{scene.mix.tau_0, scene.mix.mu};
+  if (!scene.mix.thixotropy || scene.mix.thixotropy->alpha == 0.0) return reiner_riwlin(bingham, omega, instrument).torque;
+  CouetteFlow flow;
+  flow.bingham = bingham;
+  flow.thixotropy = *scene.mix.thixotropy;
+  flow.thixotropy.initial_flocculation =
+      flocculation_after_rest(flow.thixotropy.initial_flocculation, flow.thixotropy, scene.mix.tau_0, scene.rest);
+  flow.omega = omega;
+  const double times[] = {0.0, scene.duration};
+  return thixotropic_couette(flow, times, instrument).torque.back();
+}
+
+void average_end(const std::vector<Sample>& series, Results& r) {
+  double time = 0.0;
+  r.torque_end = r.torque_wall_end = r.torque_power_end = 0.0;
+  for (std::size_t i = series.size(); i-- > 0 && time < end_average;) {
+    const Sample& s = series[i];
+    r.torque_end += s.torque * s.time_step;
+    r.torque_wall_end += s.torque_wall * s.time_step;
+    r.torque_power_end += s.torque_power * s.time_step;
+    time += s.time_step;
+  }
+  for (double* torque : {&r.torque_end, &r.torque_wall_end, &r.torque_power_end}) *torque /= time;
+}
+
+/// lambda at the peak and the exponent of its decay from there on.
+void read_decay(Outcome& outcome) {
+  Results& r = outcome.results;
+  std::vector<double> time, lambda;
+  for (const Sample& s : outcome.series)
+    if (s.flocculation_apparent && (!time.empty() || s.torque == r.torque_peak)) {
+      time.push_back(s.time);
+      lambda.push_back(*s.flocculation_apparent);
+    }
+  if (lambda.empty()) return;
+  r.flocculation_apparent_start = lambda.front();
+  const double start = time.front();
+  for (double& t : time) t -= start;
+  const auto coefficient = exponential_coefficient(time, lambda, alpha_window);
+  if (coefficient) r.alpha_apparent = *coefficient / r.shear_rate_nominal;
+  r.alpha_window = alpha_window;
+}
+
+}  // namespace
+
+std::optional<double> apparent_flocculation(const Scene& scene, double torque, double speed) {
+  if (!scene.mix.thixotropy || speed == 0.0) return std::nullopt;
+  const Instrument instrument = instrument_of(scene.vane);
+  const double offset =
+      reiner_riwlin({scene.mix.tau_0, scene.mix.mu}, angular_speed(std::abs(speed)), instrument).torque;
+  return apparent_lambda(std::abs(torque), offset, scene.mix.tau_0, instrument);
+}
+
+void read_instrument(const Scene& scene, Outcome& outcome) {
+  Results& r = outcome.results;
+  const Instrument instrument = instrument_of(scene.vane);
+  for (const Sample& s : outcome.series)
+    if (std::abs(s.torque) > std::abs(r.torque_peak)) r.torque_peak = s.torque;
+  average_end(outcome.series, r);
+  r.static_yield_stress_apparent = shear_stress_at(scene.vane.radius, std::abs(r.torque_peak), instrument);
+  r.dynamic_yield_stress_apparent = shear_stress_at(scene.vane.radius, std::abs(r.torque_end), instrument);
+  r.shear_rate_nominal = newtonian_shear_rate(angular_speed(std::abs(scene.speed)), instrument);
+  r.flow_curve = flow_curve(scene, outcome.series);
+  r.reiner_riwlin = reported_bingham(r.flow_curve, instrument);
+  if (!scene.speeds.empty() || scene.speed == 0.0) return;
+  r.torque_couette_reference = std::copysign(couette_reference(scene, instrument), scene.speed);
+  read_decay(outcome);
+}
+
+void check_torques_agree(Outcome& outcome) {
+  const Results& r = outcome.results;
+  double momentum_rate = 0.0, time = 0.0;
+  for (std::size_t i = outcome.series.size(); i-- > 0 && time < end_average;) {
+    momentum_rate += outcome.series[i].momentum_rate * outcome.series[i].time_step;
+    time += outcome.series[i].time_step;
+  }
+  const double scale = std::abs(r.torque_end);
+  if (scale == 0.0 || std::abs(momentum_rate) > steady * scale * time) return;
+  const double off =
+      std::max(std::abs(r.torque_wall_end - r.torque_end), std::abs(r.torque_power_end - r.torque_end)) / scale;
+  if (off > agreement)
+    outcome.checks.reasons.push_back("the torques on the blades, on the wall and from the power differ by " +
+                                     std::to_string(100.0 * off) + " %");
+}
+
+}  // namespace tremie::icar_vane

@@ -1,0 +1,94 @@
+// Keys of the vane: two protocols that exclude each other, defaults that follow the space, faults.
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "tests/apparatus/complaint.hpp"
+
+namespace tremie::scene {
+namespace {
+
+using test::complaint;
+using test::says;
+
+const std::string mix_a = "apparatus = \"icar_vane\"\nmix = \"mix_a\"\n";
+const std::string curve = mix_a + "[test]\nspeeds = [\"0.3 rev/s\", \"0.1 rev/s\"]\n";
+
+icar_vane::Scene vane_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  return std::get<icar_vane::Scene>(read_text(text, "a.toml", overrides).test);
+}
+
+TEST(IcarVaneScene, DefaultsAreTheInstruments) {
+  const auto s = vane_of(mix_a);
+  EXPECT_EQ(s.vane.radius, 0.0635);
+  EXPECT_EQ(s.vane.height, 0.127);
+  EXPECT_EQ(s.vane.container_radius, 0.143);
+  EXPECT_EQ(s.vane.blades, 4);
+  EXPECT_EQ(s.speed, 0.25);
+  EXPECT_EQ(s.duration, 20.0);
+  EXPECT_TRUE(s.speeds.empty());
+  EXPECT_EQ(s.rest, 0.0);
+  EXPECT_EQ(s.model.space, SpaceKind::couette);
+  EXPECT_EQ(s.model.cell, (std::array{0.001, 0.001}));
+  EXPECT_EQ(s.model.points_per_cell, (std::array{3, 3}));
+}
+
+TEST(IcarVaneScene, TheCellFollowsTheSpace) {
+  EXPECT_EQ(vane_of(mix_a, {"model.space=plane"}).model.cell, (std::array{0.005, 0.005}));
+  EXPECT_EQ(vane_of(mix_a, {"model.space=plane", "model.cell=4 mm"}).model.cell, (std::array{0.004, 0.004}));
+}
+
+TEST(IcarVaneScene, SpeedsInAnyUnit) {
+  EXPECT_EQ(vane_of(mix_a, {"test.speed=15 rpm"}).speed, 0.25);
+  EXPECT_EQ(vane_of(mix_a, {"test.speed=-0.25 rev/s"}).speed, -0.25);
+  EXPECT_DOUBLE_EQ(vane_of(mix_a, {"test.speed=1 rad/s"}).speed, 0.5 / std::numbers::pi);
+  EXPECT_DOUBLE_EQ(vane_of(mix_a, {"test.orientation=22.5 deg"}).orientation, std::numbers::pi / 8.0);
+}
+
+TEST(IcarVaneScene, AFlowCurveHasItsOwnSchedule) {
+  const auto s = vane_of(curve);
+  EXPECT_EQ(s.speeds, (std::vector{0.3, 0.1}));
+  EXPECT_EQ(s.pre_shear_speed, 0.5);
+  EXPECT_EQ(s.pre_shear_time, 20.0);
+  EXPECT_EQ(s.hold_time, 5.0);
+  EXPECT_EQ(s.average_time, 2.0);
+  EXPECT_EQ(vane_of(curve + "pre_shear_time = \"0 s\"\n").pre_shear_time, 0.0);
+}
+
+TEST(IcarVaneScene, OneProtocolOrTheOther) {
+  EXPECT_TRUE(says(complaint(curve + "duration = \"3 s\"\n"), {"bad.toml:5: test.duration", "test.speeds"}));
+  EXPECT_TRUE(says(complaint(mix_a + "[test]\nhold_time = \"3 s\"\n"),
+                   {"bad.toml:4: test.hold_time", "test.speeds"}));
+  EXPECT_TRUE(vane_of(curve, {"test.speed=0.2 rev/s"}).speeds.empty());  // the later layer wins
+  const std::string constant = mix_a + "[test]\nspeed = \"0.2 rev/s\"\n";
+  EXPECT_EQ(vane_of(constant, {"test.speeds=[\"1 rpm\"]"}).speeds.size(), 1U);
+  EXPECT_EQ(read_text(constant, "a.toml", {"test.speeds=[\"1 rpm\"]"}).notes.size(), 1U);
+}
+
+TEST(IcarVaneScene, FaultsNameTheKey) {
+  EXPECT_TRUE(says(complaint(mix_a, {"test.speed=0 rpm"}), {"test.speed", "would not turn"}));
+  EXPECT_TRUE(
+      says(complaint(mix_a + "[test]\nspeed = 0.25\n"), {"bad.toml:4: test.speed", "rev/s", "bare number"}));
+  EXPECT_TRUE(says(complaint(curve, {"test.average_time=6 s"}), {"test.average_time", "hold_time"}));
+  EXPECT_TRUE(says(complaint(curve, {"test.hold_time=0 s"}), {"test.hold_time"}));
+  EXPECT_TRUE(says(complaint(mix_a, {"test.speeds=[\"-1 rpm\"]"}), {"test.speeds", "greater than 0 rad/s"}));
+  EXPECT_TRUE(says(complaint(mix_a, {"vane.radius=15 cm"}), {"vane.container_radius", "vane.radius"}));
+  EXPECT_TRUE(says(complaint(mix_a, {"vane.blades=1"}), {"vane.blades", "at least 2"}));
+  EXPECT_TRUE(says(complaint(mix_a, {"vane.blade_thickness=10 cm"}), {"vane.blade_thickness"}));
+  EXPECT_TRUE(says(complaint(mix_a, {"model.cell=10 cm"}), {"model.cell", "gap"}));
+  EXPECT_TRUE(says(complaint(mix_a, {"model.space=full"}), {"model.space", "\"couette\", \"plane\""}));
+}
+
+TEST(IcarVaneScene, AResolvedSceneReadsBack) {
+  for (const auto& text : {mix_a, curve}) {
+    const Scene first = read_text(text, "a.toml", {"model.space=plane"});
+    const Scene second = read_text(first.resolved, "a.toml");
+    EXPECT_EQ(read_text(second.resolved, "a.toml").resolved, second.resolved);
+    EXPECT_EQ(std::get<icar_vane::Scene>(first.test).speeds, std::get<icar_vane::Scene>(second.test).speeds);
+    EXPECT_EQ(std::get<icar_vane::Scene>(second.test).model.cell, (std::array{0.005, 0.005}));
+  }
+}
+
+}  // namespace
+}  // namespace tremie::scene

@@ -1,0 +1,265 @@
+// `tremie cell` and `tremie fit` as a person uses them: exit codes, messages, files, and records that are no
+// records.
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/apparatus/temporary_folder.hpp"
+#include "tests/rheometer/synthetic_record.hpp"
+
+namespace tremie {
+namespace {
+
+struct Result {
+  int code = -1;
+  std::string text;  ///< stdout and stderr
+};
+
+class Commands : public ::testing::Test {
+ protected:
+  Result tremie(const std::string& arguments) {
+    const std::string whole =
+        "cd '" + folder_.path().string() + "' && { '" TREMIE_PROGRAM "' " + arguments + "; } 2>&1";
+    FILE* pipe = popen(whole.c_str(), "r");
+    Result result;
+    std::array<char, 4096> buffer{};
+    for (std::size_t n = 0; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
+      result.text.append(buffer.data(), n);
+    const int status = pclose(pipe);
+    result.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return result;
+  }
+
+  void write(const std::string& name, const std::string& text) { test::write_file(folder_ / name, text); }
+
+  bool is_there(const std::string& name) const { return std::filesystem::exists(folder_ / name); }
+
+  nlohmann::json summary(const std::string& folder) const {
+    std::ifstream file(folder_ / folder / "summary.json");
+    return nlohmann::json::parse(file);
+  }
+
+  /// Exit code 2, a message that holds all the parts, and nothing written.
+  void expect_refused(const std::string& arguments, const std::vector<std::string>& parts) {
+    const Result r = tremie(arguments);
+    EXPECT_EQ(r.code, 2) << arguments << '\n' << r.text;
+    for (const std::string& part : parts)
+      EXPECT_NE(r.text.find(part), std::string::npos) << arguments << '\n' << r.text;
+    EXPECT_FALSE(is_there("runs")) << arguments;
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+std::string csv(const std::string& header, const std::vector<double>& x, const std::vector<double>& y) {
+  std::ostringstream text;
+  text.precision(12);
+  text << header << '\n';
+  for (std::size_t i = 0; i < x.size(); ++i) text << x[i] << ',' << y[i] << '\n';
+  return text.str();
+}
+
+std::string decay_csv(int n, double noise) {
+  const TorqueRecord r =
+      synthetic::torque_decay(synthetic::exact_decay(synthetic::even_times(n, 20.0)), noise);
+  return csv("time_s,torque_N_m", r.time, r.torque);
+}
+
+std::string curve_csv(int n, double noise) {
+  const TorqueRecord r = synthetic::flow_curve(n, noise);
+  return csv("speed_rad_per_s,torque_N_m", r.omega, r.torque);
+}
+
+const std::string decay_options =
+    " --speed '0.25 rev/s' --rest '240 s' --yield-stress '54 Pa' --plastic-viscosity '35.8 Pa.s'";
+
+// --- fit
+// ----------------------------------------------------------------------------------------------------------
+
+TEST_F(Commands, FitWritesTheParametersOfAFlowCurve) {
+  write("curve.csv", curve_csv(12, 0.01));
+  const Result r = tremie("fit curve.csv --out out");
+  ASSERT_EQ(r.code, 0) << r.text;
+  const auto s = summary("out");
+  EXPECT_EQ(s["schema"], 1);
+  EXPECT_EQ(s["results"]["kind"], "flow_curve");
+  EXPECT_NEAR(s["results"]["yield_stress_Pa"]["value"].get<double>(), 54.0, 4.0);
+  EXPECT_LT(s["results"]["plastic_viscosity_Pa_s"]["ci95"][0].get<double>(), 35.8);
+  EXPECT_GT(s["results"]["plastic_viscosity_Pa_s"]["ci95"][1].get<double>(), 35.8);
+  EXPECT_TRUE(s["results"]["alpha"].is_null());
+  EXPECT_EQ(s["results"]["plug"], true);
+  EXPECT_TRUE(s["results"]["points_dropped"].empty());
+  EXPECT_TRUE(s["checks"]["points_lost"].is_null());
+  EXPECT_TRUE(s["checks"]["reasons"].empty());
+  for (const char* file : {"torque.svg", "flow_curve.svg", "residuals.svg"})
+    EXPECT_TRUE(is_there("out/" + std::string(file)));
+}
+
+TEST_F(Commands, FitWritesTheParametersOfADecay) {
+  write("decay.csv", decay_csv(100, 0.01));
+  const Result r = tremie("fit decay.csv --out out" + decay_options);
+  ASSERT_EQ(r.code, 0) << r.text;
+  const auto results = summary("out")["results"];
+  EXPECT_EQ(results["kind"], "torque_decay");
+  EXPECT_NEAR(results["alpha"]["value"].get<double>() / 0.0358, 1.0, 0.05);
+  EXPECT_NEAR(results["structuration_rate_Pa_per_s"]["value"].get<double>() / 1.3, 1.0, 0.05);
+  EXPECT_LT(results["alpha_apparent"].get<double>(), 0.02);
+  EXPECT_EQ(results["alpha_apparent_basis"]["windows"].size(), 4u);
+  for (const char* file : {"torque.svg", "residuals.svg", "flocculation.svg"})
+    EXPECT_TRUE(is_there("out/" + std::string(file)));
+}
+
+TEST_F(Commands, FitNeverWritesOverAnEarlierResult) {
+  write("curve.csv", curve_csv(6, 0.0));
+  EXPECT_EQ(tremie("fit curve.csv --out out").code, 0);
+  EXPECT_EQ(tremie("fit curve.csv --out out").code, 2);
+  EXPECT_EQ(tremie("fit curve.csv --out out --force").code, 0);
+}
+
+TEST_F(Commands, FitRefusesWhatIsNoRecord) {
+  const auto refuse = [&](const std::string& text, const std::vector<std::string>& parts,
+                          const std::string& options = "") {
+    write("bad.csv", text);
+    expect_refused("fit bad.csv" + options, parts);
+  };
+  refuse("", {"bad.csv:1:1", "empty"});
+  refuse("speed_rev_per_s,torque_N_m\n", {"bad.csv:1:1", "without rows"});
+  refuse("speed_rev_per_s,torque_N_m\n0.5,1\n", {"bad.csv", "two rows"});
+  refuse("speed_rev_per_s,torque_N_m\n0.5,1\n0.4,abc\n", {"bad.csv:3:2", "'abc' is not a number"});
+  refuse("speed_rev_per_s,torque_N_m\n0.5,1\n0.4,-1\n", {"bad.csv:3:2", "negative"});
+  refuse("speed_rev_per_s,torque_N_m\n0.5,1\n0.5,1.1\n0.5,1.2\n", {"same speed"});
+  refuse("speed_rev_per_s,torque_lbf_ft\n0.5,1\n", {"bad.csv:1:2", "unknown unit", "torque_mN_m"});
+  refuse("time_s,torque_N_m\n0,2\n2,1.8\n1,1.6\n", {"bad.csv:4:1", "backwards"}, " --speed '0.25 rev/s'");
+  refuse("time_s,torque_N_m\n0,2\n1,1.8\n2,1.6\n", {"--speed"});
+  refuse("time_s,torque_N_m\n0,2\n", {"rows"}, decay_options);
+  refuse("time_s,torque_N_m\n1,2\n1,2\n1,2\n1,2\n", {"same time"}, decay_options);
+  refuse("time_s,torque_N_m\n0,0\n1,0\n2,0\n", {"rows"}, decay_options);
+  expect_refused("fit missing.csv", {"missing.csv", "cannot be opened"});
+  expect_refused("fit .", {"directory"});
+}
+
+TEST_F(Commands, FitRefusesOptionsWithoutAUnit) {
+  write("curve.csv", curve_csv(6, 0.0));
+  expect_refused("fit curve.csv --vane-radius 63.5", {"--vane-radius", "mm"});
+  expect_refused("fit curve.csv --vane-radius '-63 mm'", {"--vane-radius", "greater than 0"});
+  expect_refused("fit curve.csv --container-radius '5 cm'",
+                 {"container radius", "greater than the vane radius"});
+  expect_refused("fit curve.csv --speed '3 Pa'", {"--speed"});
+  expect_refused("fit curve.csv --yield-stress '54 Pa' --plastic-viscosity '3 Pa.s'",
+                 {"nothing is left to fit"});
+}
+
+// A record that has nothing to do with the model gets an answer without nonsense: finite or null, intervals
+// in order.
+TEST_F(Commands, FitSaysNullOrFinite) {
+  std::vector<double> t = synthetic::even_times(60, 20.0), rising, saw;
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    rising.push_back(1.0 + 0.05 * t[i]);
+    saw.push_back(i % 2 ? 2.0 : 0.5);
+  }
+  for (const auto& torque : {rising, saw}) {
+    write("odd.csv", csv("time_s,torque_N_m", t, torque));
+    const Result r = tremie("fit odd.csv --out odd --force" + decay_options);
+    ASSERT_TRUE(r.code == 0 || r.code == 3) << r.text;
+    for (const auto& [name, value] : summary("odd")["results"].items())
+      if (value.is_object() && value.contains("ci95") && value["ci95"].is_array()) {
+        EXPECT_LE(value["ci95"][0].get<double>(), value["value"].get<double>()) << name;
+        EXPECT_GE(value["ci95"][1].get<double>(), value["value"].get<double>()) << name;
+      }
+  }
+}
+
+// --- cell
+// ---------------------------------------------------------------------------------------------------------
+
+const std::string loop = R"(apparatus = "cell"
+[mix]
+yield_stress = "54 Pa"
+plastic_viscosity = "35.8 Pa.s"
+[mix.thixotropy]
+structuration_rate = "1.3 Pa/s"
+[[history]]
+duration = "100 s"
+[[history]]
+duration = "20 s"
+from = "0 1/s"
+to = "10 1/s"
+[[history]]
+duration = "20 s"
+from = "10 1/s"
+to = "0 1/s"
+)";
+
+TEST_F(Commands, CellWritesItsSeriesAndSummary) {
+  write("loop.toml", loop);
+  const Result r = tremie("cell loop.toml --out out");
+  ASSERT_EQ(r.code, 0) << r.text;
+  const auto s = summary("out");
+  EXPECT_EQ(s["apparatus"], "cell");
+  EXPECT_LT(s["results"]["flocculation_error_max"].get<double>(), 1e-10);
+  EXPECT_GT(s["results"]["hysteresis_area_Pa_per_s"].get<double>(), 0.0);
+  EXPECT_TRUE(
+      s["results"]["stress_end_Pa"].is_null());  // exact Bingham at rest: anything up to the yield stress
+  std::ifstream series(folder_ / "out" / "timeseries.csv");
+  std::string header;
+  std::getline(series, header);
+  EXPECT_EQ(header, "time_s,shear_rate_per_s,shear_stress_Pa,flocculation,flocculation_reference");
+}
+
+TEST_F(Commands, CellTakesItsHistoryFromACsvAndRunsItsResolvedSceneAgain) {
+  write("history.csv", "time_s,shear_rate_per_s\n0,0\n100,0\n120,10\n140,0\n");
+  write("loop.toml", "history = \"history.csv\"\n" + loop.substr(0, loop.find("[[history]]")));
+  write("tables.toml", loop);
+  ASSERT_EQ(tremie("cell loop.toml --out csv").code, 0);
+  ASSERT_EQ(tremie("cell tables.toml --out tables").code, 0);
+  ASSERT_EQ(tremie("cell csv/scene.toml --out again").code, 0);
+  EXPECT_EQ(tremie("run csv/scene.toml --out run").code, 2);
+  const auto text = [&](const std::string& name) {
+    std::ifstream file(folder_ / name / "timeseries.csv");
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  EXPECT_EQ(text("csv"), text("tables"));
+  EXPECT_EQ(text("csv"), text("again"));
+}
+
+TEST_F(Commands, CellWithoutThixotropyHasNoFlocculation) {
+  write("loop.toml", loop);
+  ASSERT_EQ(tremie("cell loop.toml --out out --set mix.thixotropy=false").code, 0);
+  EXPECT_TRUE(summary("out")["results"]["flocculation_end"].is_null());
+  EXPECT_TRUE(summary("out")["results"]["flocculation_error_max"].is_null());
+  EXPECT_NEAR(summary("out")["results"]["hysteresis_area_Pa_per_s"].get<double>(), 0.0, 1e-9);
+}
+
+TEST_F(Commands, CellRefusesWhatIsNoScene) {
+  write("loop.toml", loop);
+  expect_refused("cell loop.toml --set mix.yield_stress='0 Pa'", {"yield_stress", "thixotropy"});
+  expect_refused("cell loop.toml --set test.rset='3 s'", {"rset", "rest"});
+  write("none.toml", loop.substr(0, loop.find("[[history]]")));
+  expect_refused("cell none.toml", {"none.toml", "history"});
+  write("bare.toml", loop + "[[history]]\nduration = 5\n");
+  expect_refused("cell bare.toml", {"bare.toml:18", "duration"});
+  write("csv.toml", "history = \"gone.csv\"\n" + loop.substr(0, loop.find("[[history]]")));
+  expect_refused("cell csv.toml", {"gone.csv", "cannot be opened"});
+  write("gone.csv", "time_s,shear_rate_per_s\n0,0\n1,x\n");
+  expect_refused("cell csv.toml", {"gone.csv:3:2", "'x' is not a number"});
+  write("both.toml", "history = \"gone.csv\"\n" + loop);
+  expect_refused("cell both.toml", {"history"});
+}
+
+TEST_F(Commands, TheSceneOfTheHouseRuns) {
+  for (const char* name : {"cell_hysteresis_loop", "cell_parametric"}) {
+    const Result r = tremie("cell '" TREMIE_SCENES "/" + std::string(name) + ".toml' --out " + name);
+    EXPECT_EQ(r.code, 0) << r.text;
+  }
+}
+
+}  // namespace
+}  // namespace tremie
