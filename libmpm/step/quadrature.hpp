@@ -86,6 +86,17 @@ void add_up_points(const ActiveGrid<Space::dim>& grid, const Points<Space::dim>&
   }
 }
 
+/// Volumes of the Gauss places of a full cell.
+template <class Space>
+std::array<double, power(2, Space::dim)> full_volumes(const std::array<Axis, Space::dim>& axes,
+                                                      const std::array<Vec<Space::dim>, power(2, Space::dim)>& places) {
+  double section = 1.0;
+  for (const Axis& axis : axes) section *= 0.5 * axis.h;
+  std::array<double, power(2, Space::dim)> volume;
+  for (std::size_t k = 0; k < volume.size(); ++k) volume[k] = section * Space::measure(places[k]);
+  return volume;
+}
+
 /// Strain rows at every place and the rows of the cell's mean divergence.
 template <class Space>
 void lay_out_rows(const std::array<Stencil<Space::dim>, power(2, Space::dim)>& st,
@@ -136,6 +147,8 @@ void lay_out_quadrature(const ActiveGrid<Space::dim>& grid, const Points<Space::
     detail::add_up_points<Space>(grid, points, c, x, quadrature.V[c], structure);
     for (int k = 0; k < n; ++k)
       quadrature.tau_y[c][k] = quadrature.V[c][k] > 0.0 ? tau_0 * structure[k] / quadrature.V[c][k] : tau_0;
+    // Inside the body a cell is full: with counted volumes the pressure would push whenever a point crosses into a cell.
+    if (is_inside<D>(grid, cell)) quadrature.V[c] = detail::full_volumes<Space>(grid.axes, x);
     detail::lay_out_rows<Space>(st, x, c, quadrature);
     quadrature.p[c] = detail::mean_pressure(grid, points, K, c);
   }

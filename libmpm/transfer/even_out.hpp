@@ -79,8 +79,9 @@ void shift_points(const ActiveGrid<D>& grid, const std::vector<Vec<D>>& u, Point
   for (int c = 0; c < grid.n_cells(); ++c) {
     for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
       const int p = grid.order[i];
-      const Stencil<D> st = stencil<D>(grid.axes, grid.cell_index[c],
-                                       local_coordinates<D>(grid.axes, grid.cell_index[c], points.x[p]));
+      // The point may have left its cell by now; beyond it the cell's polynomials run away with the square of the distance.
+      const Vec<D> s = local_coordinates<D>(grid.axes, grid.cell_index[c], points.x[p]).cwiseMax(0.0).cwiseMin(1.0);
+      const Stencil<D> st = stencil<D>(grid.axes, grid.cell_index[c], s);
       Vec<D> shift = Vec<D>::Zero();
       for (int k = 0; k < power(3, D); ++k) shift += st.N[k] * u[grid.cell_nodes[c][k]];
       points.v[p] += points.C[p] * shift;

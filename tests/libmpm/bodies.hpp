@@ -26,6 +26,13 @@ double total_mass(const Points<D>& points) {
 }
 
 template <int D>
+double total_volume(const Points<D>& points) {
+  double sum = 0.0;
+  for (std::size_t p = 0; p < points.size(); ++p) sum += points.volume(p);
+  return sum;
+}
+
+template <int D>
 Vec<D> momentum(const Points<D>& points) {
   Vec<D> sum = Vec<D>::Zero();
   for (std::size_t p = 0; p < points.size(); ++p) sum += points.mass[p] * points.v[p];

@@ -1,0 +1,96 @@
+// Coulomb's floor and moving rigid walls, on blocks too stiff to flow.
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include "tests/libmpm/bodies.hpp"
+
+namespace tremie {
+namespace {
+
+using namespace test;
+
+constexpr double coefficient = 0.4, g = 9.81;
+
+/// A block 0.2 m long and 0.1 m high with a yield stress of twenty times its weight, on a floor with friction
+/// in a gravity field tilted by theta.
+Body<PlaneStrain> block_on_a_slope(double theta) {
+  Body<PlaneStrain> body;
+  body.mix = concrete(5e4, 100.0);
+  body.gravity = {g * std::sin(theta), -g * std::cos(theta)};
+  body.grid.axes[0] = {.h = 0.025};
+  body.grid.axes[1] = {.h = 0.025, .low = FaceKind::friction};
+  fill_box(body, {0.0, 0.0}, {0.2, 0.1}, 2,
+           [&](const auto& x) { return 2400.0 * g * std::cos(theta) * (0.1 - x[1]); });
+  return body;
+}
+
+/// Speed of the centre of mass along the slope after half a second.
+double speed_on_a_slope(double theta, YieldMethod method) {
+  omp_set_num_threads(1);
+  auto body = block_on_a_slope(theta);
+  StepSettings settings;
+  settings.method = method;
+  settings.friction_coefficient = coefficient;
+  settings.fixed_dt = 0.01;
+  int unconverged = 0;
+  for (int i = 0; i < 50; ++i) unconverged += !implicit_step(body, ExactBingham{}, settings).converged;
+  EXPECT_EQ(unconverged, 0);
+  return momentum(body.points)[0] / total_mass(body.points);
+}
+
+class Friction : public testing::TestWithParam<YieldMethod> {};
+
+// Below tan theta = 0.4 (21.8 degrees) the block stays: no more than 0.1 % of the speed that it would have
+// without floor.
+TEST_P(Friction, SticksOnAGentleSlope) {
+  for (double degrees : {5.0, 15.0, 20.0}) {
+    const double theta = degrees * std::numbers::pi / 180.0, speed = speed_on_a_slope(theta, GetParam());
+    std::printf("slope of %g degrees: %.2e m/s\n", degrees, speed);
+    EXPECT_LE(std::abs(speed), 1e-3 * 0.5 * g * std::sin(theta));
+  }
+}
+
+// Above it v = g (sin theta - 0.4 cos theta) t. 3 %: the normal forces are renewed until they change by less
+// than 2 %.
+TEST_P(Friction, SlidesOnASteepOne) {
+  for (double degrees : {25.0, 30.0, 45.0}) {
+    const double theta = degrees * std::numbers::pi / 180.0, speed = speed_on_a_slope(theta, GetParam());
+    const double exact = 0.5 * g * (std::sin(theta) - coefficient * std::cos(theta));
+    std::printf("slope of %g degrees: %.4f m/s, exact %.4f\n", degrees, speed, exact);
+    EXPECT_NEAR(speed / exact, 1.0, 0.03);
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Methods, Friction, testing::Values(YieldMethod::admm, YieldMethod::newton));
+
+// A wall that moves at 0.5 m/s for 0.2 s takes a block along at its own speed (1 %: a penalty holds them
+// together), stops, and the block goes on by itself with all its momentum: walls push, they do not pull.
+TEST(RigidWalls, PushAndSeparate) {
+  omp_set_num_threads(1);
+  Body<PlaneStrain> body;
+  body.mix = concrete(5e4, 100.0);
+  body.grid.axes[0] = {.h = 0.025};
+  body.grid.axes[1] = {.h = 0.025, .low = FaceKind::free_slip};
+  fill_box(body, {0.0, 0.0}, {0.2, 0.1}, 2);
+  const RigidWall<2> wall = [](const Vec<2>& x, double time) -> std::optional<WallView<2>> {
+    const double place = 0.5 * std::min(time, 0.2), gap = x[0] - place;
+    if (std::abs(gap) > 0.05) return std::nullopt;
+    return WallView<2>{gap, Vec<2>(1.0, 0.0), Vec<2>(time <= 0.2 ? 0.5 : 0.0, 0.0)};
+  };
+  StepSettings settings;
+  settings.fixed_dt = 0.005;
+  settings.wall_gap = 0.25 * 0.025;
+  const double mass = total_mass(body.points);
+  while (body.time < 0.2 - 1e-9) implicit_step(body, ExactBingham{}, settings, wall);
+  const double pushed = momentum(body.points)[0] / mass;
+  EXPECT_NEAR(pushed, 0.5, 0.005);
+  double nearest = 1.0;
+  for (const Vec<2>& x : body.points.x) nearest = std::min(nearest, x[0]);
+  EXPECT_GE(nearest, 0.1 + 0.9 * settings.wall_gap);
+  while (body.time < 0.6) implicit_step(body, ExactBingham{}, settings, wall);
+  EXPECT_NEAR(momentum(body.points)[0] / mass / pushed, 1.0, 1e-9);
+  EXPECT_LE(std::abs(momentum(body.points)[1]) / mass, 1e-9);
+}
+
+}  // namespace
+}  // namespace tremie
