@@ -1,7 +1,8 @@
 #pragma once
 
 // The symmetric positive definite system of an implicit step on the active nodes: D x D blocks, assembled from cells,
-// factorised by a sparse Cholesky method. The symbolic analysis is kept while the set of active cells is.
+// factorised by a Cholesky method: on a band where the body is thin one way, sparse otherwise. What follows from the set
+// of active cells alone is kept while that is.
 
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "libmpm/grid/active_grid.hpp"
+#include "libmpm/step/band_cholesky.hpp"
 
 namespace tremie {
 
@@ -25,6 +27,7 @@ class BlockSystem {
     n_nodes_ = grid.n_nodes();
     find_neighbours(grid);
     lay_out();
+    number_across_the_thin_way(grid);
     analysed_ = false;
   }
   void set_zero() { std::fill(matrix_.valuePtr(), matrix_.valuePtr() + matrix_.nonZeros(), 0.0); }
@@ -50,12 +53,21 @@ class BlockSystem {
   }
   /// Numerical factorisation; false where the matrix is not positive definite.
   bool factorise() {
+    if (banded_) return factorise_band();
     if (!analysed_) solver_->analyzePattern(matrix_);
     analysed_ = true;
     solver_->factorize(matrix_);
     return solver_->info() == Eigen::Success;
   }
-  Eigen::VectorXd solve(const Eigen::VectorXd& rhs) const { return solver_->solve(rhs); }
+  Eigen::VectorXd solve(const Eigen::VectorXd& rhs) const {
+    if (!banded_) return solver_->solve(rhs);
+    Eigen::VectorXd x(rhs.size());
+    for (int i = 0; i < rhs.size(); ++i) x[band_dof_[i]] = rhs[i];
+    band_.solve(x);
+    Eigen::VectorXd solution(rhs.size());
+    for (int i = 0; i < rhs.size(); ++i) solution[i] = x[band_dof_[i]];
+    return solution;
+  }
   double diagonal(int dof) const { return matrix_.valuePtr()[diagonal_[dof]]; }
 
  private:
@@ -89,6 +101,41 @@ class BlockSystem {
           for (int e = j == i ? d : 0; e < D; ++e) matrix_.innerIndexPtr()[k++] = j * D + e;
       }
   }
+  /// Numbers the unknowns with the grid's shortest way running fastest and decides between band and sparse: in a
+  /// plane the band's n b^2 operations win, by measurement, up to about 400 n^1.5; in space sparse wins.
+  void number_across_the_thin_way(const ActiveGrid<D>& grid) {
+    Index<D> way;
+    for (int d = 0; d < D; ++d) way[d] = d;
+    std::sort(way.begin(), way.end(),
+              [&](int a, int b) { return grid.node_map.extent[a] > grid.node_map.extent[b]; });
+    std::vector<int> by_place(n_nodes_);
+    for (int i = 0; i < n_nodes_; ++i) by_place[i] = i;
+    std::sort(by_place.begin(), by_place.end(), [&](int a, int b) {
+      for (int d : way)
+        if (grid.node_index[a][d] != grid.node_index[b][d]) return grid.node_index[a][d] < grid.node_index[b][d];
+      return false;
+    });
+    band_dof_.resize(n_nodes_ * D);
+    for (int k = 0; k < n_nodes_; ++k)
+      for (int d = 0; d < D; ++d) band_dof_[by_place[k] * D + d] = k * D + d;
+    bandwidth_ = 0;
+    for (int i = 0; i < n_nodes_; ++i)
+      for (int j : neighbours_[i])
+        bandwidth_ = std::max(bandwidth_, std::abs(band_dof_[i * D] - band_dof_[j * D]) + D - 1);
+    const double n = n_nodes_ * D, b = bandwidth_;
+    banded_ = D < 3 && b * b < 400.0 * std::sqrt(n);
+  }
+  bool factorise_band() {
+    band_.reset(n_nodes_ * D, bandwidth_);
+    const int* outer = matrix_.outerIndexPtr();
+    const int* inner = matrix_.innerIndexPtr();
+    for (int j = 0; j < n_nodes_ * D; ++j)
+      for (int k = outer[j]; k < outer[j + 1]; ++k) {
+        const auto [low, high] = std::minmax(band_dof_[inner[k]], band_dof_[j]);
+        band_.add(high, low, matrix_.valuePtr()[k]);
+      }
+    return band_.factorise();
+  }
   void add_block(int row, int column, const Mat<D, D>& block, bool same_local_node) {
     // On a periodic axis of one or two cells several local nodes are one active node: both halves of the cell matrix
     // then fall on one block and both count.
@@ -113,7 +160,10 @@ class BlockSystem {
   std::vector<std::vector<int>> neighbours_;
   std::vector<int> diagonal_;
   int n_nodes_ = -1;
-  bool analysed_ = false;
+  bool analysed_ = false, banded_ = false;
+  std::vector<int> band_dof_;  ///< of each unknown
+  int bandwidth_ = 0;
+  BandCholesky band_;
   Eigen::SparseMatrix<double> matrix_;
   using Solver = Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::AMDOrdering<int>>;
   std::unique_ptr<Solver> solver_ = std::make_unique<Solver>();
