@@ -150,7 +150,8 @@ Outcome run_plane(const Scene& scene, const Law& law, const Observer& observer) 
       next_frame += scene.frame_interval;
     }
     const bool open = !scene.gate_speed || *scene.gate_speed * body.time > scene.box.channel_height;
-    stopped = watch.at_rest(open, step.max_speed, body.time);
+    // Drops from the films on the column's walls fall long after the concrete stands.
+    stopped = watch.at_rest(open, step.bulk_speed, body.time);
     if (observer.interrupted && *observer.interrupted) {
       outcome.status = Status::interrupted;
       break;

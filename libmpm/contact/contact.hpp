@@ -33,6 +33,7 @@ template <int D>
 struct FrictionNode {
   int node = 0;
   int normal_axis = 0;                      ///< -1: held against any motion in the section
+  double reach = 0.0;                       ///< of side walls: W / sqrt(12), as their viscous drag has it [m]
   double limit = 0.0;                       ///< coefficient * normal force, or the side walls' yield force [N]
   Vec<D> force = Vec<D>::Zero();            ///< along the wall, its dual [N]
   Vec<D> slip = Vec<D>::Zero();             ///< split sliding velocity, for ADMM [m/s]

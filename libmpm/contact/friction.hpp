@@ -19,7 +19,8 @@ template <int D>
 void add_friction_stiffness_admm(const ActiveGrid<D>& grid, const std::vector<double>& V, double viscosity,
                                  std::vector<FrictionNode<D>>& friction, BlockSystem<D>& system) {
   for (FrictionNode<D>& f : friction) {
-    const double h = f.normal_axis >= 0 ? grid.axes[f.normal_axis].h : grid.cell_size_min();
+    // A node that side walls hold brings their own length, the distance over which its drag acts.
+    const double h = f.normal_axis >= 0 ? grid.axes[f.normal_axis].h : f.reach;
     f.stiffness = f.limit > 0.0 ? 0.5 * viscosity * V[f.node] / (h * h) : 0.0;
     for (int d = 0; d < D; ++d)
       if (d != f.normal_axis) system.add_diagonal(f.node, d, f.stiffness);

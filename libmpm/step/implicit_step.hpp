@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 
 #include "libmpm/contact/rigid_wall.hpp"
@@ -72,10 +73,13 @@ struct StepReport {
   bool converged = false;
   int iterations = 0;            ///< linear solves
   double max_speed = 0.0;        ///< of the points [m/s]
+  double bulk_speed = 0.0;       ///< of all but the fastest half percent of the points [m/s]
   double shear_rate_mean = 0.0;  ///< volume mean [1/s]
 };
 
 namespace detail {
+
+inline constexpr double strays = 0.005;  ///< share of the points that may be drops in the air
 
 template <int D>
 double max_speed(const Points<D>& points) {
@@ -84,16 +88,29 @@ double max_speed(const Points<D>& points) {
   return std::sqrt(v2);
 }
 
-/// Largest step that keeps every point's move, gravity's pull included, within settings.cfl cells.
+/// The speed that all but `share` of the points stay below; `speed(p)` of a point.
+template <int D, class Speed>
+double speed_of_most(const Points<D>& points, double share, Speed speed) {
+  std::vector<double> all(points.size());
+  for (std::size_t p = 0; p < points.size(); ++p) all[p] = speed(p);
+  if (all.empty()) return 0.0;
+  const auto rank = all.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(all.size()));
+  std::nth_element(all.begin(), rank, all.end(), std::greater<>());
+  return *rank;
+}
+
+/// Largest step that keeps the moves of all but half a percent of the points within settings.cfl cells, gravity's pull
+/// included, and of the fastest within two: drops that fall through the air must not hold up the body.
 template <class Space>
 double choose_dt(const Body<Space>& body, const StepSettings& settings) {
   if (settings.fixed_dt) return *settings.fixed_dt;
   double dt = body.dt > 0.0 ? std::min(settings.dt_max, settings.growth * body.dt) : settings.dt_max;
   for (int d = 0; d < Space::dim && Space::advects; ++d) {
-    double v = 0.0;
-    for (const auto& vp : body.points.v) v = std::max(v, std::abs(vp[d]));
+    const auto speed = [&](std::size_t p) { return std::abs(body.points.v[p][d]); };
     const double reach = settings.cfl * body.grid.axes[d].h;
-    if (v > 0.0) dt = std::min(dt, reach / v);
+    const double most = speed_of_most(body.points, strays, speed), fastest = speed_of_most(body.points, 0.0, speed);
+    if (most > 0.0) dt = std::min(dt, reach / most);
+    if (fastest > 0.0) dt = std::min(dt, 2.0 * body.grid.axes[d].h / fastest);
     // From rest the speed at the end of the step counts: g dt^2 <= reach.
     const double g = std::abs(body.gravity[d]);
     if (body.dt == 0.0 && g > 0.0) dt = std::min(dt, 0.25 * std::sqrt(reach / g));
@@ -267,6 +284,7 @@ void add_side_walls(double W, YieldProblem<Space>& problem) {
     FrictionNode<D> held;
     held.node = static_cast<int>(i);
     held.normal_axis = -1;
+    held.reach = W / std::sqrt(12.0);
     held.limit = limit[i];
     problem.friction.push_back(held);
   }
@@ -341,8 +359,9 @@ StepReport implicit_step(Body<Space>& body, const Law& law, const StepSettings& 
   body.time += dt;
   body.dt = dt;
 
+  const auto speed = [&](std::size_t p) { return body.points.v[p].norm(); };
   return {dt, solve.converged, solve.iterations, detail::max_speed(body.points),
-          detail::mean_shear_rate(problem, body.v)};
+          detail::speed_of_most(body.points, detail::strays, speed), detail::mean_shear_rate(problem, body.v)};
 }
 
 }  // namespace tremie
