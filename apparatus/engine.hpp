@@ -34,6 +34,7 @@ inline StepSettings step_settings(const Model& model) {
                                                          : YieldMethod::automatic;
   settings.transfer.flip = model.transfer == TransferKind::flip;
   settings.transfer.flip_blend = model.flip_blend;
+  settings.even_out.on = model.even_out;
   settings.fixed_dt = model.time_step;
   return settings;
 }

@@ -86,7 +86,7 @@ ResultTable profile_of(const std::vector<ProfilePoint>& profile) {
   return table;
 }
 
-/// The record as `tremie fit` reads it: magnitudes, and no reading before the vane has met resistance.
+/// The record as `tremie fit` reads it: magnitudes, and no reading before the vane has its speed.
 ResultTable record_of(const icar_vane::Scene& scene, const icar_vane::Outcome& raw) {
   if (!scene.speeds.empty()) {
     const auto& curve = raw.results.flow_curve;
@@ -97,7 +97,7 @@ ResultTable record_of(const icar_vane::Scene& scene, const icar_vane::Outcome& r
   const double direction = scene.speed < 0.0 ? -1.0 : 1.0;
   std::vector<Sample> record;
   std::copy_if(raw.series.begin(), raw.series.end(), std::back_inserter(record),
-               [&](const Sample& s) { return direction * s.torque > 0.0; });
+               [&](const Sample& s) { return s.speed == scene.speed && direction * s.torque > 0.0; });
   return {"torque.csv",
           {column("time_s", record, [](const Sample& s) { return s.time; }),
            column("torque_N_m", record, [&](const Sample& s) { return direction * s.torque; })}};

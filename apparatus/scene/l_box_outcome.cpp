@@ -83,17 +83,18 @@ std::vector<Chart> charts_of(bool thixotropic) {
 }
 
 std::string ratio_text(const l_box::Scene& scene, const l_box::Results& r) {
-  if (!r.passing_ratio) return "passing ratio   none: the concrete never reached the channel's end";
+  if (!r.passing_ratio) return "passing ratio   none";
   const std::string cls = class_of(scene, r);
   const char* without = scene.bars == 0 ? "none without bars" : "none: below 0.80";
   return fmt::format("passing ratio   {:.2f}   class {}", *r.passing_ratio, cls.empty() ? without : cls);
 }
 
 std::vector<std::string> lines_for(const l_box::Scene& scene, const l_box::Results& r) {
-  const std::string h2 = r.h2 ? fmt::format("{:.0f} mm", *r.h2 * mm) : "never reached";
+  const std::string h2 = r.h2 ? fmt::format("{:.0f} mm   at the channel's end", *r.h2 * mm)
+                              : "none: the channel's end was never reached";
   std::vector<std::string> lines{
       fmt::format("H1              {:.0f} mm   behind the gate", r.h1 * mm),
-      fmt::format("H2              {}   at the channel's end", h2),
+      "H2              " + h2,
       ratio_text(scene, r),
       fmt::format("t200            {}", seconds_or(r.t200, "never reached")),
       fmt::format("t400            {}", seconds_or(r.t400, "never reached")),

@@ -37,7 +37,7 @@ Floor read_floor(const Values& values);
 /// The defaults of [model] that differ from apparatus to apparatus, as in TOML.
 struct ModelDefaults {
   std::string cell = "[\"10 mm\", \"5 mm\"]";  ///< empty: settled by the apparatus
-  std::string points_per_cell = "[8, 2]";
+  std::string points_per_cell = "[4, 4]";
   std::string cell_help = "[across, up], or one length";
 };
 

@@ -16,7 +16,7 @@
 namespace tremie {
 
 struct EvenOut {
-  bool on = true;
+  bool on = false;  ///< for bodies that flow far; it keeps mass and momentum, angular momentum only to about 1e-6
   double rate = 1.0;  ///< share of a cell's misfill that is mended per unit of shear
 };
 

@@ -40,7 +40,7 @@ TEST(IcarVaneScene, TheCellFollowsTheSpace) {
 }
 
 TEST(IcarVaneScene, SpeedsInAnyUnit) {
-  EXPECT_EQ(vane_of(mix_a, {"test.speed=15 rpm"}).speed, 0.25);
+  EXPECT_DOUBLE_EQ(vane_of(mix_a, {"test.speed=15 rpm"}).speed, 0.25);
   EXPECT_EQ(vane_of(mix_a, {"test.speed=-0.25 rev/s"}).speed, -0.25);
   EXPECT_DOUBLE_EQ(vane_of(mix_a, {"test.speed=1 rad/s"}).speed, 0.5 / std::numbers::pi);
   EXPECT_DOUBLE_EQ(vane_of(mix_a, {"test.orientation=22.5 deg"}).orientation, std::numbers::pi / 8.0);

@@ -139,6 +139,37 @@ TEST(Chart, MeasuredValuesAreDashed) {
   EXPECT_NE(script.find("0.1 0.3\n"), std::string::npos);
 }
 
+TEST(Chart, DrawsFromATableWithALabelACurve) {
+  scene::Outcome outcome = small_outcome();
+  outcome.tables = {
+      {"profile.csv", {{"radius_mm", {63.5, 143.0}}, {"a_mm", {1.0, 2.0}}, {"b_mm", {3.0, 4.0}}}}};
+  outcome.charts = {
+      {"profile.svg", "Profile", "r", "y", {"a_mm", "b_mm"}, {}, {"the one", "the other"}, "profile.csv"}};
+  const auto& chart = outcome.charts.front();
+  const std::string script = chart_script(chart, scene::columns_of(chart, outcome));
+  for (const char* part : {"63.5 1\n", "143 4\n", "title 'the one'", "title 'the other'"})
+    EXPECT_NE(script.find(part), std::string::npos) << part << " is not in:\n" << script;
+}
+
+TEST(Chart, OneThatHasNothingToDrawIsLeftOut) {
+  const test::TemporaryFolder folder;
+  scene::Outcome outcome = small_outcome();
+  outcome.charts = {{"empty.svg", "Empty", "t", "y", {"flocculation_mean"}, {}},
+                    {"none.svg", "None", "t", "y", {"a_mm"}, {}, {}, "none.csv"}};
+  EXPECT_EQ(draw_charts(outcome, folder.path()), "");
+  EXPECT_FALSE(std::filesystem::exists(folder / "empty.svg"));
+}
+
+TEST(ResultFiles, WritesTables) {
+  const test::TemporaryFolder folder;
+  scene::Outcome outcome = small_outcome();
+  outcome.charts.clear();
+  outcome.tables = {{"profile.csv", {{"radius_mm", {63.5}}, {"flocculation", {nan}}}}};
+  ResultFiles files(folder.path(), "schema = 1\n");
+  files.finish(outcome);
+  EXPECT_EQ(test::read_file(folder / "profile.csv"), "radius_mm,flocculation\n63.5,\n");
+}
+
 TEST(WriteText, SaysWhichFileAndWhy) {
   try {
     io::write_text("/dev/full", std::string(1 << 20, 'x'));

@@ -45,7 +45,7 @@ TEST(SceneReader, DefaultsAreTheDocumentedOnes) {
   EXPECT_EQ(s.model.space, SpaceKind::axisymmetric);
   EXPECT_EQ(s.model.yield, YieldKind::exact);
   EXPECT_EQ(s.model.cell, (std::array{0.01, 0.005}));
-  EXPECT_EQ(s.model.points_per_cell, (std::array{8, 2}));
+  EXPECT_EQ(s.model.points_per_cell, (std::array{4, 4}));
   EXPECT_FALSE(s.model.time_step.has_value());
   EXPECT_FALSE(slump(read_text(mix_a, "a.toml")).mix.thixotropy.has_value());
 }
