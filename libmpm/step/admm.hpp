@@ -71,12 +71,27 @@ std::vector<double> volumes_around_nodes(const YieldProblem<Space>& problem) {
 
 }  // namespace detail
 
+namespace detail {
+
+/// The penalty r [Pa s]: a multiple of the viscosity, or of the inertia of a cell where that is stiffer. A smaller one would
+/// hardly move the stresses in an iteration, and the mismatch r (q - d) would look converged from the start.
+template <class Space>
+double penalty(const YieldProblem<Space>& problem, const AdmmSettings& settings) {
+  double mass = 0.0, volume = 0.0;
+  for (double m : problem.nodes.mass) mass += m;
+  for (double V : problem.quadrature.V_cell) volume += V;
+  const double h = problem.grid.cell_size_min();
+  return std::max(settings.penalty * problem.mu, mass / volume * h * h / problem.dt);
+}
+
+}  // namespace detail
+
 /// Solves the yield problem by ADMM from the guesses v and duals, which it overwrites with the solution.
 template <class Space, class Law>
 SolveReport solve_admm(YieldProblem<Space>& problem, const Law& law, const AdmmSettings& settings,
                        BlockSystem<Space::dim>& system, std::vector<Vec<Space::dim>>& v, Duals<Space>& duals) {
   constexpr int D = Space::dim;
-  const double r = settings.penalty * problem.mu;
+  const double r = detail::penalty(problem, settings);
   const auto stiffness = [&](int, int) { return problem.mu + r; };
   const auto stress = [&](int c, int k, const Vec<Space::n_strain>& q) -> Vec<Space::n_strain> {
     return problem.mu * q + duals.stress[c][k] + r * (q - duals.rate[c][k]);

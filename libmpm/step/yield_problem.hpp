@@ -8,6 +8,7 @@
 // Phi the potential of the yield law, gamma_dot = |q| at Gauss place q, one divergence a cell. Its stationarity is
 // the momentum balance; its solvers are in admm.hpp and newton.hpp.
 
+#include <algorithm>
 #include <vector>
 
 #include "libmpm/contact/boundary_points.hpp"
@@ -120,9 +121,12 @@ void assemble(const YieldProblem<Space>& problem, Tangent tangent, BlockSystem<S
     cell.noalias() += (quad.V_cell[c] * problem.K * problem.dt * b) * b.transpose();
     system.add_cell(c, cell);
   }
+  // A point on the very edge of a cell gives some of its nodes no mass; a trace of it keeps the matrix definite.
+  double trace = 0.0;
+  for (double m : problem.nodes.mass) trace = std::max(trace, 1e-12 * m);
   for (int i = 0; i < problem.grid.n_nodes(); ++i)
     for (int d = 0; d < D; ++d)
-      system.add_diagonal(i, d, problem.nodes.mass[i] / problem.dt + (problem.drag.empty() ? 0.0 : problem.drag[i]));
+      system.add_diagonal(i, d, std::max(trace, problem.nodes.mass[i]) / problem.dt + (problem.drag.empty() ? 0.0 : problem.drag[i]));
   add_contact_stiffness<D>(problem.contact, system);
   add_bound_stiffness<D>(problem.bound, system);
 }

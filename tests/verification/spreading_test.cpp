@@ -86,6 +86,7 @@ TEST(Spreading, HuppertOverADecade) {
   body.time = start;
   StepSettings settings;
   settings.dt_max = 0.5;
+  settings.even_out.on = true;  // a body that flows far; without it the exponent comes out 4 % high
   std::vector<double> x, y;
   while (body.time < 10.0 * start) {
     EXPECT_TRUE(implicit_step(body, ExactBingham{}, settings).converged);
