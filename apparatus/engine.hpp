@@ -1,7 +1,7 @@
 #pragma once
 
-// What every apparatus does the same way with libmpm: settings from a scene's model, the rest before a test, frames,
-// means and checks. Geometry, schedule and what is read off stay in each apparatus' own folder.
+// What every apparatus does the same way with libmpm: settings from a scene's model, the rest before a test,
+// frames, means and checks. Geometry, schedule and what is read off stay in each apparatus' own folder.
 
 #include <omp.h>
 
@@ -17,8 +17,8 @@
 
 namespace tremie::engine {
 
-inline constexpr double gravity = 9.81;       ///< [m/s^2]
-inline constexpr double rest_speed = 1e-4;    ///< slower than this is at rest [m/s]
+inline constexpr double gravity = 9.81;        ///< [m/s^2]
+inline constexpr double rest_speed = 1e-4;     ///< slower than this is at rest [m/s]
 inline constexpr double rest_must_last = 0.5;  ///< before a flow is called stopped [s]
 
 inline FaceKind face_of(ContactKind contact) {
@@ -55,9 +55,11 @@ auto with_law(const Model& model, Run run) {
 /// Throws std::invalid_argument for a scheme or shape that has no engine.
 inline void refuse_what_has_no_engine(const Model& model, const char* apparatus) {
   if (model.scheme != SchemeKind::implicit)
-    throw std::invalid_argument(std::string("model.scheme: the ") + apparatus + " runs with \"implicit\" for now");
+    throw std::invalid_argument(std::string("model.scheme: the ") + apparatus +
+                                " runs with \"implicit\" for now");
   if (model.shape != ShapeKind::b_spline)
-    throw std::invalid_argument(std::string("model.shape: the ") + apparatus + " runs with \"b_spline\" for now");
+    throw std::invalid_argument(std::string("model.shape: the ") + apparatus +
+                                " runs with \"b_spline\" for now");
 }
 
 /// lambda of every point after a rest; nothing is stored for a mix without thixotropy.
@@ -123,18 +125,22 @@ std::int64_t points_lost(const std::array<Axis, D>& axes, const Points<D>& point
   return lost;
 }
 
-/// Place of a point for the frames: an axisymmetric section lies in the plane (r, 0, z), a plane one in (x, y, 0),
-/// circling concrete on the line (r, 0, 0).
+/// Place of a point for the frames: an axisymmetric section lies in the plane (r, 0, z), a plane one in (x,
+/// y, 0), circling concrete on the line (r, 0, 0).
 template <class Space>
 std::array<double, 3> in_space(const Vec<Space::dim>& x) {
-  if constexpr (Space::dim == 3) return {x[0], x[1], x[2]};
-  else if constexpr (Space::dim == 1) return {x[0], 0.0, 0.0};
-  else if constexpr (std::is_same_v<Space, Axisymmetric>) return {x[0], 0.0, x[1]};
-  else return {x[0], x[1], 0.0};
+  if constexpr (Space::dim == 3)
+    return {x[0], x[1], x[2]};
+  else if constexpr (Space::dim == 1)
+    return {x[0], 0.0, 0.0};
+  else if constexpr (std::is_same_v<Space, Axisymmetric>)
+    return {x[0], 0.0, x[1]};
+  else
+    return {x[0], x[1], 0.0};
 }
 
-/// Shear rates where the points are now [1/s], from their own velocities: the body's grid is that of the last step's
-/// start.
+/// Shear rates where the points are now [1/s], from their own velocities: the body's grid is that of the last
+/// step's start.
 template <class Space>
 std::vector<double> shear_rates_now(const Body<Space>& body) {
   constexpr int D = Space::dim;
@@ -174,8 +180,10 @@ struct RestWatch {
   std::optional<double> slow_since;
 
   bool at_rest(bool free_to_flow, double max_speed, double time) {
-    if (!free_to_flow || max_speed > rest_speed) slow_since.reset();
-    else if (!slow_since) slow_since = time;
+    if (!free_to_flow || max_speed > rest_speed)
+      slow_since.reset();
+    else if (!slow_since)
+      slow_since = time;
     return slow_since && time - *slow_since >= rest_must_last;
   }
 };
@@ -186,6 +194,14 @@ void count_step(const Body<Space>& body, const StepReport& step, Checks& checks,
   checks.unconverged_steps += step.converged ? 0 : 1;
   cost.steps += 1;
   cost.cells_active = std::max<std::int64_t>(cost.cells_active, body.grid.n_cells());
+}
+
+/// Ends a run whose last step failed: the points are where they were before it.
+inline bool gave_up(const StepReport& step, Status& status, Checks& checks, double time) {
+  if (!step.failed) return false;
+  status = Status::failed;
+  checks.reasons.push_back("the velocities ran away at " + std::to_string(time) + " s; the run ends there");
+  return true;
 }
 
 /// Fills checks and cost at the end of a run, with the reasons why a result is not to be trusted.
@@ -199,7 +215,8 @@ void judge(const Body<Space>& body, double start_mass, Checks& checks, Cost& cos
     checks.reasons.push_back(std::to_string(checks.unconverged_steps) + " of " + std::to_string(cost.steps) +
                              " steps did not converge to the tolerance");
   if (checks.points_lost > 0)
-    checks.reasons.push_back(std::to_string(checks.points_lost) + " points left the domain or are not finite");
+    checks.reasons.push_back(std::to_string(checks.points_lost) +
+                             " points left the domain or are not finite");
   cost.points = static_cast<std::int64_t>(body.points.size());
   cost.bytes_per_point = bytes_per_point<Space::dim>(body.points.thixotropic());
   cost.simulated = body.time;

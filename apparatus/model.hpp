@@ -35,10 +35,11 @@ struct Model {
   MethodKind method = MethodKind::automatic;
   ShapeKind shape = ShapeKind::b_spline;
   TransferKind transfer = TransferKind::apic;
-  double flip_blend = 0.95;                   ///< share of FLIP, transfer = flip alone
-  std::optional<double> time_step;            ///< fixed step [s]; empty: chosen at every step
+  double flip_blend = 0.95;                    ///< share of FLIP, transfer = flip alone
+  std::optional<double> time_step;             ///< fixed step [s]; empty: chosen at every step
   std::array<double, 2> cell = {0.01, 0.005};  ///< [m] across, up
-  bool even_out = true;  ///< keep cells inside the body full (libmpm/transfer/even_out.hpp); no scene key, for studies
+  bool even_out =
+      true;  ///< keep cells inside the body full (libmpm/transfer/even_out.hpp); no scene key, for studies
   std::array<int, 2> points_per_cell = {4, 4};  ///< across, up
 };
 

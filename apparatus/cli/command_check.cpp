@@ -30,8 +30,10 @@ void print_estimate(const scene::Scene& scene) {
 void check_cell(const Options& options) {
   const cell::Scene scene = cell::read(options.scene, options.overrides);
   fmt::print("# {}: valid. Every value that it uses, in SI:\n\n{}", options.scene, scene.resolved);
-  fmt::print("\n# used and left out\n#   {} pieces of the history; no points, no grid\n#   flocculation: {}\n",
-             scene.cell.history.size(), scene.cell.mix.thixotropy ? "computed, and by CVODE beside it" : "not computed");
+  fmt::print(
+      "\n# used and left out\n#   {} pieces of the history; no points, no grid\n#   flocculation: {}\n",
+      scene.cell.history.size(),
+      scene.cell.mix.thixotropy ? "computed, and by CVODE beside it" : "not computed");
 }
 
 void check(const Options& options) {

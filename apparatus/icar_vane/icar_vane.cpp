@@ -6,9 +6,9 @@
 namespace tremie::icar_vane {
 namespace {
 
-constexpr double start_up = 0.1;    // in which the vane reaches a new speed [s]
+constexpr double start_up = 0.1;     // in which the vane reaches a new speed [s]
 constexpr double largest_dt = 0.02;  // resolves the decay: lambda follows the flow by one step [s]
-constexpr double first_dt = 1e-3;   // after a change of speed [s]
+constexpr double first_dt = 1e-3;    // after a change of speed [s]
 
 /// A speed held for a time.
 struct Stage {
@@ -25,8 +25,8 @@ std::vector<Stage> schedule(const Scene& scene) {
 double angular(double revolutions_per_second) { return 2.0 * std::numbers::pi * revolutions_per_second; }
 
 template <class Section>
-Sample read(const Body<typename Section::Space>& body, const Scene& scene, const Torques& t, double last_momentum,
-            double speed, const StepReport& step) {
+Sample read(const Body<typename Section::Space>& body, const Scene& scene, const Torques& t,
+            double last_momentum, double speed, const StepReport& step) {
   const double h = scene.vane.height;
   Sample s;
   s.time = body.time;
@@ -45,7 +45,8 @@ Sample read(const Body<typename Section::Space>& body, const Scene& scene, const
 
 /// Means over rings one cell wide.
 template <class Section>
-std::vector<ProfilePoint> profile(const Body<typename Section::Space>& body, const Section& section, double cell) {
+std::vector<ProfilePoint> profile(const Body<typename Section::Space>& body, const Section& section,
+                                  double cell) {
   const Vane& vane = section.vane;
   const auto& points = body.points;
   const std::vector<double> gamma_dot = engine::shear_rates_now(body);
@@ -74,7 +75,8 @@ Outcome run_section(const Scene& scene, const Section& section, const Law& law, 
   engine::rest(body, scene.rest);
   StepSettings settings = engine::step_settings(scene.model);
   settings.keep_forces = true;
-  settings.boundary_stiffness = 1e6;  // at the library's 1e3 the concrete slips enough to take 5 % off the torque
+  settings.boundary_stiffness =
+      1e6;  // at the library's 1e3 the concrete slips enough to take 5 % off the torque
   const double start_mass = engine::total_mass(body.points);
 
   Outcome outcome;
@@ -92,6 +94,7 @@ Outcome run_section(const Scene& scene, const Section& section, const Law& law, 
       turned += angular(speed) * step.dt;
       const Torques t = section.torques(body);
       engine::count_step(body, step, outcome.checks, outcome.cost);
+      if (engine::gave_up(step, outcome.status, outcome.checks, body.time)) break;
       outcome.series.push_back(read<Section>(body, scene, t, momentum, speed, step));
       momentum = t.angular_momentum;
       if (observer.on_step) observer.on_step(outcome.series.back());
@@ -132,7 +135,8 @@ Outcome run(const Scene& scene, const Observer& observer) {
   refuse_what_has_no_engine(scene);
   omp_set_num_threads(scene.threads);
   return with_section(scene, [&](const auto& section) {
-    return engine::with_law(scene.model, [&](const auto& law) { return run_section(scene, section, law, observer); });
+    return engine::with_law(scene.model,
+                            [&](const auto& law) { return run_section(scene, section, law, observer); });
   });
 }
 
@@ -144,7 +148,8 @@ Estimate estimate(const Scene& scene) {
     Estimate e;
     e.points = static_cast<std::int64_t>(body.points.size());
     e.cells_active = body.grid.n_cells();
-    e.bytes_per_point = bytes_per_point<std::decay_t<decltype(section)>::Space::dim>(scene.mix.thixotropy.has_value());
+    e.bytes_per_point =
+        bytes_per_point<std::decay_t<decltype(section)>::Space::dim>(scene.mix.thixotropy.has_value());
     for (const Stage& stage : schedule(scene)) e.steps += std::llround(stage.duration / largest_dt) + 15;
     return e;
   });

@@ -1,7 +1,7 @@
 #pragma once
 
-// The ICAR vane rheometer: a vane turning in a container of concrete, the torque that it takes, and what the instrument
-// would report from that torque beside what was put in.
+// The ICAR vane rheometer: a vane turning in a container of concrete, the torque that it takes, and what the
+// instrument would report from that torque beside what was put in.
 
 #include <array>
 #include <atomic>
@@ -14,13 +14,13 @@
 
 namespace tremie::icar_vane {
 
-/// The instrument [m]; the defaults are the ICAR's. End effects above and below the vane are neglected: every torque is that of a
-/// section times the vane's height.
+/// The instrument [m]; the defaults are the ICAR's. End effects above and below the vane are neglected: every
+/// torque is that of a section times the vane's height.
 struct Vane {
   double radius = 0.0635;
   double height = 0.127;
   double container_radius = 0.143;
-  int blades = 4;                 ///< plane sections alone; a Couette section is a solid cylinder
+  int blades = 4;                  ///< plane sections alone; a Couette section is a solid cylinder
   double blade_thickness = 0.003;  ///< plane sections alone [m]
 };
 
@@ -33,25 +33,25 @@ struct Scene {
   double speed = 0.25;         ///< [rev/s], at constant speed; negative turns the other way
   std::vector<double> speeds;  ///< a flow curve's speeds [rev/s]; empty: constant speed
   double pre_shear_speed = 0.5, pre_shear_time = 20.0;  ///< before a flow curve [rev/s], [s]
-  double hold_time = 5.0;      ///< of each speed of a flow curve [s]
-  double average_time = 2.0;   ///< the last part of each hold, over which the torque is averaged [s]
-  double orientation = 0.0;    ///< of the blades against the grid, plane sections alone [rad]
-  Model model;                 ///< space couette or plane
+  double hold_time = 5.0;                               ///< of each speed of a flow curve [s]
+  double average_time = 2.0;    ///< the last part of each hold, over which the torque is averaged [s]
+  double orientation = 0.0;     ///< of the blades against the grid, plane sections alone [rad]
+  Model model;                  ///< space couette or plane
   double frame_interval = 0.5;  ///< [s]
   int threads = 1;
 };
 
 /// One line of timeseries.csv. Torques [N m] about the axis, of the vane's whole height.
 struct Sample {
-  double time = 0.0;            ///< since the vane began to turn [s]
-  double speed = 0.0;           ///< [rev/s]
-  double torque = 0.0;          ///< on the blades
-  double torque_wall = 0.0;     ///< on the container
-  double torque_power = 0.0;    ///< dissipated power over Omega
-  double momentum_rate = 0.0;   ///< rate of angular momentum: torque - torque_wall in a transient
+  double time = 0.0;             ///< since the vane began to turn [s]
+  double speed = 0.0;            ///< [rev/s]
+  double torque = 0.0;           ///< on the blades
+  double torque_wall = 0.0;      ///< on the container
+  double torque_power = 0.0;     ///< dissipated power over Omega
+  double momentum_rate = 0.0;    ///< rate of angular momentum: torque - torque_wall in a transient
   double shear_rate_mean = 0.0;  ///< volume mean [1/s]
   std::optional<double> flocculation_mean = {}, flocculation_apparent = {};  ///< equation (6) for the second
-  double time_step = 0.0;  ///< [s]
+  double time_step = 0.0;                                                    ///< [s]
   int iterations = 0;
 };
 
@@ -74,10 +74,12 @@ struct ProfilePoint {
 struct Results {
   double torque_peak = 0.0, torque_end = 0.0, torque_wall_end = 0.0, torque_power_end = 0.0;  ///< [N m]
   std::optional<ReinerRiwlin> reiner_riwlin = {};  ///< from a flow curve, as the instrument would report it
-  std::optional<double> static_yield_stress_apparent = {}, dynamic_yield_stress_apparent = {};  ///< equation (6) [Pa]
+  std::optional<double> static_yield_stress_apparent = {},
+                        dynamic_yield_stress_apparent = {};  ///< equation (6) [Pa]
   std::optional<double> flocculation_apparent_start = {}, alpha_apparent = {};
-  double shear_rate_nominal = 0.0;  ///< 2 Omega / (1 - R_i^2/R_o^2), which alpha_apparent was divided by [1/s]
-  double alpha_window = 0.0;        ///< over which alpha_apparent was fitted [s]
+  double shear_rate_nominal =
+      0.0;                    ///< 2 Omega / (1 - R_i^2/R_o^2), which alpha_apparent was divided by [1/s]
+  double alpha_window = 0.0;  ///< over which alpha_apparent was fitted [s]
   std::optional<double> torque_couette_reference = {};  ///< of the solid cylinder at the end [N m]
   std::vector<CurvePoint> flow_curve;
   std::vector<ProfilePoint> profile;  ///< at the end

@@ -11,10 +11,11 @@
 namespace tremie::icar_vane {
 namespace {
 
-constexpr double alpha_window = 5.0;         // [s]
-constexpr double end_average = 0.5;          // over which the torques at the end are averaged: blades jitter as they cross cells [s]
-constexpr double agreement = 0.01;           // of the three torques, once steady
-constexpr double steady = 2e-3;              // mean rate of angular momentum over the torque that counts as steady
+constexpr double alpha_window = 5.0;  // [s]
+constexpr double end_average =
+    0.5;  // over which the torques at the end are averaged: blades jitter as they cross cells [s]
+constexpr double agreement = 0.01;  // of the three torques, once steady
+constexpr double steady = 2e-3;     // mean rate of angular momentum over the torque that counts as steady
 
 Instrument instrument_of(const Vane& vane) {
   Instrument instrument;
@@ -40,7 +41,8 @@ std::vector<CurvePoint> flow_curve(const Scene& scene, const std::vector<Sample>
   return curve;
 }
 
-std::optional<ReinerRiwlin> reported_bingham(const std::vector<CurvePoint>& curve, const Instrument& instrument) {
+std::optional<ReinerRiwlin> reported_bingham(const std::vector<CurvePoint>& curve,
+                                             const Instrument& instrument) {
   std::vector<FlowPoint> points;
   for (const CurvePoint& p : curve) points.push_back({angular_speed(std::abs(p.speed)), std::abs(p.torque)});
   if (points.size() < 2) return std::nullopt;
@@ -52,12 +54,13 @@ std::optional<ReinerRiwlin> reported_bingham(const std::vector<CurvePoint>& curv
 double couette_reference(const Scene& scene, const Instrument& instrument) {
   const double omega = angular_speed(std::abs(scene.speed));
   const Bingham bingham{scene.mix.tau_0, scene.mix.mu};
-  if (!scene.mix.thixotropy || scene.mix.thixotropy->alpha == 0.0) return reiner_riwlin(bingham, omega, instrument).torque;
+  if (!scene.mix.thixotropy || scene.mix.thixotropy->alpha == 0.0)
+    return reiner_riwlin(bingham, omega, instrument).torque;
   CouetteFlow flow;
   flow.bingham = bingham;
   flow.thixotropy = *scene.mix.thixotropy;
-  flow.thixotropy.initial_flocculation =
-      flocculation_after_rest(flow.thixotropy.initial_flocculation, flow.thixotropy, scene.mix.tau_0, scene.rest);
+  flow.thixotropy.initial_flocculation = flocculation_after_rest(
+      flow.thixotropy.initial_flocculation, flow.thixotropy, scene.mix.tau_0, scene.rest);
   flow.omega = omega;
   const double times[] = {0.0, scene.duration};
   return thixotropic_couette(flow, times, instrument).torque.back();
@@ -130,7 +133,8 @@ void check_torques_agree(Outcome& outcome) {
   const double scale = std::abs(r.torque_end);
   if (scale == 0.0 || std::abs(momentum_rate) > steady * scale * time) return;
   const double off =
-      std::max(std::abs(r.torque_wall_end - r.torque_end), std::abs(r.torque_power_end - r.torque_end)) / scale;
+      std::max(std::abs(r.torque_wall_end - r.torque_end), std::abs(r.torque_power_end - r.torque_end)) /
+      scale;
   if (off > agreement)
     outcome.checks.reasons.push_back("the torques on the blades, on the wall and from the power differ by " +
                                      std::to_string(100.0 * off) + " %");

@@ -1,7 +1,7 @@
 #pragma once
 
-// The two sections that a vane is run in. Each states: its body at rest, how the vane turns at a speed, and the torques.
-// All torques here are per metre of height and positive against a positive speed.
+// The two sections that a vane is run in. Each states: its body at rest, how the vane turns at a speed, and
+// the torques. All torques here are per metre of height and positive against a positive speed.
 
 #include <numbers>
 
@@ -26,14 +26,20 @@ struct CouetteSection {
     body.mix = scene.mix;
     const double gap = vane.container_radius - vane.radius;
     const int n_cells = std::max(4, static_cast<int>(std::lround(gap / scene.model.cell[0])));
-    body.grid.axes[0] = {.h = gap / n_cells, .origin = vane.radius, .low = FaceKind::no_slip, .high = FaceKind::no_slip,
+    body.grid.axes[0] = {.h = gap / n_cells,
+                         .origin = vane.radius,
+                         .low = FaceKind::no_slip,
+                         .high = FaceKind::no_slip,
                          .n_cells = n_cells};
-    seed_box<Space>(Vec<1>(vane.radius), Vec<1>(vane.container_radius), {n_cells * scene.model.points_per_cell[0]},
-                    scene.mix.density, scene.mix.K, [](const Vec<1>&) { return true; },
-                    [](const Vec<1>&) { return 0.0; }, body.points);
+    seed_box<Space>(
+        Vec<1>(vane.radius), Vec<1>(vane.container_radius), {n_cells * scene.model.points_per_cell[0]},
+        scene.mix.density, scene.mix.K, [](const Vec<1>&) { return true; }, [](const Vec<1>&) { return 0.0; },
+        body.points);
     return body;
   }
-  void turn(Body<Space>& body, double omega, double) const { body.walls.v[0][0] = Vec<1>(omega * vane.radius); }
+  void turn(Body<Space>& body, double omega, double) const {
+    body.walls.v[0][0] = Vec<1>(omega * vane.radius);
+  }
 
   Torques torques(const Body<Space>& body) const {
     Torques t;
@@ -50,8 +56,8 @@ struct CouetteSection {
   double speed(const Vec<1>&, const Vec<1>& v) const { return v[0]; }
 };
 
-/// A horizontal section through the blades, the vane turning in a container at rest; blades and container are boundary
-/// points half a cell apart.
+/// A horizontal section through the blades, the vane turning in a container at rest; blades and container are
+/// boundary points half a cell apart.
 struct PlaneSection {
   using Space = PlaneStrain;
   const Vane& vane;
@@ -70,7 +76,8 @@ struct PlaneSection {
   bool in_blade(const Vec<2>& x, double turned) const {
     for (int b = 0; b < vane.blades; ++b) {
       const double a = turned + 2.0 * std::numbers::pi * b / vane.blades;
-      const double along = x[0] * std::cos(a) + x[1] * std::sin(a), across = -x[0] * std::sin(a) + x[1] * std::cos(a);
+      const double along = x[0] * std::cos(a) + x[1] * std::sin(a),
+                   across = -x[0] * std::sin(a) + x[1] * std::cos(a);
       if (along >= 0.0 && along <= vane.radius && std::abs(across) <= 0.5 * vane.blade_thickness) return true;
     }
     return false;
@@ -80,10 +87,12 @@ struct PlaneSection {
     body.mix = scene.mix;
     for (int d = 0; d < 2; ++d) body.grid.axes[d] = {.h = scene.model.cell[0]};
     const double R = vane.container_radius;
-    const int n = static_cast<int>(std::lround(2.0 * R / scene.model.cell[0] * scene.model.points_per_cell[0]));
-    seed_box<Space>({-R, -R}, {R, R}, {n, n}, scene.mix.density, scene.mix.K,
-                    [&](const Vec<2>& x) { return x.norm() < R && !in_blade(x, orientation); },
-                    [](const Vec<2>&) { return 0.0; }, body.points);
+    const int n =
+        static_cast<int>(std::lround(2.0 * R / scene.model.cell[0] * scene.model.points_per_cell[0]));
+    seed_box<Space>(
+        {-R, -R}, {R, R}, {n, n}, scene.mix.density, scene.mix.K,
+        [&](const Vec<2>& x) { return x.norm() < R && !in_blade(x, orientation); },
+        [](const Vec<2>&) { return 0.0; }, body.points);
     return body;
   }
   /// The vane at the angle `turned`, turning at omega: the outlines of its blades.
@@ -106,8 +115,10 @@ struct PlaneSection {
     for (const BoundPoint<2>& b : body.bound) {
       const Vec<2> F = wall_force<2>(b, body.grid.cell_nodes, body.v), x = body.boundary[b.source].x;
       const double moment = x[0] * F[1] - x[1] * F[0];
-      if (b.source < static_cast<int>(container.size())) t.wall -= moment;
-      else t.blades += moment;
+      if (b.source < static_cast<int>(container.size()))
+        t.wall -= moment;
+      else
+        t.blades += moment;
     }
     const auto& p = body.points;
     for (std::size_t i = 0; i < p.size(); ++i)

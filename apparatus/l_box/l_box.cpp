@@ -15,23 +15,25 @@ Body<PlaneStrain> filled_column(const Scene& scene) {
   body.mix = scene.mix;
   body.gravity = {0.0, -engine::gravity};
   const auto [across, up] = scene.model.cell;
-  const int n_cells = std::max(1, static_cast<int>(std::lround((box.column_length + box.channel_length) / across)));
+  const int n_cells =
+      std::max(1, static_cast<int>(std::lround((box.column_length + box.channel_length) / across)));
   const double h = (box.column_length + box.channel_length) / n_cells;
   body.grid.axes[0] = {.h = h, .low = FaceKind::no_slip, .high = FaceKind::no_slip, .n_cells = n_cells};
   body.grid.axes[1] = {.h = up, .low = FaceKind::no_slip};
   const auto [n_across, n_up] = scene.model.points_per_cell;
   const std::array<int, 2> n = {std::max(1, static_cast<int>(std::lround(box.column_length / h * n_across))),
                                 std::max(1, static_cast<int>(std::lround(box.column_height / up * n_up)))};
-  seed_box<PlaneStrain>({0.0, 0.0}, {box.column_length, box.column_height}, n, scene.mix.density, scene.mix.K,
-                        [](const Vec<2>&) { return true; },
-                        [&](const Vec<2>& x) { return scene.mix.density * engine::gravity * (box.column_height - x[1]); },
-                        body.points);
+  seed_box<PlaneStrain>(
+      {0.0, 0.0}, {box.column_length, box.column_height}, n, scene.mix.density, scene.mix.K,
+      [](const Vec<2>&) { return true; },
+      [&](const Vec<2>& x) { return scene.mix.density * engine::gravity * (box.column_height - x[1]); },
+      body.points);
   engine::rest(body, scene.rest);
   return body;
 }
 
-/// The column's front wall above the channel, to which the concrete sticks, and what is left of the gate below it, along
-/// which it slips; points half a cell apart.
+/// The column's front wall above the channel, to which the concrete sticks, and what is left of the gate
+/// below it, along which it slips; points half a cell apart.
 std::vector<BoundaryPoint<2>> front_wall(const Scene& scene, double time) {
   const Box& box = scene.box;
   const double spacing = 0.5 * scene.model.cell[1];
@@ -50,8 +52,8 @@ std::vector<BoundaryPoint<2>> front_wall(const Scene& scene, double time) {
   return points;
 }
 
-/// Depth of the concrete over [low, high], rows of height `row` counted from the floor up to the first that is less than half
-/// full: what clings to a wall higher up is no depth.
+/// Depth of the concrete over [low, high], rows of height `row` counted from the floor up to the first that
+/// is less than half full: what clings to a wall higher up is no depth.
 double depth(const Points<2>& points, double low, double high, double row) {
   std::vector<double> fill;
   for (std::size_t p = 0; p < points.size(); ++p) {
@@ -68,7 +70,8 @@ double depth(const Points<2>& points, double low, double high, double row) {
   return sum;
 }
 
-/// Distance of the front from the gate: of the outermost point that has company (three others less than half a cell behind).
+/// Distance of the front from the gate: of the outermost point that has company (three others less than half
+/// a cell behind).
 double front_of(const Points<2>& points, double gate, double cell) {
   std::vector<double> x;
   for (const auto& p : points.x) x.push_back(p[0]);
@@ -86,7 +89,8 @@ Sample read(const Body<PlaneStrain>& body, const Scene& scene, const StepReport&
   s.front = front_of(body.points, box.column_length, body.grid.axes[0].h);
   const double row = body.grid.axes[1].h;
   s.h1 = depth(body.points, box.column_length - reading_length, box.column_length, row);
-  if (s.front > box.channel_length - 0.5 * reading_length) s.h2 = depth(body.points, end - reading_length, end, row);
+  if (s.front > box.channel_length - 0.5 * reading_length)
+    s.h2 = depth(body.points, end - reading_length, end, row);
   s.max_speed = step.max_speed;
   s.shear_rate_mean = step.shear_rate_mean;
   s.flocculation_mean = engine::mean_flocculation(body.points);
@@ -106,7 +110,8 @@ std::optional<double> time_of_front(const std::vector<Sample>& series, double di
   return std::nullopt;
 }
 
-void read_results(const Body<PlaneStrain>& body, const Scene& scene, std::optional<double> stopped_at, Outcome& outcome) {
+void read_results(const Body<PlaneStrain>& body, const Scene& scene, std::optional<double> stopped_at,
+                  Outcome& outcome) {
   const Sample &first = outcome.series.front(), &last = outcome.series.back();
   Results& r = outcome.results;
   r.h1 = last.h1;
@@ -120,7 +125,8 @@ void read_results(const Body<PlaneStrain>& body, const Scene& scene, std::option
   const Box& box = scene.box;
   const double step = 2.0 * body.grid.axes[0].h;
   for (double x = 0.0; x < box.channel_length - 0.5 * step; x += step)
-    r.profile.push_back({x + 0.5 * step, depth(body.points, box.column_length + x, box.column_length + x + step, body.grid.axes[1].h)});
+    r.profile.push_back({x + 0.5 * step, depth(body.points, box.column_length + x,
+                                               box.column_length + x + step, body.grid.axes[1].h)});
   r.volume_in_channel = 0.0;
   for (const auto& [x, h] : r.profile) r.volume_in_channel += h * step;
 }
@@ -143,6 +149,7 @@ Outcome run_plane(const Scene& scene, const Law& law, const Observer& observer) 
     body.boundary = front_wall(scene, body.time);
     const StepReport step = implicit_step(body, law, settings);
     engine::count_step(body, step, outcome.checks, outcome.cost);
+    if (engine::gave_up(step, outcome.status, outcome.checks, body.time)) break;
     outcome.series.push_back(read(body, scene, step));
     if (observer.on_step) observer.on_step(outcome.series.back());
     if (observer.on_frame && body.time >= next_frame) {
@@ -166,8 +173,10 @@ Outcome run_plane(const Scene& scene, const Law& law, const Observer& observer) 
 
 void refuse_what_has_no_engine(const Scene& scene) {
   if (scene.model.space != SpaceKind::plane && scene.model.space != SpaceKind::plane_with_side_walls)
-    throw std::invalid_argument("model.space: the L-box runs in \"plane\" or \"plane_with_side_walls\" for now");
-  if (scene.bars != 0) throw std::invalid_argument("test.bars: bars need three dimensions, which the L-box has not yet");
+    throw std::invalid_argument(
+        "model.space: the L-box runs in \"plane\" or \"plane_with_side_walls\" for now");
+  if (scene.bars != 0)
+    throw std::invalid_argument("test.bars: bars need three dimensions, which the L-box has not yet");
   engine::refuse_what_has_no_engine(scene.model, "L-box");
 }
 

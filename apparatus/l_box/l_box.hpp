@@ -1,7 +1,7 @@
 #pragma once
 
-// The L-box test of EN 12350-10 in the plane along its channel: a column of concrete behind a gate, and how high it
-// stands at the end of the channel when the gate is lifted.
+// The L-box test of EN 12350-10 in the plane along its channel: a column of concrete behind a gate, and how
+// high it stands at the end of the channel when the gate is lifted.
 
 #include <atomic>
 #include <functional>
@@ -25,10 +25,10 @@ struct Box {
 struct Scene {
   Mix mix;
   Box box;
-  double rest = 60.0;                          ///< in the column, before the gate is lifted [s]
-  double duration = 60.0;                      ///< of the flow, at most [s]
-  std::optional<double> gate_speed = 0.30;     ///< [m/s]; empty: the gate is gone at once
-  int bars = 0;                                ///< 0 here; 2 or 3 need three dimensions
+  double rest = 60.0;                       ///< in the column, before the gate is lifted [s]
+  double duration = 60.0;                   ///< of the flow, at most [s]
+  std::optional<double> gate_speed = 0.30;  ///< [m/s]; empty: the gate is gone at once
+  int bars = 0;                             ///< 0 here; 2 or 3 need three dimensions
   Model model;
   double frame_interval = 0.5;  ///< simulated time between frames [s]
   int threads = 1;
@@ -36,10 +36,11 @@ struct Scene {
 
 /// One line of timeseries.csv.
 struct Sample {
-  double time = 0.0;             ///< since the start of the lift [s]
-  double front = 0.0;            ///< distance of the front from the gate [m], 0 behind it
-  double h1 = 0.0;               ///< depth behind the gate, mean over 20 mm [m]
-  std::optional<double> h2;      ///< depth at the channel's end, mean over 20 mm [m]; empty before the front is there
+  double time = 0.0;   ///< since the start of the lift [s]
+  double front = 0.0;  ///< distance of the front from the gate [m], 0 behind it
+  double h1 = 0.0;     ///< depth behind the gate, mean over 20 mm [m]
+  std::optional<double>
+      h2;  ///< depth at the channel's end, mean over 20 mm [m]; empty before the front is there
   double max_speed = 0.0;        ///< [m/s]
   double shear_rate_mean = 0.0;  ///< volume mean [1/s]
   std::optional<double> flocculation_mean;
@@ -49,10 +50,10 @@ struct Sample {
 };
 
 struct Results {
-  double h1 = 0.0;                             ///< [m]
-  std::optional<double> h2, passing_ratio;     ///< empty where the concrete never reached the end
-  std::optional<double> t200, t400;            ///< front 200 and 400 mm from the gate [s]
-  std::optional<double> stopped_at;            ///< [s]
+  double h1 = 0.0;                          ///< [m]
+  std::optional<double> h2, passing_ratio;  ///< empty where the concrete never reached the end
+  std::optional<double> t200, t400;         ///< front 200 and 400 mm from the gate [s]
+  std::optional<double> stopped_at;         ///< [s]
   std::optional<double> flocculation_mean_start, flocculation_mean_end;
   std::vector<std::array<double, 2>> profile;  ///< distance from the gate and depth at the end [m]
   double volume_in_channel = 0.0;              ///< at the end, a metre of width [m^2]
@@ -82,7 +83,8 @@ Outcome run(const Scene& scene, const Observer& observer = {});
 
 Estimate estimate(const Scene& scene);
 
-/// EN 12350-10 class of a passing ratio: "PL1" (two bars) or "PL2" (three) from 0.80 on; "" below it or without bars.
+/// EN 12350-10 class of a passing ratio: "PL1" (two bars) or "PL2" (three) from 0.80 on; "" below it or
+/// without bars.
 std::string passing_class(double ratio, int bars);
 
 }  // namespace tremie::l_box

@@ -23,15 +23,16 @@ inline double volume(const Cone& cone) {
   return std::numbers::pi * cone.height / 3.0 * (a * a + a * b + b * b);
 }
 
-/// Fills the cone with rings of points under hydrostatic pressure. Rows of height dz, each divided into rings about dr
-/// wide that end at the wall, so that the volume is the cone's to round-off.
+/// Fills the cone with rings of points under hydrostatic pressure. Rows of height dz, each divided into rings
+/// about dr wide that end at the wall, so that the volume is the cone's to round-off.
 inline void fill(const Cone& cone, const Mix& mix, double g, double dr, double dz, Points<2>& points) {
   const int rows = std::max(1, static_cast<int>(std::lround(cone.height / dz)));
   const double row = cone.height / rows;
   for (int j = 0; j < rows; ++j) {
     const double z = (j + 0.5) * row;
     const double low = inner_radius(cone, j * row), high = inner_radius(cone, (j + 1) * row);
-    const double R = std::sqrt((low * low + low * high + high * high) / 3.0);  // the row's volume is pi R^2 row
+    const double R =
+        std::sqrt((low * low + low * high + high * high) / 3.0);  // the row's volume is pi R^2 row
     const int rings = std::max(1, static_cast<int>(std::lround(R / dr)));
     for (int i = 0; i < rings; ++i) {
       const double inner = R * i / rings, outer = R * (i + 1) / rings;

@@ -73,7 +73,8 @@ inline void read_results(const engine::RestWatch& watch, bool stopped, Outcome& 
   r.height = last.height;
   r.flocculation_mean_start = first.flocculation_mean;
   r.flocculation_mean_end = last.flocculation_mean;
-  for (const Sample& s : outcome.series) r.shear_rate_mean_peak = std::max(r.shear_rate_mean_peak, s.shear_rate_mean);
+  for (const Sample& s : outcome.series)
+    r.shear_rate_mean_peak = std::max(r.shear_rate_mean_peak, s.shear_rate_mean);
   if (stopped) r.stopped_at = watch.slow_since;
   if (stopped && *r.stopped_at > 0.0) r.mean_velocity = (r.spread - 0.2) / (2.0 * *r.stopped_at);
   read_t500(outcome);
@@ -95,9 +96,11 @@ Outcome run_axisymmetric(const Scene& scene, const Law& law, const Observer& obs
   double next_frame = scene.frame_interval;
   while (!stopped && body.time < scene.duration * (1.0 - 1e-12)) {
     settings.dt_max = std::min(StepSettings{}.dt_max, scene.duration - body.time);
-    const bool cone_gone = scene.lift_speed && rim_height(scene, body.time) > outcome.series.back().height + 0.02;
+    const bool cone_gone =
+        scene.lift_speed && rim_height(scene, body.time) > outcome.series.back().height + 0.02;
     const StepReport step = implicit_step(body, law, settings, cone_gone ? RigidWall<2>{} : wall);
     engine::count_step(body, step, outcome.checks, outcome.cost);
+    if (engine::gave_up(step, outcome.status, outcome.checks, body.time)) break;
     outcome.series.push_back(read(body, step));
     if (observer.on_step) observer.on_step(outcome.series.back());
     if (observer.on_frame && body.time >= next_frame) {

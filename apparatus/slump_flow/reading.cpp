@@ -7,7 +7,8 @@
 namespace tremie::slump_flow {
 namespace {
 
-/// A point belongs to the outline when this many others are less than half a cell behind it; fewer are strays.
+/// A point belongs to the outline when this many others are less than half a cell behind it; fewer are
+/// strays.
 constexpr std::size_t company = 3;
 
 struct Weighted {
@@ -19,7 +20,8 @@ double upper_quantile(std::vector<Weighted>& sorted, double share) {
   if (sorted.empty()) return 0.0;
   double total = 0.0;
   for (const Weighted& w : sorted) total += w.volume;
-  std::sort(sorted.begin(), sorted.end(), [](const Weighted& a, const Weighted& b) { return a.value > b.value; });
+  std::sort(sorted.begin(), sorted.end(),
+            [](const Weighted& a, const Weighted& b) { return a.value > b.value; });
   double beyond = 0.0;
   for (const Weighted& w : sorted)
     if ((beyond += w.volume) > share * total) return w.value + 0.5 * w.size;
@@ -46,9 +48,11 @@ double spread(const Points<2>& points, double cell) {
   for (; radii.size() <= company && reach > -4.0 * cell; reach -= 4.0 * cell) {
     radii.clear();
     for (std::size_t p = 0; p < points.size(); ++p)
-      if (points.x[p][0] > reach) radii.push_back({points.x[p][0], points.volume(p), section_size(points, p)});
+      if (points.x[p][0] > reach)
+        radii.push_back({points.x[p][0], points.volume(p), section_size(points, p)});
   }
-  std::sort(radii.begin(), radii.end(), [](const Weighted& a, const Weighted& b) { return a.value > b.value; });
+  std::sort(radii.begin(), radii.end(),
+            [](const Weighted& a, const Weighted& b) { return a.value > b.value; });
   std::size_t i = 0;
   while (i + company < radii.size() && radii[i].value - radii[i + company].value > 0.5 * cell) ++i;
   return radii.empty() ? 0.0 : 2.0 * radii[i].value + radii[i].size;
@@ -57,7 +61,8 @@ double spread(const Points<2>& points, double cell) {
 double centre_height(const Points<2>& points, double radius) {
   std::vector<Weighted> heights;
   for (std::size_t p = 0; p < points.size(); ++p)
-    if (points.x[p][0] < radius) heights.push_back({points.x[p][1], points.volume(p), section_size(points, p)});
+    if (points.x[p][0] < radius)
+      heights.push_back({points.x[p][1], points.volume(p), section_size(points, p)});
   return upper_quantile(heights, 1e-2);
 }
 

@@ -9,8 +9,9 @@ namespace tremie::slump_flow {
 /// Twice the outermost point's radius [m].
 double spread_of_outermost_point(const Points<2>& points);
 
-/// Diameter of the outline seen from above [m]: twice the radius of the outermost point that is no stray, plus the size
-/// of that point. `cell`: cell size across [m], the scale on which a point far from all others is a stray.
+/// Diameter of the outline seen from above [m]: twice the radius of the outermost point that is no stray,
+/// plus the size of that point. `cell`: cell size across [m], the scale on which a point far from all others
+/// is a stray.
 double spread(const Points<2>& points, double cell);
 
 /// Height of the concrete at its centre [m]: of the points within `radius` of the axis, likewise robust.

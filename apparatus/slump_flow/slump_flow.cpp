@@ -18,7 +18,8 @@ void refuse_what_has_no_engine(const Scene& scene) {
 Outcome run(const Scene& scene, const Observer& observer) {
   refuse_what_has_no_engine(scene);
   omp_set_num_threads(scene.threads);
-  return engine::with_law(scene.model, [&](const auto& law) { return run_axisymmetric(scene, law, observer); });
+  return engine::with_law(scene.model,
+                          [&](const auto& law) { return run_axisymmetric(scene, law, observer); });
 }
 
 Estimate estimate(const Scene& scene) {
@@ -30,7 +31,8 @@ Estimate estimate(const Scene& scene) {
   e.cells_active = body.grid.n_cells();
   e.bytes_per_point = bytes_per_point<2>(body.points.thixotropic());
   const StepSettings settings = step_settings(scene);
-  // The collapse runs at about sqrt(g H) for 0.4 s at the CFL limit, the rest of the flow at the largest step.
+  // The collapse runs at about sqrt(g H) for 0.4 s at the CFL limit, the rest of the flow at the largest
+  // step.
   const double speed = std::sqrt(gravity * scene.cone.height);
   const double collapse = 0.4 * speed / (settings.cfl * std::min(scene.model.cell[0], scene.model.cell[1]));
   e.steps = scene.model.time_step ? std::llround(scene.duration / *scene.model.time_step)

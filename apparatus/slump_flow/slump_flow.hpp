@@ -1,6 +1,7 @@
 #pragma once
 
-// The slump-flow test of EN 12350-8: an Abrams cone of concrete, lifted off a floor, and the spread that it leaves.
+// The slump-flow test of EN 12350-8: an Abrams cone of concrete, lifted off a floor, and the spread that it
+// leaves.
 
 #include <atomic>
 #include <functional>
@@ -23,9 +24,9 @@ struct Scene {
   Mix mix;
   Cone cone;
   Floor floor;
-  double rest = 0.0;                           ///< before the lift [s]
-  double duration = 30.0;                      ///< of the flow, at most [s]
-  std::optional<double> lift_speed = 0.15;     ///< [m/s]; empty: the cone is gone at once
+  double rest = 0.0;                        ///< before the lift [s]
+  double duration = 30.0;                   ///< of the flow, at most [s]
+  std::optional<double> lift_speed = 0.15;  ///< [m/s]; empty: the cone is gone at once
   Model model;
   double frame_interval = 0.5;  ///< simulated time between frames [s]
   int threads = 1;
@@ -33,25 +34,25 @@ struct Scene {
 
 /// One line of timeseries.csv.
 struct Sample {
-  double time = 0.0;              ///< since the start of the lift [s]
-  double spread = 0.0;            ///< as the standard reads it [m]
-  double spread_max_point = 0.0;  ///< twice the outermost point's radius [m]
-  double height = 0.0;            ///< of the concrete at the centre [m]
-  double max_speed = 0.0;         ///< [m/s]
-  double shear_rate_mean = 0.0;   ///< volume mean [1/s]
+  double time = 0.0;                             ///< since the start of the lift [s]
+  double spread = 0.0;                           ///< as the standard reads it [m]
+  double spread_max_point = 0.0;                 ///< twice the outermost point's radius [m]
+  double height = 0.0;                           ///< of the concrete at the centre [m]
+  double max_speed = 0.0;                        ///< [m/s]
+  double shear_rate_mean = 0.0;                  ///< volume mean [1/s]
   std::optional<double> flocculation_mean = {};  ///< volume mean; empty without thixotropy
-  double volume_change = 0.0;     ///< sum V / V0 - 1
-  double kinetic_energy = 0.0;    ///< [J]
-  double time_step = 0.0;         ///< [s]
-  int iterations = 0;             ///< of the yield method in this step
+  double volume_change = 0.0;                    ///< sum V / V0 - 1
+  double kinetic_energy = 0.0;                   ///< [J]
+  double time_step = 0.0;                        ///< [s]
+  int iterations = 0;                            ///< of the yield method in this step
 };
 
 struct Results {
   double spread = 0.0, spread_max_point = 0.0, height = 0.0;  ///< [m]
-  std::optional<double> t500 = {};        ///< [s], from the start of the lift
-  std::optional<double> stopped_at = {};  ///< [s]
+  std::optional<double> t500 = {};                            ///< [s], from the start of the lift
+  std::optional<double> stopped_at = {};                      ///< [s]
   std::optional<double> flocculation_mean_start = {}, flocculation_mean_end = {};
-  double shear_rate_mean_peak = 0.0;  ///< [1/s]
+  double shear_rate_mean_peak = 0.0;         ///< [1/s]
   std::optional<double> mean_velocity = {};  ///< (SF - 200 mm) / (2 t_stop) [m/s]
 };
 
@@ -76,8 +77,8 @@ struct Estimate {
   std::int64_t points = 0, cells_active = 0, bytes_per_point = 0, steps = 0;
 };
 
-/// Runs the test. Numerical trouble is reported in Outcome::checks, not thrown; a scene that this library cannot
-/// run (an explicit scheme, a space without an engine) throws std::invalid_argument with the reason.
+/// Runs the test. Numerical trouble is reported in Outcome::checks, not thrown; a scene that this library
+/// cannot run (an explicit scheme, a space without an engine) throws std::invalid_argument with the reason.
 Outcome run(const Scene& scene, const Observer& observer = {});
 
 /// Points, cells and bytes at the start and a guess of the steps, without running.

@@ -2,11 +2,12 @@
 
 // Contact with walls, as terms of the step's convex problem.
 //
-// Flat walls are ends of the grid's axes: the interpolatory spline there makes a prescribed velocity exact. A moving
-// rigid wall acts through the points next to it: point p may not come closer than its own half spacing,
+// Flat walls are ends of the grid's axes: the interpolatory spline there makes a prescribed velocity exact. A
+// moving rigid wall acts through the points next to it: point p may not come closer than its own half
+// spacing,
 //   n.(v(x_p) - v_wall) >= (gap_min - gap_p) / dt,
-// one-sided, so the concrete is free to separate; no friction along it. The Coulomb floor is a yield term g |v_t| at each floor
-// node with g = coefficient * normal force.
+// one-sided, so the concrete is free to separate; no friction along it. The Coulomb floor is a yield term g
+// |v_t| at each floor node with g = coefficient * normal force.
 
 #include <Eigen/Core>
 #include <array>
@@ -32,12 +33,12 @@ struct ContactPoint {
 template <int D>
 struct FrictionNode {
   int node = 0;
-  int normal_axis = 0;                      ///< -1: held against any motion in the section
-  double reach = 0.0;                       ///< of side walls: W / sqrt(12), as their viscous drag has it [m]
-  double limit = 0.0;                       ///< coefficient * normal force, or the side walls' yield force [N]
-  Vec<D> force = Vec<D>::Zero();            ///< along the wall, its dual [N]
-  Vec<D> slip = Vec<D>::Zero();             ///< split sliding velocity, for ADMM [m/s]
-  double stiffness = 0.0;                   ///< ADMM's penalty [kg/s]
+  int normal_axis = 0;            ///< -1: held against any motion in the section
+  double reach = 0.0;             ///< of side walls: W / sqrt(12), as their viscous drag has it [m]
+  double limit = 0.0;             ///< coefficient * normal force, or the side walls' yield force [N]
+  Vec<D> force = Vec<D>::Zero();  ///< along the wall, its dual [N]
+  Vec<D> slip = Vec<D>::Zero();   ///< split sliding velocity, for ADMM [m/s]
+  double stiffness = 0.0;         ///< ADMM's penalty [kg/s]
 };
 
 template <int D>
@@ -50,7 +51,8 @@ double normal_velocity(const ContactPoint<D>& c, const std::vector<std::array<in
 
 /// Closes contacts that are violated and opens those that would pull; true if any changed.
 template <int D>
-bool update_active(std::vector<ContactPoint<D>>& contact, const std::vector<std::array<int, power(3, D)>>& cell_nodes,
+bool update_active(std::vector<ContactPoint<D>>& contact,
+                   const std::vector<std::array<int, power(3, D)>>& cell_nodes,
                    const std::vector<Vec<D>>& v) {
   bool changed = false;
   for (ContactPoint<D>& c : contact) {
@@ -63,12 +65,13 @@ bool update_active(std::vector<ContactPoint<D>>& contact, const std::vector<std:
 
 template <int D>
 void add_contact_forces(const std::vector<ContactPoint<D>>& contact,
-                        const std::vector<std::array<int, power(3, D)>>& cell_nodes, const std::vector<Vec<D>>& v,
-                        Eigen::VectorXd& R) {
+                        const std::vector<std::array<int, power(3, D)>>& cell_nodes,
+                        const std::vector<Vec<D>>& v, Eigen::VectorXd& R) {
   for (const ContactPoint<D>& c : contact) {
     if (!c.active) continue;
     const double force = c.stiffness * (c.target - normal_velocity(c, cell_nodes, v));
-    for (int i = 0; i < power(3, D); ++i) R.segment<D>(cell_nodes[c.cell][i] * D) += force * c.N[i] * c.normal;
+    for (int i = 0; i < power(3, D); ++i)
+      R.segment<D>(cell_nodes[c.cell][i] * D) += force * c.N[i] * c.normal;
   }
 }
 
@@ -87,7 +90,8 @@ void add_contact_stiffness(const std::vector<ContactPoint<D>>& contact, BlockSys
 /// Contact energy [W]: quadratic in the violation.
 template <int D>
 double contact_energy(const std::vector<ContactPoint<D>>& contact,
-                      const std::vector<std::array<int, power(3, D)>>& cell_nodes, const std::vector<Vec<D>>& v) {
+                      const std::vector<std::array<int, power(3, D)>>& cell_nodes,
+                      const std::vector<Vec<D>>& v) {
   double energy = 0.0;
   for (const ContactPoint<D>& c : contact) {
     const double violation = std::max(0.0, c.target - normal_velocity(c, cell_nodes, v));

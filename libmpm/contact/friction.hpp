@@ -1,7 +1,8 @@
 #pragma once
 
-// The Coulomb floor as a yield term of the step: energy g |u| at each floor node, u its sliding velocity, g = coefficient times
-// normal force. g is frozen while a step is solved and renewed from the reaction afterwards.
+// The Coulomb floor as a yield term of the step: energy g |u| at each floor node, u its sliding velocity, g =
+// coefficient times normal force. g is frozen while a step is solved and renewed from the reaction
+// afterwards.
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +14,8 @@ namespace tremie {
 /// Newton's rounding of |u| at u = 0 [m/s].
 inline constexpr double friction_rounding = 1e-5;
 
-/// ADMM's penalties: half the shear stiffness of the concrete next to each node, `viscosity` V_i / h^2, as the yield part's is
-/// `viscosity`. V: volume of the concrete around each node [m^3].
+/// ADMM's penalties: half the shear stiffness of the concrete next to each node, `viscosity` V_i / h^2, as
+/// the yield part's is `viscosity`. V: volume of the concrete around each node [m^3].
 template <int D>
 void add_friction_stiffness_admm(const ActiveGrid<D>& grid, const std::vector<double>& V, double viscosity,
                                  std::vector<FrictionNode<D>>& friction, BlockSystem<D>& system) {
@@ -36,8 +37,8 @@ void add_friction_forces_admm(const std::vector<FrictionNode<D>>& friction, cons
 
 /// One update of the split sliding velocities; true when all agree with the grid's within the tolerance.
 template <int D>
-bool update_friction_admm(std::vector<FrictionNode<D>>& friction, const std::vector<Vec<D>>& v, double over_relaxation,
-                          double tolerance) {
+bool update_friction_admm(std::vector<FrictionNode<D>>& friction, const std::vector<Vec<D>>& v,
+                          double over_relaxation, double tolerance) {
   double mismatch = 0.0, scale = 0.0;
   for (FrictionNode<D>& f : friction) {
     if (f.stiffness == 0.0) continue;  // nothing presses on it
@@ -46,7 +47,8 @@ bool update_friction_admm(std::vector<FrictionNode<D>>& friction, const std::vec
     const double a_norm = a.norm();
     const Vec<D> force = a_norm > f.limit ? Vec<D>(f.limit / a_norm * a) : a;
     const Vec<D> slip = (a - force) / f.stiffness;
-    mismatch += (f.stiffness * f.stiffness) * std::max((u - slip).squaredNorm(), (slip - f.slip).squaredNorm());
+    mismatch +=
+        (f.stiffness * f.stiffness) * std::max((u - slip).squaredNorm(), (slip - f.slip).squaredNorm());
     scale += f.limit * f.limit;
     f.force = force;
     f.slip = slip;
@@ -68,7 +70,7 @@ template <int D>
 Mat<D, D> friction_tangent(const FrictionNode<D>& f, const Vec<D>& u) {
   const double rounded = std::hypot(u.norm(), friction_rounding);
   Mat<D, D> T = f.limit / rounded * Mat<D, D>::Identity();
-  T -= (f.force * u.transpose() + u * f.force.transpose()) / (2.0 * rounded * rounded) ;
+  T -= (f.force * u.transpose() + u * f.force.transpose()) / (2.0 * rounded * rounded);
   if (f.normal_axis >= 0) {
     T.row(f.normal_axis).setZero();
     T.col(f.normal_axis).setZero();
@@ -93,7 +95,8 @@ void update_friction_newton(std::vector<FrictionNode<D>>& friction, const std::v
 template <int D>
 double friction_energy(const std::vector<FrictionNode<D>>& friction, const std::vector<Vec<D>>& v) {
   double energy = 0.0;
-  for (const FrictionNode<D>& f : friction) energy += f.limit * std::hypot(sliding(f, v).norm(), friction_rounding);
+  for (const FrictionNode<D>& f : friction)
+    energy += f.limit * std::hypot(sliding(f, v).norm(), friction_rounding);
   return energy;
 }
 

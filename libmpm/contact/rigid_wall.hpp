@@ -11,21 +11,22 @@ namespace tremie {
 /// What a moving rigid wall is to a place near it.
 template <int D>
 struct WallView {
-  double gap = 0.0;         ///< signed distance, positive in the concrete [m]
-  Vec<D> normal;            ///< from the wall into the concrete
-  Vec<D> velocity;          ///< of the wall [m/s]
+  double gap = 0.0;  ///< signed distance, positive in the concrete [m]
+  Vec<D> normal;     ///< from the wall into the concrete
+  Vec<D> velocity;   ///< of the wall [m/s]
 };
 
-/// A rigid wall as a signed distance with a motion; empty where the wall is too far to matter. An empty function is
-/// no wall, and costs nothing.
+/// A rigid wall as a signed distance with a motion; empty where the wall is too far to matter. An empty
+/// function is no wall, and costs nothing.
 template <int D>
 using RigidWall = std::function<std::optional<WallView<D>>(const Vec<D>& x, double time)>;
 
 /// Contact of the points with a wall over a step of length dt that ends at `time`.
 /// `gap_min`: how near a point may come, its half spacing [m]; `penalty`: stiffness in units of m/dt.
 template <int D>
-std::vector<ContactPoint<D>> find_contact(const ActiveGrid<D>& grid, const Points<D>& points, const RigidWall<D>& wall,
-                                          double time, double dt, double gap_min, double penalty) {
+std::vector<ContactPoint<D>> find_contact(const ActiveGrid<D>& grid, const Points<D>& points,
+                                          const RigidWall<D>& wall, double time, double dt, double gap_min,
+                                          double penalty) {
   std::vector<ContactPoint<D>> contact;
   if (!wall) return contact;
   for (int c = 0; c < grid.n_cells(); ++c)
@@ -38,8 +39,8 @@ std::vector<ContactPoint<D>> find_contact(const ActiveGrid<D>& grid, const Point
       contact_point.cell = c;
       contact_point.N = stencil<D>(grid.axes, grid.cell_index[c], s).N;
       contact_point.normal = view->normal;
-      // The wall already stands where it is at the end of the step: what is missing of the gap is closed by then,
-      // at most a tenth of a cell a step so that a deep overlap does not shoot a point off.
+      // The wall already stands where it is at the end of the step: what is missing of the gap is closed by
+      // then, at most a tenth of a cell a step so that a deep overlap does not shoot a point off.
       const double reach = 0.1 * grid.cell_size_min();
       contact_point.target = std::min((gap_min - view->gap) / dt, reach / dt);
       contact_point.stiffness = penalty * points.mass[p] / dt;

@@ -1,7 +1,7 @@
 #pragma once
 
-// The part of the background grid that holds concrete: active cells with their points, active nodes. Made anew at
-// every step from the points; its cost follows the concrete, not a box around the apparatus.
+// The part of the background grid that holds concrete: active cells with their points, active nodes. Made
+// anew at every step from the points; its cost follows the concrete, not a box around the apparatus.
 
 #include <algorithm>
 #include <array>
@@ -51,12 +51,12 @@ struct ActiveGrid {
 
   std::array<Axis, D> axes;
 
-  std::vector<Index<D>> cell_index;                     ///< of each active cell, in lexicographic order
-  std::vector<std::array<int, n_local>> cell_nodes;     ///< active node of each local control
-  std::vector<int> cell_begin;                          ///< points order[cell_begin[c] .. cell_begin[c+1]) lie in cell c
-  std::vector<int> order;                               ///< point numbers sorted by cell, ties in point order
-  std::vector<Index<D>> node_index;                     ///< control index of each active node
-  IndexMap<D> cell_map, node_map;                       ///< index -> active number
+  std::vector<Index<D>> cell_index;                  ///< of each active cell, in lexicographic order
+  std::vector<std::array<int, n_local>> cell_nodes;  ///< active node of each local control
+  std::vector<int> cell_begin;       ///< points order[cell_begin[c] .. cell_begin[c+1]) lie in cell c
+  std::vector<int> order;            ///< point numbers sorted by cell, ties in point order
+  std::vector<Index<D>> node_index;  ///< control index of each active node
+  IndexMap<D> cell_map, node_map;    ///< index -> active number
 
   int n_cells() const { return static_cast<int>(cell_index.size()); }
   int n_nodes() const { return static_cast<int>(node_index.size()); }
@@ -183,7 +183,8 @@ void number_nodes(ActiveGrid<D>& grid) {
     return j;
   };
   for (const Index<D>& cell : grid.cell_index)
-    for (int k = 0; k < ActiveGrid<D>::n_local; ++k) grid.node_map.value[grid.node_map.offset(control(cell, k))] = 0;
+    for (int k = 0; k < ActiveGrid<D>::n_local; ++k)
+      grid.node_map.value[grid.node_map.offset(control(cell, k))] = 0;
   grid.node_index.clear();
   for_each_index(grid.node_map, [&](const Index<D>& j, std::size_t o) {
     if (grid.node_map.value[o] < 0) return;

@@ -3,8 +3,9 @@
 // One direction of the background grid: cells of size h and quadratic B-splines, three per cell.
 //
 // Cell c covers [origin + c h, origin + (c+1) h] and sees the control values c, c+1, c+2. Control j sits at
-// (j - 1/2) h from the origin (its Greville abscissa), except at a wall, where the knot vector is open: there the end
-// spline is interpolatory, its control sits on the wall and fixing it fixes the velocity on the whole wall.
+// (j - 1/2) h from the origin (its Greville abscissa), except at a wall, where the knot vector is open: there
+// the end spline is interpolatory, its control sits on the wall and fixing it fixes the velocity on the whole
+// wall.
 
 #include <array>
 #include <cmath>

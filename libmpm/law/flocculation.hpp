@@ -1,8 +1,10 @@
 #pragma once
 
-// The flocculation state lambda of one material point, equation (3) of Wilkes, Kumar and Biscontin after Roussel (2006):
+// The flocculation state lambda of one material point, equation (3) of Wilkes, Kumar and Biscontin after
+// Roussel (2006):
 //
-//   d lambda / dt = A_thix / tau_0 - alpha lambda gamma_dot,     static yield stress (1 + lambda) tau_0, equation (7).
+//   d lambda / dt = A_thix / tau_0 - alpha lambda gamma_dot,     static yield stress (1 + lambda) tau_0,
+//   equation (7).
 //
 // Shear rates in 1/s, times in s, stresses in Pa; lambda and alpha have no unit.
 
@@ -20,7 +22,7 @@ struct Thixotropy {
   double A_thix = 0.0;  ///< structuration rate at rest [Pa/s]
   double alpha = 0.01;  ///< destructuration parameter
   Kinetics kinetics = Kinetics::gated;
-  double gamma_c = 0.1;            ///< critical shear rate of the gate [1/s]
+  double gamma_c = 0.1;             ///< critical shear rate of the gate [1/s]
   double initial_flocculation = 0;  ///< lambda before any rest
 };
 
@@ -34,15 +36,17 @@ inline double mean_decay(double k) { return k < 1e-8 ? 1.0 - 0.5 * k : -std::exp
 
 namespace detail {
 
-/// Equation (3) over dt with the mean rate of a shear rate that is linear in time: exact at constant rate, second
-/// order otherwise, positive and bounded for every dt.
-inline double build_and_break(double lambda, double build_rate, double alpha, double gamma_0, double gamma_1, double dt) {
+/// Equation (3) over dt with the mean rate of a shear rate that is linear in time: exact at constant rate,
+/// second order otherwise, positive and bounded for every dt.
+inline double build_and_break(double lambda, double build_rate, double alpha, double gamma_0, double gamma_1,
+                              double dt) {
   const double k = 0.5 * alpha * dt * (gamma_0 + gamma_1);
   return lambda * std::exp(-k) + build_rate * dt * mean_decay(k);
 }
 
 /// The gated kinetics over a step whose shear rate is linear in time, split where it crosses gamma_c.
-inline double gated_step(double lambda, double build_rate, const Thixotropy& t, double gamma_0, double gamma_1, double dt) {
+inline double gated_step(double lambda, double build_rate, const Thixotropy& t, double gamma_0,
+                         double gamma_1, double dt) {
   const bool rest_0 = gamma_0 < t.gamma_c, rest_1 = gamma_1 < t.gamma_c;
   const auto piece = [&](double value, bool rest, double g0, double g1, double duration) {
     return rest ? value + build_rate * duration : value * std::exp(-0.5 * t.alpha * duration * (g0 + g1));
@@ -56,8 +60,8 @@ inline double gated_step(double lambda, double build_rate, const Thixotropy& t, 
 }  // namespace detail
 
 /// lambda at the end of a step of length dt in which the shear rate went from gamma_0 to gamma_1.
-inline double flocculation_step(double lambda, const Thixotropy& t, double tau_0, double gamma_0, double gamma_1,
-                                double dt) {
+inline double flocculation_step(double lambda, const Thixotropy& t, double tau_0, double gamma_0,
+                                double gamma_1, double dt) {
   const double build_rate = t.A_thix / tau_0;
   return t.kinetics == Kinetics::roussel
              ? detail::build_and_break(lambda, build_rate, t.alpha, gamma_0, gamma_1, dt)

@@ -27,7 +27,8 @@ inline double shear_rate(const SymmetricTensor& rate_of_deformation) {
 
 /// Deviatoric stress tau = 2 [mu + s(gamma_dot)] D' [Pa] of a yield law (libmpm/law/yield_law.hpp).
 template <class Law>
-SymmetricTensor deviatoric_stress(const Law& law, double mu, double tau_y, const SymmetricTensor& rate_of_deformation) {
+SymmetricTensor deviatoric_stress(const Law& law, double mu, double tau_y,
+                                  const SymmetricTensor& rate_of_deformation) {
   SymmetricTensor tau = deviator(rate_of_deformation);
   const double viscosity = mu + law.secant(shear_rate(rate_of_deformation), tau_y);
   for (double& component : tau) component *= 2.0 * viscosity;

@@ -1,6 +1,7 @@
 #pragma once
 
-// Yield laws of a generalised Newtonian fluid, equations (1), (27), (32) and (33) of Wilkes, Kumar and Biscontin.
+// Yield laws of a generalised Newtonian fluid, equations (1), (27), (32) and (33) of Wilkes, Kumar and
+// Biscontin.
 //
 // Every law splits the deviatoric stress into a Newtonian part and a part that carries the yield stress,
 //
@@ -15,7 +16,8 @@
 //   potential(gamma_dot, tau_y) int_0^gamma_dot f                   [Pa/s], convex
 //   prox(a, tau_y, r)           the d >= 0 with f(d) + r d = a      [1/s]
 //
-// None of them divides by a shear rate that may be zero. A new law (Herschel-Bulkley, say) is one more struct here.
+// None of them divides by a shear rate that may be zero. A new law (Herschel-Bulkley, say) is one more struct
+// here.
 
 #include <algorithm>
 #include <cmath>
@@ -37,7 +39,8 @@ struct ExactBingham {
   double prox(double a, double tau_y, double r) const { return std::max(0.0, a - tau_y) / r; }
 };
 
-/// Papanastasiou's regularisation, equation (33); with tau_y = (1 + lambda) tau_0 the PR-Bingham law, equation (34).
+/// Papanastasiou's regularisation, equation (33); with tau_y = (1 + lambda) tau_0 the PR-Bingham law,
+/// equation (34).
 struct Papanastasiou {
   double m = 5.0;  ///< regularisation parameter [s]
 
@@ -48,7 +51,8 @@ struct Papanastasiou {
   }
   double slope(double gamma_dot, double tau_y) const {
     const double x = m * gamma_dot;
-    // (f' gamma_dot - f) / gamma_dot^3 = tau_y m^3 [x e^-x - (1 - e^-x)] / x^3, whose limit is singular like -1/(2x).
+    // (f' gamma_dot - f) / gamma_dot^3 = tau_y m^3 [x e^-x - (1 - e^-x)] / x^3, whose limit is singular like
+    // -1/(2x).
     if (x < 1e-3) return -tau_y * m * m * m * (0.5 - x / 3.0 + x * x / 8.0) / std::max(x, 1e-12);
     return tau_y * m * m * m * (x * std::exp(-x) + std::expm1(-x)) / (x * x * x);
   }
@@ -60,9 +64,9 @@ struct Papanastasiou {
   double prox(double a, double tau_y, double r) const;
 };
 
-/// Bi-viscous, equation (32), made continuous: f = tau_y gamma_dot / gamma_c below the critical shear rate gamma_c,
-/// tau_y above, so that the viscosity before yield is mu_0 = mu + tau_y / gamma_c. (The paper's own form jumps at
-/// gamma_c unless mu_0 has this value.)
+/// Bi-viscous, equation (32), made continuous: f = tau_y gamma_dot / gamma_c below the critical shear rate
+/// gamma_c, tau_y above, so that the viscosity before yield is mu_0 = mu + tau_y / gamma_c. (The paper's own
+/// form jumps at gamma_c unless mu_0 has this value.)
 struct BiViscous {
   double gamma_c = 0.01;  ///< critical shear rate [1/s]
 
@@ -80,8 +84,8 @@ struct BiViscous {
   }
 };
 
-/// f(d) = tau_y (1 - e^{-m d}) is concave in d, so f(d) + r d - a is too: Newton from d = 0 climbs to the root
-/// without overshoot, and from the far side (a - tau_y)/r it falls below it in one step.
+/// f(d) = tau_y (1 - e^{-m d}) is concave in d, so f(d) + r d - a is too: Newton from d = 0 climbs to the
+/// root without overshoot, and from the far side (a - tau_y)/r it falls below it in one step.
 inline double Papanastasiou::prox(double a, double tau_y, double r) const {
   if (a <= 0.0) return 0.0;
   double d = std::max(a / (tau_y * m + r), (a - tau_y) / r);  // both lie below the root

@@ -11,14 +11,14 @@ namespace tremie {
 /// Material points as a structure of arrays, SI units. What a material does not have is an empty array.
 template <int D>
 struct Points {
-  std::vector<Vec<D>> x;     ///< position [m]
-  std::vector<Vec<D>> v;     ///< velocity [m/s]
-  std::vector<Mat<D, D>> C;  ///< affine velocity, APIC [1/s]
-  std::vector<double> mass;  ///< [kg]
-  std::vector<double> V0;    ///< stress-free volume [m^3]
-  std::vector<double> ln_J;  ///< ln(V / V0)
-  std::vector<double> lambda;           ///< flocculation state; empty without thixotropy
-  std::vector<double> gamma_dot;        ///< shear rate of the last step [1/s]; empty without thixotropy
+  std::vector<Vec<D>> x;          ///< position [m]
+  std::vector<Vec<D>> v;          ///< velocity [m/s]
+  std::vector<Mat<D, D>> C;       ///< affine velocity, APIC [1/s]
+  std::vector<double> mass;       ///< [kg]
+  std::vector<double> V0;         ///< stress-free volume [m^3]
+  std::vector<double> ln_J;       ///< ln(V / V0)
+  std::vector<double> lambda;     ///< flocculation state; empty without thixotropy
+  std::vector<double> gamma_dot;  ///< shear rate of the last step [1/s]; empty without thixotropy
 
   std::size_t size() const { return x.size(); }
   bool thixotropic() const { return !lambda.empty(); }

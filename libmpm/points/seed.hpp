@@ -7,8 +7,8 @@
 
 namespace tremie {
 
-/// Fills the box [low, high] with points on a regular raster, `n` of them in each direction, where inside(x) holds.
-/// Each carries the volume of its own raster cell and the pressure pressure_at(x) [Pa] at the time 0.
+/// Fills the box [low, high] with points on a regular raster, `n` of them in each direction, where inside(x)
+/// holds. Each carries the volume of its own raster cell and the pressure pressure_at(x) [Pa] at the time 0.
 template <class Space, class Inside, class Pressure>
 void seed_box(const Vec<Space::dim>& low, const Vec<Space::dim>& high, const std::array<int, Space::dim>& n,
               double density, double K, Inside inside, Pressure pressure_at, Points<Space::dim>& points) {

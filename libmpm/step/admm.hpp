@@ -1,12 +1,14 @@
 #pragma once
 
-// Alternating directions for the yield problem (Glowinski; Boyd et al. 2011): the yield part sees a strain rate d of
-// its own at every Gauss place, tied to q(v) by a stress s and a penalty r,
+// Alternating directions for the yield problem (Glowinski; Boyd et al. 2011): the yield part sees a strain
+// rate d of its own at every Gauss place, tied to q(v) by a stress s and a penalty r,
 //
-//   v:  M (v - v*)/dt + bulk + contact + B' V [mu q(v) + s + r (q(v) - d)] = 0       one linear solve, one matrix a step
-//   d:  a = s + r (rho q + (1 - rho) d),   d <- prox(|a|) a/|a|,   s <- a - r d      closed form, place by place
+//   v:  M (v - v*)/dt + bulk + contact + B' V [mu q(v) + s + r (q(v) - d)] = 0       one linear solve, one
+//   matrix a step d:  a = s + r (rho q + (1 - rho) d),   d <- prox(|a|) a/|a|,   s <- a - r d      closed
+//   form, place by place
 //
-// The exact Bingham law needs no regularisation: |s| <= tau_y always, and d = 0 exactly where it does not yield.
+// The exact Bingham law needs no regularisation: |s| <= tau_y always, and d = 0 exactly where it does not
+// yield.
 
 #include <algorithm>
 #include <cmath>
@@ -17,13 +19,16 @@
 namespace tremie {
 
 struct AdmmSettings {
-  double tolerance = 1e-3;      ///< of the stress mismatch, relative to the yield stress
+  double tolerance = 1e-3;  ///< of the stress mismatch, relative to the yield stress
   int max_iterations = 1000;
   double over_relaxation = 1.6;  ///< rho
   double penalty = 3.0;          ///< r / mu
 };
 
 namespace detail {
+
+/// So little is no stress of a concrete [Pa]: the scale where nothing yields and nothing moves.
+inline constexpr double no_stress = 1e-3;
 
 /// Squares of the primal and dual mismatch and of the stress scale, weighted by volume.
 struct Mismatch {
@@ -32,8 +37,8 @@ struct Mismatch {
 };
 
 template <class Space, class Law>
-Mismatch update_duals(const YieldProblem<Space>& problem, const Law& law, const AdmmSettings& settings, double r,
-                      const std::vector<Vec<Space::dim>>& v, Duals<Space>& duals) {
+Mismatch update_duals(const YieldProblem<Space>& problem, const Law& law, const AdmmSettings& settings,
+                      double r, const std::vector<Vec<Space::dim>>& v, Duals<Space>& duals) {
   constexpr int n = power(2, Space::dim);
   const auto& quad = problem.quadrature;
   std::vector<Mismatch> part(quad.V.size());
@@ -47,11 +52,12 @@ Mismatch update_duals(const YieldProblem<Space>& problem, const Law& law, const 
       const Vec<Space::n_strain> a =
           s + r * (settings.over_relaxation * q + (1.0 - settings.over_relaxation) * d);
       const double a_norm = a.norm();
-      const Vec<Space::n_strain> d_new =
-          a_norm > 0.0 ? Vec<Space::n_strain>(law.prox(a_norm, tau_y, r) / a_norm * a) : Vec<Space::n_strain>(0.0 * a);
+      const Vec<Space::n_strain> d_new = a_norm > 0.0
+                                             ? Vec<Space::n_strain>(law.prox(a_norm, tau_y, r) / a_norm * a)
+                                             : Vec<Space::n_strain>(0.0 * a);
       part[c].primal += V * (r * (q - d_new)).squaredNorm();
       part[c].dual += V * (r * (d_new - d)).squaredNorm();
-      part[c].scale += V * std::pow(tau_y + problem.mu * q.norm(), 2);
+      part[c].scale += V * std::pow(tau_y + problem.mu * q.norm() + no_stress, 2);
       s = a - r * d_new;
       d = d_new;
     }
@@ -73,8 +79,9 @@ std::vector<double> volumes_around_nodes(const YieldProblem<Space>& problem) {
 
 namespace detail {
 
-/// The penalty r [Pa s]: a multiple of the viscosity, or of the inertia of a cell where that is stiffer. A smaller one would
-/// hardly move the stresses in an iteration, and the mismatch r (q - d) would look converged from the start.
+/// The penalty r [Pa s]: a multiple of the viscosity, or of the inertia of a cell where that is stiffer. A
+/// smaller one would hardly move the stresses in an iteration, and the mismatch r (q - d) would look
+/// converged from the start.
 template <class Space>
 double penalty(const YieldProblem<Space>& problem, const AdmmSettings& settings) {
   double mass = 0.0, volume = 0.0;
@@ -89,7 +96,8 @@ double penalty(const YieldProblem<Space>& problem, const AdmmSettings& settings)
 /// Solves the yield problem by ADMM from the guesses v and duals, which it overwrites with the solution.
 template <class Space, class Law>
 SolveReport solve_admm(YieldProblem<Space>& problem, const Law& law, const AdmmSettings& settings,
-                       BlockSystem<Space::dim>& system, std::vector<Vec<Space::dim>>& v, Duals<Space>& duals) {
+                       BlockSystem<Space::dim>& system, std::vector<Vec<Space::dim>>& v,
+                       Duals<Space>& duals) {
   constexpr int D = Space::dim;
   const double r = detail::penalty(problem, settings);
   const auto stiffness = [&](int, int) { return problem.mu + r; };
@@ -99,8 +107,8 @@ SolveReport solve_admm(YieldProblem<Space>& problem, const Law& law, const AdmmS
   const auto factorise = [&] {
     assemble(problem, stiffness, system);
     if (!problem.friction.empty())
-      add_friction_stiffness_admm<D>(problem.grid, detail::volumes_around_nodes(problem), problem.mu + r, problem.friction,
-                                     system);
+      add_friction_stiffness_admm<D>(problem.grid, detail::volumes_around_nodes(problem), problem.mu + r,
+                                     problem.friction, system);
     system.fix(problem.fixed);
     return system.factorise();
   };
@@ -113,7 +121,8 @@ SolveReport solve_admm(YieldProblem<Space>& problem, const Law& law, const AdmmS
     const Eigen::VectorXd dv = system.solve(R);
     for (int i = 0; i < problem.grid.n_nodes(); ++i) v[i] += dv.segment<D>(i * D);
     const bool contact_changed = update_active<D>(problem.contact, problem.grid.cell_nodes, v);
-    const bool friction_settled = update_friction_admm<D>(problem.friction, v, settings.over_relaxation, settings.tolerance);
+    const bool friction_settled =
+        update_friction_admm<D>(problem.friction, v, settings.over_relaxation, settings.tolerance);
     const auto mismatch = detail::update_duals(problem, law, settings, r, v, duals);
     if (contact_changed && !factorise()) return report;
     report.converged = mismatch.within(settings.tolerance) && friction_settled && !contact_changed;

@@ -2,9 +2,10 @@
 
 // Cholesky factorisation of a symmetric positive definite band matrix, in dense blocks.
 //
-// A body of concrete is long one way and thin the other; with the nodes numbered across its thin way its matrix is a narrow
-// band, and dense kernels on that band beat a sparse factorisation that touches fewer numbers one by one (three times on
-// a slump of 1,900 cells). Eigen has no band solver; this is the textbook right-looking one on its dense blocks.
+// A body of concrete is long one way and thin the other; with the nodes numbered across its thin way its
+// matrix is a narrow band, and dense kernels on that band beat a sparse factorisation that touches fewer
+// numbers one by one (three times on a slump of 1,900 cells). Eigen has no band solver; this is the textbook
+// right-looking one on its dense blocks.
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>

@@ -1,8 +1,8 @@
 #pragma once
 
-// The symmetric positive definite system of an implicit step on the active nodes: D x D blocks, assembled from cells,
-// factorised by a Cholesky method: on a band where the body is thin one way, sparse otherwise. What follows from the set
-// of active cells alone is kept while that is.
+// The symmetric positive definite system of an implicit step on the active nodes: D x D blocks, assembled
+// from cells, factorised by a Cholesky method: on a band where the body is thin one way, sparse otherwise.
+// What follows from the set of active cells alone is kept while that is.
 
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
@@ -36,7 +36,8 @@ class BlockSystem {
   void add_cell(int cell, const CellMatrix& K) {
     const auto& nodes = cell_nodes_[cell];
     for (int a = 0; a < n_local; ++a)
-      for (int b = 0; b <= a; ++b) add_block(nodes[a], nodes[b], K.template block<D, D>(a * D, b * D), a == b);
+      for (int b = 0; b <= a; ++b)
+        add_block(nodes[a], nodes[b], K.template block<D, D>(a * D, b * D), a == b);
   }
   void add_diagonal(int node, int d, double value) { matrix_.valuePtr()[diagonal_[node * D + d]] += value; }
 
@@ -101,8 +102,8 @@ class BlockSystem {
           for (int e = j == i ? d : 0; e < D; ++e) matrix_.innerIndexPtr()[k++] = j * D + e;
       }
   }
-  /// Numbers the unknowns with the grid's shortest way running fastest and decides between band and sparse: in a
-  /// plane the band's n b^2 operations win, by measurement, up to about 800 n^1.5; in space sparse wins.
+  /// Numbers the unknowns with the grid's shortest way running fastest and decides between band and sparse:
+  /// in a plane the band's n b^2 operations win, by measurement, up to about 800 n^1.5; in space sparse wins.
   void number_across_the_thin_way(const ActiveGrid<D>& grid) {
     Index<D> way;
     for (int d = 0; d < D; ++d) way[d] = d;
@@ -112,7 +113,8 @@ class BlockSystem {
     for (int i = 0; i < n_nodes_; ++i) by_place[i] = i;
     std::sort(by_place.begin(), by_place.end(), [&](int a, int b) {
       for (int d : way)
-        if (grid.node_index[a][d] != grid.node_index[b][d]) return grid.node_index[a][d] < grid.node_index[b][d];
+        if (grid.node_index[a][d] != grid.node_index[b][d])
+          return grid.node_index[a][d] < grid.node_index[b][d];
       return false;
     });
     band_dof_.resize(n_nodes_ * D);
@@ -137,8 +139,8 @@ class BlockSystem {
     return band_.factorise();
   }
   void add_block(int row, int column, const Mat<D, D>& block, bool same_local_node) {
-    // On a periodic axis of one or two cells several local nodes are one active node: both halves of the cell matrix
-    // then fall on one block and both count.
+    // On a periodic axis of one or two cells several local nodes are one active node: both halves of the cell
+    // matrix then fall on one block and both count.
     if (row == column) {
       for (int d = 0; d < D; ++d)
         for (int e = d; e < D; ++e)

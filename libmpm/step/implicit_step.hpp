@@ -29,11 +29,11 @@ struct StepSettings {
   double cfl = 0.6;                ///< largest move in a step, in cells
   double growth = 1.3;             ///< largest ratio of successive steps
   double friction_coefficient = 0.0;
-  bool keep_forces = false;    ///< fill Body::wall_force and Body::dissipation
+  bool keep_forces = false;            ///< fill Body::wall_force and Body::dissipation
   double boundary_stiffness = 1000.0;  ///< of walls inside the grid, in m/dt
   double side_wall_distance = 0.0;     ///< of a width-averaged section [m]; 0: plane strain, no side walls
-  double wall_gap = 0.0;       ///< how near a point may come to a rigid wall [m]
-  double wall_penalty = 100.0;  ///< stiffness of a rigid wall, in m/dt
+  double wall_gap = 0.0;               ///< how near a point may come to a rigid wall [m]
+  double wall_penalty = 100.0;         ///< stiffness of a rigid wall, in m/dt
 };
 
 /// Velocities of the low and the high wall of each axis [m/s]; the normal component must be zero.
@@ -53,12 +53,12 @@ struct Body {
   Vec<D> gravity = Vec<D>::Zero();  ///< [m/s^2]
   Points<D> points;
   ActiveGrid<D> grid;
-  WallVelocities<D> walls{};              ///< of the walls at the ends of the axes
+  WallVelocities<D> walls{};               ///< of the walls at the ends of the axes
   std::vector<BoundaryPoint<D>> boundary;  ///< walls inside the grid
-  double time = 0.0, dt = 0.0;  ///< [s]; dt of the last step
+  double time = 0.0, dt = 0.0;             ///< [s]; dt of the last step
 
-  NodalState<D> nodes;        ///< of the last step, velocities at its start
-  std::vector<Vec<D>> v;      ///< nodal velocities at the end of the last step [m/s]
+  NodalState<D> nodes;    ///< of the last step, velocities at its start
+  std::vector<Vec<D>> v;  ///< nodal velocities at the end of the last step [m/s]
   Quadrature<Space> quadrature;
   Duals<Space> duals;
   std::vector<FrictionNode<D>> friction;
@@ -71,7 +71,8 @@ struct Body {
 struct StepReport {
   double dt = 0.0;
   bool converged = false;
-  int iterations = 0;            ///< linear solves
+  bool failed = false;  ///< the velocities are not finite or run away: the points were left where they were
+  int iterations = 0;   ///< linear solves
   double max_speed = 0.0;        ///< of the points [m/s]
   double bulk_speed = 0.0;       ///< of all but the fastest half percent of the points [m/s]
   double shear_rate_mean = 0.0;  ///< volume mean [1/s]
@@ -99,18 +100,16 @@ double speed_of_most(const Points<D>& points, double share, Speed speed) {
   return *rank;
 }
 
-/// Largest step that keeps the moves of all but half a percent of the points within settings.cfl cells, gravity's pull
-/// included, and of the fastest within two: drops that fall through the air must not hold up the body.
+/// Largest step that keeps every point's move, gravity's pull included, within settings.cfl cells.
 template <class Space>
 double choose_dt(const Body<Space>& body, const StepSettings& settings) {
   if (settings.fixed_dt) return *settings.fixed_dt;
   double dt = body.dt > 0.0 ? std::min(settings.dt_max, settings.growth * body.dt) : settings.dt_max;
   for (int d = 0; d < Space::dim && Space::advects; ++d) {
-    const auto speed = [&](std::size_t p) { return std::abs(body.points.v[p][d]); };
+    double v = 0.0;
+    for (const auto& vp : body.points.v) v = std::max(v, std::abs(vp[d]));
     const double reach = settings.cfl * body.grid.axes[d].h;
-    const double most = speed_of_most(body.points, strays, speed), fastest = speed_of_most(body.points, 0.0, speed);
-    if (most > 0.0) dt = std::min(dt, reach / most);
-    if (fastest > 0.0) dt = std::min(dt, 2.0 * body.grid.axes[d].h / fastest);
+    if (v > 0.0) dt = std::min(dt, reach / v);
     // From rest the speed at the end of the step counts: g dt^2 <= reach.
     const double g = std::abs(body.gravity[d]);
     if (body.dt == 0.0 && g > 0.0) dt = std::min(dt, 0.25 * std::sqrt(reach / g));
@@ -120,7 +119,8 @@ double choose_dt(const Body<Space>& body, const StepSettings& settings) {
 
 /// Duals of cells that were active before go on from where they were; new cells start unstressed.
 template <class Space>
-void carry_duals(const IndexMap<Space::dim>& old_map, const ActiveGrid<Space::dim>& grid, Duals<Space>& duals) {
+void carry_duals(const IndexMap<Space::dim>& old_map, const ActiveGrid<Space::dim>& grid,
+                 Duals<Space>& duals) {
   Duals<Space> now;
   now.stress.resize(grid.cell_index.size());
   now.rate.resize(grid.cell_index.size());
@@ -139,14 +139,16 @@ void carry_duals(const IndexMap<Space::dim>& old_map, const ActiveGrid<Space::di
 
 /// Walls at the ends of the axes: which components they prescribe, and where friction acts.
 template <int D>
-void apply_flat_walls(const ActiveGrid<D>& grid, const WallVelocities<D>& walls, std::vector<char>& fixed, std::vector<FrictionNode<D>>& friction,
-                      std::vector<Vec<D>>& v) {
+void apply_flat_walls(const ActiveGrid<D>& grid, const WallVelocities<D>& walls, std::vector<char>& fixed,
+                      std::vector<FrictionNode<D>>& friction, std::vector<Vec<D>>& v) {
   fixed.assign(grid.node_index.size() * D, 0);
   for (int i = 0; i < grid.n_nodes(); ++i)
     for (int a = 0; a < D; ++a) {
       const Axis& axis = grid.axes[a];
       const int j = grid.node_index[i][a];
-      const FaceKind face = axis.on_low_wall(j) ? axis.low : axis.on_high_wall(j) ? axis.high : FaceKind::open;
+      const FaceKind face = axis.on_low_wall(j)    ? axis.low
+                            : axis.on_high_wall(j) ? axis.high
+                                                   : FaceKind::open;
       if (face == FaceKind::open) continue;
       for (int d = 0; d < D; ++d)
         if (d == a || face == FaceKind::no_slip) {
@@ -179,8 +181,8 @@ void update_flocculation(const Body<Space>& body, double dt, Points<Space::dim>&
   std::vector<double> gamma_dot;
   shear_rate_at_points<Space>(body.grid, body.v, points, gamma_dot);
   for (std::size_t p = 0; p < points.size(); ++p)
-    points.lambda[p] = flocculation_step(points.lambda[p], *body.mix.thixotropy, body.mix.tau_0, points.gamma_dot[p],
-                                         gamma_dot[p], dt);
+    points.lambda[p] = flocculation_step(points.lambda[p], *body.mix.thixotropy, body.mix.tau_0,
+                                         points.gamma_dot[p], gamma_dot[p], dt);
   points.gamma_dot.swap(gamma_dot);
 }
 
@@ -206,7 +208,8 @@ double force_scale(const Body<Space>& body, double dt) {
 
 /// Solves with the chosen method; `automatic` is ADMM, and Newton where ADMM does not converge.
 template <class Space, class Law>
-SolveReport solve_yield(YieldProblem<Space>& problem, const Law& law, const StepSettings& settings, Body<Space>& body) {
+SolveReport solve_yield(YieldProblem<Space>& problem, const Law& law, const StepSettings& settings,
+                        Body<Space>& body) {
   const double scale = force_scale(body, problem.dt);
   if (settings.method == YieldMethod::newton)
     return solve_newton(problem, law, settings.newton, scale, body.system, body.v, body.duals);
@@ -220,7 +223,8 @@ SolveReport solve_yield(YieldProblem<Space>& problem, const Law& law, const Step
 
 /// Normal forces of the friction nodes from the reactions; returns the relative change of their sum.
 template <class Space, class Law>
-double update_normal_forces(YieldProblem<Space>& problem, const Law& law, double coefficient, const Body<Space>& body) {
+double update_normal_forces(YieldProblem<Space>& problem, const Law& law, double coefficient,
+                            const Body<Space>& body) {
   constexpr int D = Space::dim;
   const auto stress = [&](int c, int k, const Vec<Space::n_strain>& q) -> Vec<Space::n_strain> {
     (void)law;
@@ -231,7 +235,8 @@ double update_normal_forces(YieldProblem<Space>& problem, const Law& law, double
   for (FrictionNode<D>& f : problem.friction) {
     if (f.normal_axis < 0) continue;
     // The reaction pushes into the concrete: against -e at a low wall, against +e at a high one.
-    const bool low = problem.grid.axes[f.normal_axis].on_low_wall(problem.grid.node_index[f.node][f.normal_axis]);
+    const bool low =
+        problem.grid.axes[f.normal_axis].on_low_wall(problem.grid.node_index[f.node][f.normal_axis]);
     const double reaction = (low ? -1.0 : 1.0) * R[f.node * D + f.normal_axis];
     const double limit = coefficient * std::max(0.0, reaction);
     change += std::abs(limit - f.limit);
@@ -243,7 +248,8 @@ double update_normal_forces(YieldProblem<Space>& problem, const Law& law, double
   return sum > 0.0 ? change / sum : 0.0;
 }
 
-/// Forces of the flat walls, which balance what is left of every prescribed component, and the dissipated power.
+/// Forces of the flat walls, which balance what is left of every prescribed component, and the dissipated
+/// power.
 template <class Space>
 void keep_forces(const YieldProblem<Space>& problem, Body<Space>& body) {
   constexpr int D = Space::dim;
@@ -263,8 +269,9 @@ void keep_forces(const YieldProblem<Space>& problem, Body<Space>& body) {
       if (problem.fixed[i * D + d]) body.wall_force[i][d] = -R[i * D + d];
 }
 
-/// The side walls of a section averaged over the width W: the concrete sticks to them, so they hold each node with the
-/// yield stress and, for the parabola between two plates, the viscous stress 6 mu v / W on both sides.
+/// The side walls of a section averaged over the width W: the concrete sticks to them, so they hold each node
+/// with the yield stress and, for the parabola between two plates, the viscous stress 6 mu v / W on both
+/// sides.
 template <class Space>
 void add_side_walls(double W, YieldProblem<Space>& problem) {
   constexpr int D = Space::dim;
@@ -275,7 +282,8 @@ void add_side_walls(double W, YieldProblem<Space>& problem) {
       const Stencil<D> st = stencil<D>(grid.axes, grid.cell_index[c], gauss_place<D>(k));
       for (int i = 0; i < power(3, D); ++i) {
         V[grid.cell_nodes[c][i]] += st.N[i] * problem.quadrature.V[c][k];
-        limit[grid.cell_nodes[c][i]] += st.N[i] * problem.quadrature.V[c][k] * problem.quadrature.tau_y[c][k] * 2.0 / W;
+        limit[grid.cell_nodes[c][i]] +=
+            st.N[i] * problem.quadrature.V[c][k] * problem.quadrature.tau_y[c][k] * 2.0 / W;
       }
     }
   problem.drag.resize(V.size());
@@ -294,7 +302,8 @@ void add_side_walls(double W, YieldProblem<Space>& problem) {
 template <class Space>
 void carry_friction(const std::vector<FrictionNode<Space::dim>>& old, const IndexMap<Space::dim>& old_nodes,
                     const ActiveGrid<Space::dim>& grid, std::vector<FrictionNode<Space::dim>>& friction) {
-  std::vector<int> last_at(old_nodes.value.size(), -1);  // by old node: the last of its entries, walls before held nodes
+  std::vector<int> last_at(old_nodes.value.size(),
+                           -1);  // by old node: the last of its entries, walls before held nodes
   for (std::size_t k = 0; k < old.size(); ++k) last_at[old[k].node] = static_cast<int>(k);
   for (auto& f : friction) {
     const int node = old_nodes.value.empty() ? -1 : old_nodes.at(grid.node_index[f.node]);
@@ -306,7 +315,57 @@ void carry_friction(const std::vector<FrictionNode<Space::dim>>& old, const Inde
   }
 }
 
+/// The step's convex problem over dt: inertia with gravity, viscosity and yield, bulk, walls.
+template <class Space>
+void pose(Body<Space>& body, const StepSettings& settings, const RigidWall<Space::dim>& wall,
+          const std::vector<Vec<Space::dim>>& v_old, const IndexMap<Space::dim>& old_nodes, double dt,
+          std::optional<YieldProblem<Space>>& posed) {
+  constexpr int D = Space::dim;
+  body.v = v_old;
+  for (std::size_t i = 0; i < v_old.size(); ++i) body.nodes.v[i] = v_old[i] + dt * body.gravity;
+  posed.emplace(YieldProblem<Space>{
+      body.grid, body.quadrature, body.nodes, dt, body.mix.mu, body.mix.K, {}, {}, {}, {}, {}});
+  apply_flat_walls<D>(body.grid, body.walls, posed->fixed, posed->friction, body.v);
+  if (settings.side_wall_distance > 0.0) add_side_walls(settings.side_wall_distance, *posed);
+  posed->bound = find_bound_points(body.grid, body.nodes, body.boundary, dt, settings.boundary_stiffness);
+  carry_friction<Space>(body.friction, old_nodes, body.grid, posed->friction);
+  posed->contact = find_contact(body.grid, body.points, wall, body.time + dt, dt, settings.wall_gap,
+                                settings.wall_penalty);
+  update_active<D>(posed->contact, body.grid.cell_nodes, body.v);
+}
+
+/// Solves, with the normal forces of Coulomb friction frozen inside and renewed until they settle.
+template <class Space, class Law>
+SolveReport solve_step(YieldProblem<Space>& problem, const Law& law, const StepSettings& settings,
+                       Body<Space>& body) {
+  SolveReport solve = solve_yield(problem, law, settings, body);
+  for (int i = 0; i < 20 && !problem.friction.empty(); ++i) {
+    if (update_normal_forces(problem, law, settings.friction_coefficient, body) < 0.02) break;
+    const int before = solve.iterations;
+    solve = solve_yield(problem, law, settings, body);
+    solve.iterations += before;
+  }
+  return solve;
+}
+
+/// Whether the step would carry concrete a hundred cells or to nowhere. Nodes with next to no mass do not
+/// count: what they do moves no point.
+template <class Space>
+bool runs_away(const Body<Space>& body, double dt) {
+  const double reach = 100.0 * body.grid.cell_size_min();
+  double heaviest = 0.0;
+  for (double m : body.nodes.mass) heaviest = std::max(heaviest, m);
+  for (std::size_t i = 0; i < body.v.size(); ++i) {
+    if (!body.v[i].allFinite()) return true;
+    if (Space::advects && body.nodes.mass[i] > 1e-3 * heaviest && body.v[i].norm() * dt > reach) return true;
+  }
+  return false;
+}
+
 }  // namespace detail
+
+/// How often a step that does not converge is tried, each time over half the time.
+inline constexpr int most_attempts = 4;
 
 /// Advances the body by one step.
 template <class Space, class Law>
@@ -323,26 +382,22 @@ StepReport implicit_step(Body<Space>& body, const Law& law, const StepSettings& 
   body.system.set_pattern(body.grid);
   body.v = body.nodes.v;
 
-  // The step's convex problem: inertia with gravity, viscosity and yield, bulk, walls.
-  const double dt = detail::choose_dt(body, settings);
+  // The step's convex problem and its solution, the velocities at the end of the step. One that does not
+  // converge is tried again over half the time.
   const std::vector<Vec<D>> v_old = body.nodes.v;
-  for (Vec<D>& v : body.nodes.v) v += dt * body.gravity;
-  YieldProblem<Space> problem{body.grid, body.quadrature, body.nodes, dt, body.mix.mu, body.mix.K, {}, {}, {}, {}, {}};
-  detail::apply_flat_walls<D>(body.grid, body.walls, problem.fixed, problem.friction, body.v);
-  if (settings.side_wall_distance > 0.0) detail::add_side_walls(settings.side_wall_distance, problem);
-  problem.bound = find_bound_points(body.grid, body.nodes, body.boundary, dt, settings.boundary_stiffness);
-  detail::carry_friction<Space>(body.friction, old_nodes, body.grid, problem.friction);
-  problem.contact =
-      find_contact(body.grid, body.points, wall, body.time + dt, dt, settings.wall_gap, settings.wall_penalty);
-  update_active<D>(problem.contact, body.grid.cell_nodes, body.v);
-
-  // Its solution: the velocities at the end of the step.
-  SolveReport solve = detail::solve_yield(problem, law, settings, body);
-  for (int i = 0; i < 20 && !problem.friction.empty(); ++i) {
-    if (detail::update_normal_forces(problem, law, settings.friction_coefficient, body) < 0.02) break;
-    const int before = solve.iterations;
-    solve = detail::solve_yield(problem, law, settings, body);
-    solve.iterations += before;
+  const Duals<Space> guess = body.duals;
+  std::optional<YieldProblem<Space>> posed;
+  SolveReport solve;
+  double dt = detail::choose_dt(body, settings);
+  for (int attempt = 0; attempt < (settings.fixed_dt ? 1 : most_attempts) && !solve.converged; ++attempt) {
+    if (attempt > 0) dt *= 0.5, body.duals = guess;
+    detail::pose(body, settings, wall, v_old, old_nodes, dt, posed);
+    solve = detail::solve_step(*posed, law, settings, body);
+  }
+  const YieldProblem<Space>& problem = *posed;
+  if (detail::runs_away(body, dt)) {
+    body.v = v_old;
+    return {.dt = dt, .converged = false, .failed = true, .iterations = solve.iterations};
   }
   body.friction = problem.friction;
   body.bound = problem.bound;
@@ -360,8 +415,12 @@ StepReport implicit_step(Body<Space>& body, const Law& law, const StepSettings& 
   body.dt = dt;
 
   const auto speed = [&](std::size_t p) { return body.points.v[p].norm(); };
-  return {dt, solve.converged, solve.iterations, detail::max_speed(body.points),
-          detail::speed_of_most(body.points, detail::strays, speed), detail::mean_shear_rate(problem, body.v)};
+  return {.dt = dt,
+          .converged = solve.converged,
+          .iterations = solve.iterations,
+          .max_speed = detail::max_speed(body.points),
+          .bulk_speed = detail::speed_of_most(body.points, detail::strays, speed),
+          .shear_rate_mean = detail::mean_shear_rate(problem, body.v)};
 }
 
 }  // namespace tremie

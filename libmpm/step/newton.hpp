@@ -34,7 +34,8 @@ double energy(const YieldProblem<Space>& problem, const Law& law, const std::vec
     sum += quad.V_cell[c] * div * (0.5 * problem.K * problem.dt * div - quad.p[c]);
     for (int k = 0; k < power(2, Space::dim); ++k) {
       const double gamma_dot = strain_rate(problem, v, c, k).norm();
-      sum += quad.V[c][k] * (0.5 * problem.mu * gamma_dot * gamma_dot + law.potential(gamma_dot, quad.tau_y[c][k]));
+      sum += quad.V[c][k] *
+             (0.5 * problem.mu * gamma_dot * gamma_dot + law.potential(gamma_dot, quad.tau_y[c][k]));
     }
   }
   for (std::size_t i = 0; i < problem.drag.size(); ++i) sum += 0.5 * problem.drag[i] * v[i].squaredNorm();
@@ -73,8 +74,9 @@ void step_duals(const YieldProblem<Space>& problem, const Law& law, const std::v
 
 /// Solves the yield problem by primal-dual Newton from the guesses v and duals, which it overwrites.
 template <class Space, class Law>
-SolveReport solve_newton(YieldProblem<Space>& problem, const Law& law, const NewtonSettings& settings, double force_scale,
-                         BlockSystem<Space::dim>& system, std::vector<Vec<Space::dim>>& v, Duals<Space>& duals) {
+SolveReport solve_newton(YieldProblem<Space>& problem, const Law& law, const NewtonSettings& settings,
+                         double force_scale, BlockSystem<Space::dim>& system, std::vector<Vec<Space::dim>>& v,
+                         Duals<Space>& duals) {
   constexpr int D = Space::dim;
   const auto stress = [&](int c, int k, const Vec<Space::n_strain>& q) -> Vec<Space::n_strain> {
     return (problem.mu + law.secant(q.norm(), problem.quadrature.tau_y[c][k])) * q;
@@ -92,8 +94,9 @@ SolveReport solve_newton(YieldProblem<Space>& problem, const Law& law, const New
     assemble(
         problem,
         [&](int c, int k) {
-          return detail::primal_dual_tangent<Law, Space::n_strain>(law, problem.mu, problem.quadrature.tau_y[c][k],
-                                                                   strain_rate(problem, v, c, k), duals.stress[c][k]);
+          return detail::primal_dual_tangent<Law, Space::n_strain>(
+              law, problem.mu, problem.quadrature.tau_y[c][k], strain_rate(problem, v, c, k),
+              duals.stress[c][k]);
         },
         system);
     for (const FrictionNode<D>& f : problem.friction)
@@ -108,7 +111,9 @@ SolveReport solve_newton(YieldProblem<Space>& problem, const Law& law, const New
     const double slope = R.dot(dv), start = detail::energy(problem, law, v);
     for (double t = 1.0; t > 1e-6; t *= 0.5) {
       for (std::size_t i = 0; i < v.size(); ++i) trial[i] = v[i] + t * step[i];
-      if (detail::energy(problem, law, trial) <= start - settings.armijo * t * slope + 1e-14 * std::abs(start)) break;
+      if (detail::energy(problem, law, trial) <=
+          start - settings.armijo * t * slope + 1e-14 * std::abs(start))
+        break;
     }
     v.swap(trial);
   }

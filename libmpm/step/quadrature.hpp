@@ -2,10 +2,10 @@
 
 // Where the stresses of an implicit step are integrated.
 //
-// A yield stress fluid has no memory of strain: its deviatoric stress follows from the velocity gradient of the moment
-// and from lambda. So the stresses are integrated at 2^D Gauss places a cell instead of at the points, each weighted
-// with the volume of the points around it. The cost of a solve then does not depend on the number of
-// points, and more points a cell make the weights smoother without making the solver slower.
+// A yield stress fluid has no memory of strain: its deviatoric stress follows from the velocity gradient of
+// the moment and from lambda. So the stresses are integrated at 2^D Gauss places a cell instead of at the
+// points, each weighted with the volume of the points around it. The cost of a solve then does not depend on
+// the number of points, and more points a cell make the weights smoother without making the solver slower.
 
 #include <array>
 #include <vector>
@@ -22,12 +22,12 @@ struct Quadrature {
   static constexpr int n_places = power(2, D), n_local = power(3, D);
   using StrainRows = std::array<Mat<n_strain, D>, n_local>;
 
-  std::vector<std::array<StrainRows, n_places>> B;     ///< strain rows, [1/m]
-  std::vector<std::array<Vec<D>, n_local>> b;          ///< rows of the cell's mean divergence [1/m]
-  std::vector<std::array<double, n_places>> V;         ///< concrete volume of each place [m^3]
-  std::vector<std::array<double, n_places>> tau_y;     ///< yield stress there [Pa]
-  std::vector<double> V_cell;                          ///< sum of V [m^3]
-  std::vector<double> p;                               ///< pressure at the start of the step [Pa]
+  std::vector<std::array<StrainRows, n_places>> B;  ///< strain rows, [1/m]
+  std::vector<std::array<Vec<D>, n_local>> b;       ///< rows of the cell's mean divergence [1/m]
+  std::vector<std::array<double, n_places>> V;      ///< concrete volume of each place [m^3]
+  std::vector<std::array<double, n_places>> tau_y;  ///< yield stress there [Pa]
+  std::vector<double> V_cell;                       ///< sum of V [m^3]
+  std::vector<double> p;                            ///< pressure at the start of the step [Pa]
 
   void resize(std::size_t n) {
     B.resize(n), b.resize(n), V.resize(n), tau_y.resize(n), V_cell.resize(n), p.resize(n);
@@ -45,8 +45,9 @@ Vec<D> gauss_place(int k) {
 
 namespace detail {
 
-/// Shares of a point at the local coordinates s in the Gauss places of its cell: linear between them, so that the weights
-/// change continuously while points move, sum to one and keep the point's place wherever they can.
+/// Shares of a point at the local coordinates s in the Gauss places of its cell: linear between them, so that
+/// the weights change continuously while points move, sum to one and keep the point's place wherever they
+/// can.
 template <int D>
 std::array<double, power(2, D)> place_shares(const Vec<D>& s) {
   constexpr double low = 0.5 - 0.28867513459481288, high = 0.5 + 0.28867513459481288;
@@ -59,9 +60,9 @@ std::array<double, power(2, D)> place_shares(const Vec<D>& s) {
   return share;
 }
 
-/// Volumes of the Gauss places of cell c, and 1 + lambda times volume where the points have lambda. A place weighs what
-/// the Gauss rule gives it in a full cell, or a uniform pressure would push: in a ring that is the points' sections times
-/// the place's own measure, not theirs.
+/// Volumes of the Gauss places of cell c, and 1 + lambda times volume where the points have lambda. A place
+/// weighs what the Gauss rule gives it in a full cell, or a uniform pressure would push: in a ring that is
+/// the points' sections times the place's own measure, not theirs.
 template <class Space>
 void add_up_points(const ActiveGrid<Space::dim>& grid, const Points<Space::dim>& points, int c,
                    const std::array<Vec<Space::dim>, power(2, Space::dim)>& places,
@@ -88,8 +89,9 @@ void add_up_points(const ActiveGrid<Space::dim>& grid, const Points<Space::dim>&
 
 /// Volumes of the Gauss places of a full cell.
 template <class Space>
-std::array<double, power(2, Space::dim)> full_volumes(const std::array<Axis, Space::dim>& axes,
-                                                      const std::array<Vec<Space::dim>, power(2, Space::dim)>& places) {
+std::array<double, power(2, Space::dim)> full_volumes(
+    const std::array<Axis, Space::dim>& axes,
+    const std::array<Vec<Space::dim>, power(2, Space::dim)>& places) {
   double section = 1.0;
   for (const Axis& axis : axes) section *= 0.5 * axis.h;
   std::array<double, power(2, Space::dim)> volume;
@@ -100,7 +102,8 @@ std::array<double, power(2, Space::dim)> full_volumes(const std::array<Axis, Spa
 /// Strain rows at every place and the rows of the cell's mean divergence.
 template <class Space>
 void lay_out_rows(const std::array<Stencil<Space::dim>, power(2, Space::dim)>& st,
-                  const std::array<Vec<Space::dim>, power(2, Space::dim)>& x, int c, Quadrature<Space>& quadrature) {
+                  const std::array<Vec<Space::dim>, power(2, Space::dim)>& x, int c,
+                  Quadrature<Space>& quadrature) {
   constexpr int n = power(2, Space::dim), n_local = power(3, Space::dim);
   double V_cell = 0.0;
   for (int k = 0; k < n; ++k) V_cell += quadrature.V[c][k];
@@ -128,10 +131,11 @@ double mean_pressure(const ActiveGrid<D>& grid, const Points<D>& points, double 
 
 }  // namespace detail
 
-/// Lays out the quadrature of a step: places, volumes, yield stresses tau_y = (1 + lambda) tau_0 and pressures.
+/// Lays out the quadrature of a step: places, volumes, yield stresses tau_y = (1 + lambda) tau_0 and
+/// pressures.
 template <class Space>
-void lay_out_quadrature(const ActiveGrid<Space::dim>& grid, const Points<Space::dim>& points, double tau_0, double K,
-                        Quadrature<Space>& quadrature) {
+void lay_out_quadrature(const ActiveGrid<Space::dim>& grid, const Points<Space::dim>& points, double tau_0,
+                        double K, Quadrature<Space>& quadrature) {
   constexpr int D = Space::dim, n = power(2, D);
   quadrature.resize(grid.cell_index.size());
 #pragma omp parallel for schedule(static)
@@ -147,7 +151,8 @@ void lay_out_quadrature(const ActiveGrid<Space::dim>& grid, const Points<Space::
     detail::add_up_points<Space>(grid, points, c, x, quadrature.V[c], structure);
     for (int k = 0; k < n; ++k)
       quadrature.tau_y[c][k] = quadrature.V[c][k] > 0.0 ? tau_0 * structure[k] / quadrature.V[c][k] : tau_0;
-    // Inside the body a cell is full: with counted volumes the pressure would push whenever a point crosses into a cell.
+    // Inside the body a cell is full: with counted volumes the pressure would push whenever a point crosses
+    // into a cell.
     if (is_inside<D>(grid, cell)) quadrature.V[c] = detail::full_volumes<Space>(grid.axes, x);
     detail::lay_out_rows<Space>(st, x, c, quadrature);
     quadrature.p[c] = detail::mean_pressure(grid, points, K, c);

@@ -5,8 +5,8 @@
 //   1/2 (v - v*)' M (v - v*) / dt  +  sum_q V_q [mu/2 gamma_dot^2 + Phi(gamma_dot)]
 //     +  sum_c V_c [K dt/2 (div v)^2 - p div v]  +  contact,
 //
-// Phi the potential of the yield law, gamma_dot = |q| at Gauss place q, one divergence a cell. Its stationarity is
-// the momentum balance; its solvers are in admm.hpp and newton.hpp.
+// Phi the potential of the yield law, gamma_dot = |q| at Gauss place q, one divergence a cell. Its
+// stationarity is the momentum balance; its solvers are in admm.hpp and newton.hpp.
 
 #include <algorithm>
 #include <vector>
@@ -20,8 +20,8 @@
 
 namespace tremie {
 
-/// Stress of the yield part and, for ADMM, the split strain rate, at every Gauss place of every cell. Kept between
-/// steps by cell as a first guess.
+/// Stress of the yield part and, for ADMM, the split strain rate, at every Gauss place of every cell. Kept
+/// between steps by cell as a first guess.
 template <class Space>
 struct Duals {
   using Strain = Vec<Space::n_strain>;
@@ -35,9 +35,9 @@ struct YieldProblem {
   static constexpr int D = Space::dim;
   const ActiveGrid<D>& grid;
   const Quadrature<Space>& quadrature;
-  const NodalState<D>& nodes;         ///< masses, and v* with gravity already in it
+  const NodalState<D>& nodes;  ///< masses, and v* with gravity already in it
   double dt, mu, K;
-  std::vector<char> fixed;            ///< a flag a component: prescribed by a wall
+  std::vector<char> fixed;                ///< a flag a component: prescribed by a wall
   std::vector<ContactPoint<D>> contact;   ///< moving rigid walls
   std::vector<FrictionNode<D>> friction;  ///< Coulomb friction on flat walls, yield drag of side walls
   std::vector<BoundPoint<D>> bound;       ///< walls inside the grid
@@ -51,7 +51,8 @@ struct SolveReport {
 
 /// Strain-rate vector at Gauss place k of cell c.
 template <class Space>
-Vec<Space::n_strain> strain_rate(const YieldProblem<Space>& problem, const std::vector<Vec<Space::dim>>& v, int c, int k) {
+Vec<Space::n_strain> strain_rate(const YieldProblem<Space>& problem, const std::vector<Vec<Space::dim>>& v,
+                                 int c, int k) {
   const auto& nodes = problem.grid.cell_nodes[c];
   Vec<Space::n_strain> q = problem.quadrature.B[c][k][0] * v[nodes[0]];
   for (int i = 1; i < power(3, Space::dim); ++i) q.noalias() += problem.quadrature.B[c][k][i] * v[nodes[i]];
@@ -67,10 +68,11 @@ double divergence(const YieldProblem<Space>& problem, const std::vector<Vec<Spac
   return div;
 }
 
-/// Nodal forces of everything but the yield part at velocities v: inertia, pressure and moving contact; plus the
-/// deviatoric forces of the stresses that `stress(c, k, q)` returns for the strain rate q.
+/// Nodal forces of everything but the yield part at velocities v: inertia, pressure and moving contact; plus
+/// the deviatoric forces of the stresses that `stress(c, k, q)` returns for the strain rate q.
 template <class Space, class Stress>
-Eigen::VectorXd residual(const YieldProblem<Space>& problem, const std::vector<Vec<Space::dim>>& v, Stress stress) {
+Eigen::VectorXd residual(const YieldProblem<Space>& problem, const std::vector<Vec<Space::dim>>& v,
+                         Stress stress) {
   constexpr int D = Space::dim, n_local = power(3, D);
   const auto& grid = problem.grid;
   const auto& quad = problem.quadrature;
@@ -102,7 +104,8 @@ inline void mask(const std::vector<char>& fixed, Eigen::VectorXd& R) {
     if (fixed[static_cast<std::size_t>(i)]) R[i] = 0.0;
 }
 
-/// Assembles inertia, bulk and contact, and the deviatoric stiffness V B' T B with the tangents T = tangent(c, k).
+/// Assembles inertia, bulk and contact, and the deviatoric stiffness V B' T B with the tangents T =
+/// tangent(c, k).
 template <class Space, class Tangent>
 void assemble(const YieldProblem<Space>& problem, Tangent tangent, BlockSystem<Space::dim>& system) {
   constexpr int D = Space::dim, n_dof = power(3, D) * D, ns = Space::n_strain;
@@ -121,12 +124,15 @@ void assemble(const YieldProblem<Space>& problem, Tangent tangent, BlockSystem<S
     cell.noalias() += (quad.V_cell[c] * problem.K * problem.dt * b) * b.transpose();
     system.add_cell(c, cell);
   }
-  // A point on the very edge of a cell gives some of its nodes no mass; a trace of it keeps the matrix definite.
+  // A point on the very edge of a cell gives some of its nodes no mass; a trace of it keeps the matrix
+  // definite.
   double trace = 0.0;
   for (double m : problem.nodes.mass) trace = std::max(trace, 1e-12 * m);
   for (int i = 0; i < problem.grid.n_nodes(); ++i)
     for (int d = 0; d < D; ++d)
-      system.add_diagonal(i, d, std::max(trace, problem.nodes.mass[i]) / problem.dt + (problem.drag.empty() ? 0.0 : problem.drag[i]));
+      system.add_diagonal(i, d,
+                          std::max(trace, problem.nodes.mass[i]) / problem.dt +
+                              (problem.drag.empty() ? 0.0 : problem.drag[i]));
   add_contact_stiffness<D>(problem.contact, system);
   add_bound_stiffness<D>(problem.bound, system);
 }

@@ -2,9 +2,9 @@
 
 // Transfer between points and grid: affine particle-in-cell (APIC, Jiang et al. 2015), with FLIP as a blend.
 //
-// A point's affine velocity C is the least-squares slope of the nodal velocities around it under its own shape
-// values; linear and angular momentum pass both ways unchanged, next to walls too, because the inertia tensor of the
-// stencil is computed where the point is (tensor-product splines: it is diagonal).
+// A point's affine velocity C is the least-squares slope of the nodal velocities around it under its own
+// shape values; linear and angular momentum pass both ways unchanged, next to walls too, because the inertia
+// tensor of the stencil is computed where the point is (tensor-product splines: it is diagonal).
 
 #include <array>
 #include <vector>
@@ -17,15 +17,16 @@ namespace tremie {
 /// Nodal fields, one entry an active node.
 template <int D>
 struct NodalState {
-  std::vector<double> mass;           ///< [kg]
-  std::vector<Vec<D>> v;              ///< velocity after the transfer [m/s]
+  std::vector<double> mass;  ///< [kg]
+  std::vector<Vec<D>> v;     ///< velocity after the transfer [m/s]
 };
 
 namespace detail {
 
 /// Positions of a cell's three controls in each direction.
 template <int D>
-std::array<std::array<double, 3>, D> control_positions(const std::array<Axis, D>& axes, const Index<D>& cell) {
+std::array<std::array<double, 3>, D> control_positions(const std::array<Axis, D>& axes,
+                                                       const Index<D>& cell) {
   std::array<std::array<double, 3>, D> xi;
   for (int d = 0; d < D; ++d)
     for (int k = 0; k < 3; ++k) xi[d][k] = axes[d].control_position(cell[d] + k);
@@ -39,8 +40,8 @@ struct PointStencil {
   std::array<std::array<double, 3>, D> arm;
   Vec<D> inverse_inertia;
 
-  PointStencil(const std::array<Axis, D>& axes, const Index<D>& cell, const std::array<std::array<double, 3>, D>& xi,
-               const Vec<D>& x) {
+  PointStencil(const std::array<Axis, D>& axes, const Index<D>& cell,
+               const std::array<std::array<double, 3>, D>& xi, const Vec<D>& x) {
     const Vec<D> s = local_coordinates<D>(axes, cell, x);
     for (int d = 0; d < D; ++d) {
       one[d] = splines(axes[d], cell[d], s[d]);
@@ -76,8 +77,8 @@ struct PointStencil {
 
 }  // namespace detail
 
-/// Wraps a place around periodic axes. The velocity normal to a wall vanishes on it, but a finite step may still carry
-/// a point through: it stops just before.
+/// Wraps a place around periodic axes. The velocity normal to a wall vanishes on it, but a finite step may
+/// still carry a point through: it stops just before.
 template <int D>
 void keep_in_domain(const std::array<Axis, D>& axes, Vec<D>& x) {
   for (int d = 0; d < D; ++d) {
@@ -89,7 +90,8 @@ void keep_in_domain(const std::array<Axis, D>& axes, Vec<D>& x) {
   }
 }
 
-/// Adds per-cell contributions to the nodes in the order of the cells: the sum does not depend on the threads.
+/// Adds per-cell contributions to the nodes in the order of the cells: the sum does not depend on the
+/// threads.
 template <int D>
 void gather_to_nodes(const ActiveGrid<D>& grid, const std::vector<std::array<Vec<D + 1>, power(3, D)>>& local,
                      NodalState<D>& nodes) {
@@ -135,8 +137,8 @@ struct Transfer {
   double flip_blend = 0.95;  ///< share of the velocity increment, the rest is PIC
 };
 
-/// Grid to point: velocities and affine velocities from the nodal velocities v at the end of the step (v_old at its
-/// start, for FLIP alone); the points move with the same v over dt.
+/// Grid to point: velocities and affine velocities from the nodal velocities v at the end of the step (v_old
+/// at its start, for FLIP alone); the points move with the same v over dt.
 template <int D>
 void grid_to_point(const ActiveGrid<D>& grid, const std::vector<Vec<D>>& v, const std::vector<Vec<D>>& v_old,
                    const Transfer& transfer, double dt, Points<D>& points) {
@@ -155,7 +157,8 @@ void grid_to_point(const ActiveGrid<D>& grid, const std::vector<Vec<D>>& v, cons
         moment += Nv * st.arms(o).transpose();
         if (transfer.flip) vp_old += st.N(o) * v_old[grid.cell_nodes[c][k]];
       }
-      points.C[p] = transfer.flip ? Mat<D, D>(Mat<D, D>::Zero()) : Mat<D, D>(moment * st.inverse_inertia.asDiagonal());
+      points.C[p] =
+          transfer.flip ? Mat<D, D>(Mat<D, D>::Zero()) : Mat<D, D>(moment * st.inverse_inertia.asDiagonal());
       points.v[p] = transfer.flip ? Vec<D>(vp + transfer.flip_blend * (points.v[p] - vp_old)) : vp;
       points.x[p] += dt * vp;
       keep_in_domain<D>(grid.axes, points.x[p]);

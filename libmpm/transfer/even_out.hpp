@@ -2,10 +2,11 @@
 
 // Keeps the points where the concrete is.
 //
-// ln J keeps account of the volume that the flow gives each point, but nothing ties it to where the points are: under a rolling
-// front they enter the cells above the floor from the side and never settle, half a cell stays empty for good, and the rest of the
-// body is overfull by as much. The body then stands on a cushion: too tall, too heavy, and its spread a few percent too large.
-// Here the points are moved, by the smallest displacement u (in the mass norm) whose divergence takes cells inside the body back to full,
+// ln J keeps account of the volume that the flow gives each point, but nothing ties it to where the points
+// are: under a rolling front they enter the cells above the floor from the side and never settle, half a cell
+// stays empty for good, and the rest of the body is overfull by as much. The body then stands on a cushion:
+// too tall, too heavy, and its spread a few percent too large. Here the points are moved, by the smallest
+// displacement u (in the mass norm) whose divergence takes cells inside the body back to full,
 //
 //   minimise  1/2 sum_i m_i |u_i|^2 + kappa/2 sum_c V_c (div u - e_c)^2,     e_c = share_c (fill_c - 1),
 //
@@ -16,7 +17,8 @@
 namespace tremie {
 
 struct EvenOut {
-  bool on = false;  ///< for bodies that flow far; it keeps mass and momentum, angular momentum only to about 1e-6
+  bool on =
+      false;  ///< for bodies that flow far; it keeps mass and momentum, angular momentum only to about 1e-6
   double rate = 1.0;  ///< share of a cell's misfill that is mended per unit of shear
 };
 
@@ -51,7 +53,8 @@ std::vector<Vec<Space::dim>> even_out(const YieldProblem<Space>& problem, const 
     Vec<n_dof> b;
     for (int i = 0; i < n_local; ++i) b.template segment<D>(i * D) = quad.b[c][i];
     system.add_cell(c, kappa * full * b * b.transpose());
-    for (int i = 0; i < n_local; ++i) R.segment<D>(grid.cell_nodes[c][i] * D) += kappa * full * misfill * quad.b[c][i];
+    for (int i = 0; i < n_local; ++i)
+      R.segment<D>(grid.cell_nodes[c][i] * D) += kappa * full * misfill * quad.b[c][i];
   }
   for (int i = 0; i < grid.n_nodes(); ++i)
     for (int d = 0; d < D; ++d) system.add_diagonal(i, d, problem.nodes.mass[i]);
@@ -62,7 +65,8 @@ std::vector<Vec<Space::dim>> even_out(const YieldProblem<Space>& problem, const 
   std::vector<char> fixed(R.size(), 0);
   for (int i = 0; i < grid.n_nodes(); ++i)
     for (int d = 0; d < D; ++d)
-      fixed[i * D + d] = grid.axes[d].on_low_wall(grid.node_index[i][d]) || grid.axes[d].on_high_wall(grid.node_index[i][d]);
+      fixed[i * D + d] =
+          grid.axes[d].on_low_wall(grid.node_index[i][d]) || grid.axes[d].on_high_wall(grid.node_index[i][d]);
   mask(fixed, R);
   system.fix(fixed);
   std::vector<Vec<D>> u(grid.node_index.size(), Vec<D>::Zero());
@@ -79,8 +83,10 @@ void shift_points(const ActiveGrid<D>& grid, const std::vector<Vec<D>>& u, Point
   for (int c = 0; c < grid.n_cells(); ++c) {
     for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
       const int p = grid.order[i];
-      // The point may have left its cell by now; beyond it the cell's polynomials run away with the square of the distance.
-      const Vec<D> s = local_coordinates<D>(grid.axes, grid.cell_index[c], points.x[p]).cwiseMax(0.0).cwiseMin(1.0);
+      // The point may have left its cell by now; beyond it the cell's polynomials run away with the square of
+      // the distance.
+      const Vec<D> s =
+          local_coordinates<D>(grid.axes, grid.cell_index[c], points.x[p]).cwiseMax(0.0).cwiseMin(1.0);
       const Stencil<D> st = stencil<D>(grid.axes, grid.cell_index[c], s);
       Vec<D> shift = Vec<D>::Zero();
       for (int k = 0; k < power(3, D); ++k) shift += st.N[k] * u[grid.cell_nodes[c][k]];

@@ -1,8 +1,9 @@
-// The slump flow over cells, seedings and yield methods, with and without evening out the points: spread at given times
-// and CPU seconds. Writes slump_study.md and slump_study.csv into the folder given.
+// The slump flow over cells, seedings and yield methods, with and without evening out the points: spread at
+// given times and CPU seconds. Writes slump_study.md and slump_study.csv into the folder given.
 //
-// Reference for Mix C with instant release: body-fitted Lagrangian finite elements with exact Bingham yield, no slip
-// and inertia, +/- 2 mm (reference_data/published.toml). Mix A has its end there, and 1.9 % less at 20 s.
+// Reference for Mix C with instant release: body-fitted Lagrangian finite elements with exact Bingham yield,
+// no slip and inertia, +/- 2 mm (reference_data/published.toml). Mix A has its end there, and 1.9 % less at
+// 20 s.
 
 #include <fmt/format.h>
 
@@ -25,21 +26,23 @@ struct Grid {
   std::array<int, 2> points;
 };
 
-constexpr std::array<Grid, 4> grids = {
-    Grid{{10, 10}, {4, 4}}, Grid{{10, 5}, {4, 4}}, Grid{{5, 5}, {4, 4}}, Grid{{5, 2.5}, {4, 4}}};
+constexpr std::array<Grid, 4> grids = {Grid{{10, 10}, {4, 4}}, Grid{{10, 5}, {4, 4}}, Grid{{5, 5}, {4, 4}},
+                                       Grid{{5, 2.5}, {4, 4}}};
 
 struct Mixture {
   const char* name;
   double tau_0, mu;
 };
-constexpr std::array<Mixture, 3> mixes = {Mixture{"A", 54, 35.8}, Mixture{"B", 61, 29}, Mixture{"C", 130, 30.2}};
+constexpr std::array<Mixture, 3> mixes = {Mixture{"A", 54, 35.8}, Mixture{"B", 61, 29},
+                                          Mixture{"C", 130, 30.2}};
 
 struct Run {
   slump_flow::Outcome outcome;
   double cpu = 0.0;
 };
 
-Run run(const Mixture& mix, const Grid& grid, MethodKind method, bool instant, bool even_out, double duration) {
+Run run(const Mixture& mix, const Grid& grid, MethodKind method, bool instant, bool even_out,
+        double duration) {
   slump_flow::Scene scene;
   scene.mix.tau_0 = mix.tau_0;
   scene.mix.mu = mix.mu;
@@ -60,7 +63,8 @@ double spread_at(const slump_flow::Outcome& outcome, double time) {
   const auto& s = outcome.series;
   for (std::size_t i = 1; i < s.size(); ++i)
     if (s[i].time >= time)
-      return 1e3 * (s[i - 1].spread + (time - s[i - 1].time) / (s[i].time - s[i - 1].time) * (s[i].spread - s[i - 1].spread));
+      return 1e3 * (s[i - 1].spread +
+                    (time - s[i - 1].time) / (s[i].time - s[i - 1].time) * (s[i].spread - s[i - 1].spread));
   return 1e3 * s.back().spread;
 }
 
@@ -71,9 +75,12 @@ std::string name(const Grid& g) {
 void against_finite_elements(std::ofstream& md, std::ofstream& csv) {
   constexpr std::array<double, 6> times = {1, 2, 3, 5, 10, 20};
   constexpr std::array<double, 6> reference = {435.4, 442.4, 444.8, 446.0, 447.8, 448.8};
-  md << "## Mix C, instant release, against the finite elements\n\nSpread in mm; the worst error from 1 s on; the "
-        "centre height against 48.1 mm.\n\n| cells, points | evened out | 1 s | 2 s | 3 s | 5 s | 10 s | 20 s | worst | "
-        "height | steps | CPU s |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n| finite elements | | 435.4 | "
+  md << "## Mix C, instant release, against the finite elements\n\nSpread in mm; the worst error from 1 s "
+        "on; the "
+        "centre height against 48.1 mm.\n\n| cells, points | evened out | 1 s | 2 s | 3 s | 5 s | 10 s | 20 "
+        "s | worst | "
+        "height | steps | CPU s |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n| finite elements | | "
+        "435.4 | "
         "442.4 | 444.8 | 446.0 | 447.8 | 448.8 | | 48.1 | | |\n";
   for (bool even_out : {false, true})
     for (const Grid& grid : grids) {
@@ -87,27 +94,29 @@ void against_finite_elements(std::ofstream& md, std::ofstream& csv) {
       }
       md << fmt::format(" {:.1f} % | {:.1f} | {} | {:.2f} |\n", 100 * worst, 1e3 * r.outcome.results.height,
                         r.outcome.cost.steps, r.cpu);
-      csv << fmt::format("C instant,{},{},{},{:.4f},{:.4f},{}\n", name(grid), even_out ? "evened" : "as they fall", "auto",
-                         r.cpu, worst, r.outcome.cost.steps);
+      csv << fmt::format("C instant,{},{},{},{:.4f},{:.4f},{}\n", name(grid),
+                         even_out ? "evened" : "as they fall", "auto", r.cpu, worst, r.outcome.cost.steps);
     }
 }
 
 void mixes_over_grids(std::ofstream& md, std::ofstream& csv) {
-  md << "\n## Mixes A, B, C, cone lifted at 15 cm/s, 20 s\n\n| mix | cells, points | method | spread mm | stopped s | "
+  md << "\n## Mixes A, B, C, cone lifted at 15 cm/s, 20 s\n\n| mix | cells, points | method | spread mm | "
+        "stopped s | "
         "volume | steps | unconverged | CPU s | ms a step |\n|---|---|---|---|---|---|---|---|---|---|\n";
   std::array<double, 4> points{}, per_step{};
   for (const Mixture& mix : mixes) {
     const auto row = [&](const Grid& grid, MethodKind method) {
       const Run r = run(mix, grid, method, false, true, 20.0);
       const auto& o = r.outcome;
-      const std::string stopped = o.results.stopped_at ? fmt::format("{:.1f}", *o.results.stopped_at) : "moving";
+      const std::string stopped =
+          o.results.stopped_at ? fmt::format("{:.1f}", *o.results.stopped_at) : "moving";
       const char* method_name = method == MethodKind::newton ? "Newton" : "ADMM";
       const double ms = 1e3 * r.cpu / static_cast<double>(o.cost.steps);
-      md << fmt::format("| {} | {} | {} | {:.1f} | {} | {:.3f} % | {} | {} | {:.2f} | {:.2f} |\n", mix.name, name(grid),
-                        method_name, 1e3 * o.results.spread, stopped, 100 * o.checks.volume_change, o.cost.steps,
-                        o.checks.unconverged_steps, r.cpu, ms);
-      csv << fmt::format("{} lifted,{},{},{},{:.4f},{:.1f},{}\n", mix.name, name(grid), "evened", method_name, r.cpu,
-                         1e3 * o.results.spread, o.cost.steps);
+      md << fmt::format("| {} | {} | {} | {:.1f} | {} | {:.3f} % | {} | {} | {:.2f} | {:.2f} |\n", mix.name,
+                        name(grid), method_name, 1e3 * o.results.spread, stopped,
+                        100 * o.checks.volume_change, o.cost.steps, o.checks.unconverged_steps, r.cpu, ms);
+      csv << fmt::format("{} lifted,{},{},{},{:.4f},{:.1f},{}\n", mix.name, name(grid), "evened", method_name,
+                         r.cpu, 1e3 * o.results.spread, o.cost.steps);
       return std::array{static_cast<double>(o.cost.points), ms};
     };
     for (std::size_t k = 0; k < grids.size(); ++k) {
