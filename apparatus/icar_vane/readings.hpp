@@ -15,7 +15,8 @@ std::optional<double> apparent_flocculation(const Scene& scene, double torque, d
 /// Fills the results from the series.
 void read_instrument(const Scene& scene, Outcome& outcome);
 
-/// Torque on the blades, on the wall and from the power must agree once steady; a reason where they do not.
+/// Torques on the blades, on the wall (with the rate of angular momentum) and from the power must agree at
+/// the end; a reason where they do not.
 void check_torques_agree(Outcome& outcome);
 
 }  // namespace tremie::icar_vane

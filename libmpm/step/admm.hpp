@@ -75,10 +75,6 @@ std::vector<double> volumes_around_nodes(const YieldProblem<Space>& problem) {
   return V;
 }
 
-}  // namespace detail
-
-namespace detail {
-
 /// The penalty r [Pa s]: a multiple of the viscosity, or of the inertia of a cell where that is stiffer. A
 /// smaller one would hardly move the stresses in an iteration, and the mismatch r (q - d) would look
 /// converged from the start.

@@ -130,7 +130,8 @@ void mixes_over_grids(std::ofstream& md, std::ofstream& csv) {
     row({{10, 5}, {2, 2}}, MethodKind::automatic);
     row({{10, 5}, {4, 4}}, MethodKind::newton);
   }
-  md << fmt::format("\nCost a step grows from the coarsest to the finest grid like points to the power: {}.\n", growth);
+  md << fmt::format(
+      "\nCost a step grows from the coarsest to the finest grid like points to the power: {}.\n", growth);
 }
 
 }  // namespace

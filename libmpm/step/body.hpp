@@ -1,0 +1,80 @@
+#pragma once
+
+// A body of concrete on its grid, the settings of its steps and what a step reports: plain data.
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "libmpm/contact/boundary_points.hpp"
+#include "libmpm/law/mix.hpp"
+#include "libmpm/step/admm.hpp"
+#include "libmpm/step/newton.hpp"
+#include "libmpm/transfer/apic.hpp"
+#include "libmpm/transfer/even_out.hpp"
+
+namespace tremie {
+
+enum class YieldMethod { automatic, admm, newton };
+
+struct StepSettings {
+  YieldMethod method = YieldMethod::automatic;
+  AdmmSettings admm;
+  NewtonSettings newton;
+  Transfer transfer;
+  EvenOut even_out;
+  std::optional<double> fixed_dt;  ///< [s]; empty: chosen at every step
+  double dt_max = 0.1;             ///< [s]
+  double cfl = 0.6;                ///< largest move in a step, in cells
+  double growth = 1.3;             ///< largest ratio of successive steps
+  double friction_coefficient = 0.0;
+  bool keep_forces = false;            ///< fill Body::wall_force and Body::dissipation
+  double boundary_stiffness = 1000.0;  ///< of walls inside the grid, in m/dt
+  double side_wall_distance = 0.0;     ///< of a width-averaged section [m]; 0: plane strain, no side walls
+  double wall_gap = 0.0;               ///< how near a point may come to a rigid wall [m]
+  double wall_penalty = 100.0;         ///< stiffness of a rigid wall, in m/dt
+};
+
+/// Velocities of the low and the high wall of each axis [m/s]; the normal component must be zero.
+template <int D>
+struct WallVelocities {
+  std::array<std::array<Vec<D>, 2>, D> v;
+  WallVelocities() {
+    for (auto& axis : v) axis.fill(Vec<D>::Zero());
+  }
+};
+
+/// A body of one mix on its grid: everything that a step reads and writes.
+template <class Space>
+struct Body {
+  static constexpr int D = Space::dim;
+  Mix mix;
+  Vec<D> gravity = Vec<D>::Zero();  ///< [m/s^2]
+  Points<D> points;
+  ActiveGrid<D> grid;
+  WallVelocities<D> walls{};               ///< of the walls at the ends of the axes
+  std::vector<BoundaryPoint<D>> boundary;  ///< walls inside the grid
+  double time = 0.0, dt = 0.0;             ///< [s]; dt of the last step
+
+  NodalState<D> nodes;    ///< of the last step, velocities at its start
+  std::vector<Vec<D>> v;  ///< nodal velocities at the end of the last step [m/s]
+  Quadrature<Space> quadrature;
+  Duals<Space> duals;
+  std::vector<FrictionNode<D>> friction;
+  std::vector<BoundPoint<D>> bound;  ///< walls inside the grid that touched concrete in the last step
+  double dissipation = 0.0;          ///< power of the stresses in the last step [W], if asked for
+  std::vector<Vec<D>> wall_force;    ///< of the flat walls on each node in the last step [N], if asked for
+  BlockSystem<D> system;
+};
+
+struct StepReport {
+  double dt = 0.0;
+  bool converged = false;
+  bool failed = false;  ///< the velocities are not finite or run away: the points were left where they were
+  int iterations = 0;   ///< linear solves
+  double max_speed = 0.0;        ///< of the points [m/s]
+  double bulk_speed = 0.0;       ///< of all but the fastest half percent of the points [m/s]
+  double shear_rate_mean = 0.0;  ///< volume mean [1/s]
+};
+
+}  // namespace tremie

@@ -1,0 +1,51 @@
+#pragma once
+
+// How long a step may be.
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <vector>
+
+#include "libmpm/step/body.hpp"
+
+namespace tremie::detail {
+
+inline constexpr double strays = 0.005;  ///< share of the points that may be drops in the air
+
+template <int D>
+double max_speed(const Points<D>& points) {
+  double v2 = 0.0;
+  for (const Vec<D>& v : points.v) v2 = std::max(v2, v.squaredNorm());
+  return std::sqrt(v2);
+}
+
+/// The speed that all but `share` of the points stay below; `speed(p)` of a point.
+template <int D, class Speed>
+double speed_of_most(const Points<D>& points, double share, Speed speed) {
+  std::vector<double> all(points.size());
+  for (std::size_t p = 0; p < points.size(); ++p) all[p] = speed(p);
+  if (all.empty()) return 0.0;
+  const auto rank = all.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(all.size()));
+  std::nth_element(all.begin(), rank, all.end(), std::greater<>());
+  return *rank;
+}
+
+/// Largest step that keeps every point's move, gravity's pull included, within settings.cfl cells.
+template <class Space>
+double choose_dt(const Body<Space>& body, const StepSettings& settings) {
+  if (settings.fixed_dt) return *settings.fixed_dt;
+  double dt = body.dt > 0.0 ? std::min(settings.dt_max, settings.growth * body.dt) : settings.dt_max;
+  for (int d = 0; d < Space::dim && Space::advects; ++d) {
+    double v = 0.0;
+    for (const auto& vp : body.points.v) v = std::max(v, std::abs(vp[d]));
+    const double reach = settings.cfl * body.grid.axes[d].h;
+    if (v > 0.0) dt = std::min(dt, reach / v);
+    // From rest the speed at the end of the step counts: g dt^2 <= reach.
+    const double g = std::abs(body.gravity[d]);
+    if (body.dt == 0.0 && g > 0.0) dt = std::min(dt, 0.25 * std::sqrt(reach / g));
+  }
+  return dt;
+}
+
+}  // namespace tremie::detail
