@@ -169,7 +169,8 @@ TEST_F(Commands, FitSaysNullOrFinite) {
     write("odd.csv", csv("time_s,torque_N_m", t, torque));
     const Result r = tremie("fit odd.csv --out odd --force" + decay_options);
     ASSERT_TRUE(r.code == 0 || r.code == 3) << r.text;
-    for (const auto& [name, value] : summary("odd")["results"].items())
+    const auto results = summary("odd")["results"];  // items() must not outlive it
+    for (const auto& [name, value] : results.items())
       if (value.is_object() && value.contains("ci95") && value["ci95"].is_array()) {
         EXPECT_LE(value["ci95"][0].get<double>(), value["value"].get<double>()) << name;
         EXPECT_GE(value["ci95"][1].get<double>(), value["value"].get<double>()) << name;
