@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <atomic>
+#include <ctime>
 #include <memory>
 
 #include "apparatus/cli/commands.hpp"
@@ -27,11 +28,28 @@ struct Options {
 std::atomic<bool> stop_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
 
-/// The first interrupt asks the run to stop and write what it has; a second one ends the program.
+std::atomic<std::time_t> first_request{0};
+static_assert(std::atomic<std::time_t>::is_always_lock_free, "set from a signal handler");
+
+/// Whoever stops a program often signals it and its group: what comes at once is one request.
+void request_stop(int signal_number) {
+  const std::time_t now = std::time(nullptr);
+  if (!stop_requested.exchange(true)) {
+    first_request = now;
+  } else if (now - first_request > 1) {
+    signal(signal_number, SIG_DFL);
+    raise(signal_number);
+  }
+}
+
+/// The first interrupt asks the run to stop and write what it has; one a second or two later ends the
+/// program.
 void stop_on_interrupt() {
   struct sigaction action = {};
-  action.sa_handler = [](int) { stop_requested = true; };
-  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
+  action.sa_handler = request_stop;
+  action.sa_flags = SA_RESTART;
+  sigaddset(&action.sa_mask, SIGINT);
+  sigaddset(&action.sa_mask, SIGTERM);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
 }

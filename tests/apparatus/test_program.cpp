@@ -129,7 +129,8 @@ TEST_F(Program, NewMakesASceneThatChecks) {
 }
 
 TEST_F(Program, AnInterruptKeepsWhatThereIs) {
-  // The run is far too long to end by itself.
+  // The run is far too long to end by itself. `timeout` signals the program and then its group: two
+  // interrupts at once are one.
   const Result result =
       shell("env -u DISPLAY timeout -s INT --preserve-status 1 '" + tremie_program +
                 "' run quick.toml --out a --set test.duration='1000 h' --set model.time_step='1e-6 s'"
