@@ -8,6 +8,28 @@
 
 namespace tremie {
 
+namespace {
+
+/// A record in a wrong unit fits as well as in the right one. Fresh concretes, mortars and pastes shear at
+/// stresses from a few Pa to, rested, a few kPa, and vanes turn at a few rev/s at most; what is far beyond is
+/// told.
+void judge_sizes(const TorqueRecord& record, const FitInput& input, FitResult& result) {
+  const double stress =
+      shear_stress_at(input.instrument.vane_radius,
+                      *std::max_element(record.torque.begin(), record.torque.end()), input.instrument);
+  if (stress < 1.0 || stress > 2e4)
+    result.reasons.push_back("the largest shear stress at the vane is " + std::to_string(stress) +
+                             " Pa, which no fresh concrete has: is the torque's unit right?");
+  const double speed = record.kind == RecordKind::flow_curve
+                           ? *std::max_element(record.omega.begin(), record.omega.end())
+                           : input.omega.value_or(0.0);
+  if (speed > angular_speed(10.0))
+    result.reasons.push_back("the vane turns at " + std::to_string(speed / angular_speed(1.0)) +
+                             " rev/s: is the speed's unit right?");
+}
+
+}  // namespace
+
 FitResult fit(const TorqueRecord& record, const FitInput& input) {
   check(input.instrument);
   const auto positive = [](const std::optional<double>& v, const char* what) {
@@ -18,8 +40,10 @@ FitResult fit(const TorqueRecord& record, const FitInput& input) {
   positive(input.mu, "the plastic viscosity");
   positive(input.omega, "the speed");
   positive(input.rest, "the rest");
-  return record.kind == RecordKind::flow_curve ? fitting::fit_flow_curve(record, input)
-                                               : fitting::fit_torque_decay(record, input);
+  FitResult result = record.kind == RecordKind::flow_curve ? fitting::fit_flow_curve(record, input)
+                                                           : fitting::fit_torque_decay(record, input);
+  judge_sizes(record, input, result);
+  return result;
 }
 
 namespace fitting {

@@ -130,12 +130,12 @@ TEST(FlocculationUpdate, IsOfFourthOrderAtALinearRate) {
 }
 
 // Lobatto's rule of four points is of order 6, and so is what is left out of the build-up. The coarse steps
-// are as long as the history allows, the fine ones stay above CVODE's own error, about 1e-12.
+// are as long as the history allows, the fine ones stay above CVODE's own error, about 1e-11.
 TEST(FlocculationUpdate, IsOfSixthOrderAlongAHistory) {
   EXPECT_NEAR(observed_order(wave, roussel, 14, 42, along), 6.0, 0.2);
   EXPECT_NEAR(observed_order(wave, gated, 14, 42, along), 6.0, 0.2);
   const ShearPiece half_a_pulse{1.9, pulse.rate};  // over all of it the errors of both flanks cancel
-  EXPECT_NEAR(observed_order(half_a_pulse, roussel, 12, 36, along), 6.0, 0.2);
+  EXPECT_NEAR(observed_order(half_a_pulse, roussel, 8, 16, along), 6.0, 0.2);
 }
 
 // Rest - flow - rest through the gate with steps that do not end on the crossings: the step is split there,
