@@ -107,24 +107,36 @@ std::optional<Estimate> tell(double value, double variance, double degrees, doub
 Estimate given(double value) { return {value, Interval{value, value}, true}; }
 
 void report(const Readings& readings, const LeastSquaresFit& fit, FitResult& result) {
+  double square = 0.0, left_out = 0.0;
   for (std::size_t i = 0; i < readings.size(); ++i) {
     if (fit.outlier[i]) {
       drop(result, readings.line[i], readings.x[i], readings.torque[i], "outlier from the fitted curve");
+      result.dropped_count += std::lround(readings.count[i]) - 1;  // the mean of so many rows
+      left_out += 1.0;
       continue;
     }
     result.curve.x.push_back(readings.x[i]);
     result.curve.observed.push_back(readings.torque[i]);
     result.curve.fitted.push_back(fit.fitted[i]);
     result.readings += std::lround(readings.count[i]);
+    square += fit.residual[i] * fit.residual[i];
   }
   result.scatter = fit.scatter;
   result.correlation = fit.correlation;
+  const auto n = static_cast<double>(readings.size());
+  const double misfit = 100.0 * std::sqrt(square / std::max(1.0, n - left_out));
   // An instrument's readings scatter by a few per cent; at this size the record is another material, unit or
   // speed.
-  if (fit.scatter > 0.25)
+  if (misfit > 25.0)
     result.reasons.push_back("the fitted curve misses the readings by " +
-                             std::to_string(std::lround(100.0 * fit.scatter)) +
+                             std::to_string(std::lround(misfit)) +
                              " % (root mean square): check units, speed and what was given as known");
+  // A stray reading is an outlier; a twentieth of a long record is a part that the model does not describe.
+  if (readings.size() >= 50 && left_out > 0.05 * n)
+    result.reasons.push_back(
+        std::to_string(std::lround(100.0 * left_out / n)) +
+        " % of the readings are off the fitted curve and were left out: the material does not "
+        "behave as the model, or what was given as known is not right");
 }
 
 }  // namespace fitting
