@@ -48,12 +48,16 @@ inline double roussel_step(double lambda, double build_rate, double alpha, const
 /// keeps the bracket, with the weight of Anderson and Bjorck (1973) for an end that stays.
 template <class Rate>
 double gate_crossing(const Rate& rate, double gamma_c, double a, double fa, double b, double fb) {
-  const double close = 1e-6 * std::abs(b - a);  // the error of the next is smaller by orders
-  double last = a;
+  const double close = 1e-3 * std::abs(b - a);
+  double last = a, f_last = fa;
   for (int i = 0; i < 50; ++i) {
     const double next = (a * fb - b * fa) / (fb - fa), f = rate(next) - gamma_c;
-    if (f == 0.0 || std::abs(next - last) < close) return next;
+    if (f == 0.0) return next;
+    if (std::abs(next - last) <
+        close)  // one secant more, without asking for the rate: the square of it or so
+      return f != f_last ? next - f * (next - last) / (f - f_last) : next;
     last = next;
+    f_last = f;
     if ((f < 0.0) != (fb < 0.0)) {  // b is the newest of the bracket's ends
       a = b;
       fa = fb;

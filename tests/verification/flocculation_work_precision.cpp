@@ -306,7 +306,7 @@ void write_chart(const std::vector<Result>& results, const std::string& director
          "xtics 100\nset ytics 1e4\nset "
          "grid lc '#dddddd'\n"
       << "set xlabel 'CPU time in s'\nset ylabel 'error of lambda over its largest value'\n"
-      << "set key bottom left\nset multiplot layout 2,3\n"
+      << "set key bottom left samplen 2\nset multiplot layout 2,3\n"
       << "f(c,m) = sprintf('< grep \"^%s,%s,\" flocculation_work_precision.csv', c, m)\n";
   for (const Result& r : results) {
     out << "set title '" << r.c.title << "' noenhanced\nplot ";
