@@ -30,7 +30,7 @@ const char* const line = "with lines linewidth 2 linecolor rgb '#0b5394'";
 std::string residual_chart(const FitResult& r, const char* x) {
   return head("residuals.svg", x, "residual in % of the fitted torque") +
          fmt::format(
-             "unset key\nplot 'fit.csv' every ::1 using 1:4 with points {}, 0 with lines linecolor rgb "
+             "unset key\nset xrange [0:*]\nplot 'fit.csv' every ::1 using 1:4 with points {}, 0 with lines linecolor rgb "
              "'#0b5394'\n",
              readings_style(r));
 }
