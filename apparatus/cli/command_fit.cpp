@@ -195,6 +195,7 @@ int run(const Options& options) {
   const FitInput in = input_of(options);
   const FitResult result = read_and_fit(options, in);
   const std::string name = std::filesystem::path(options.data).stem().string();
+  const HeldInterrupts held;  // outlives the folder
   report::RunFolder folder(options.out.empty() ? "runs/" + name : options.out, options.force);
   scene::Outcome outcome;
   outcome.apparatus = "fit";
