@@ -256,7 +256,11 @@ const char* const remarks =
     "data) is "
     "about what its set-up costs: without that, the ratios of the smooth\nhistories would be about half. In "
     "a simulation "
-    "neither long steps nor a look inside the step are to be had (second table).\n";
+    "neither long steps nor a look inside the step are to be had (second table).\n"
+    "With the better of the two updates the pulse meets 100 times and the wave through the gate just misses "
+    "it, or just meets it, by the\n"
+    "run. Tried before: the rate in the middle of the step alone (Simpson's rule, order 4) gave 93 times for "
+    "the pulse and 69 for the wave.\n";
 
 void write_row(std::ofstream& out, const Result& r) {
   const double update = cheapest(r.points, "update", 1e-6), along = cheapest(r.points, "update along", 1e-6),
