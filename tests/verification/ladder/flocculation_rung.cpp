@@ -40,7 +40,10 @@ Case history_case(const std::string& name, const std::string& title, const study
            .equation = "dλ/dt = A_thix/τ0 − αλγ̇(t), equations (3) and (4)",
            .reference = "CVODE at a tolerance of 1e-13, gate crossings found as roots",
            .norm = "largest |λ − λ_reference| over the largest λ, every second",
-           .series = {{"update of the points", {}}, {"forward Euler (for comparison)", {}}, {"CVODE", {}}},
+           .series = {{"update of the points", {}},
+                      {"forward Euler (for comparison)", {}},
+                      {"CVODE", {}},
+                      {"update along the history", {}}},
            .bounds = {}};
   const auto reference = flocculation_ode(c.history, c.thixotropy, study::tau_0, c.lambda_0, c.times).lambda;
   for (double dt : {0.2, 0.1, 0.05, 0.02, 0.01, 1e-3, 1e-4}) {
@@ -48,6 +51,8 @@ Case history_case(const std::string& name, const std::string& title, const study
     const std::string label = fmt::format("{:g} s", dt);
     one.series[0].runs.push_back(
         measure(label, dt, reference, c.lambda_0, [&] { return study::march(c, dt, study::one_step); }));
+    one.series[3].runs.push_back(measure(label, dt, reference, c.lambda_0,
+                                         [&] { return study::march(c, dt, study::one_step_along); }));
     one.series[1].runs.push_back(measure(label, dt, reference, c.lambda_0,
                                          [&] { return study::march(c, dt, study::one_step_of_euler); }));
   }
