@@ -258,8 +258,8 @@ const char* const remarks =
     "a simulation "
     "neither long steps nor a look inside the step are to be had (second table).\n"
     "With the better of the two updates the pulse meets 100 times and the wave through the gate just misses "
-    "it, or just meets it, by the\n"
-    "run. Tried before: the rate in the middle of the step alone (Simpson's rule, order 4) gave 93 times for "
+    "it.\n"
+    "Tried before: the rate in the middle of the step alone (Simpson's rule, order 4) gave 93 times for "
     "the pulse and 69 for the wave.\n";
 
 void write_row(std::ofstream& out, const Result& r) {
