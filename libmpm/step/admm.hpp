@@ -23,6 +23,10 @@ struct AdmmSettings {
   int max_iterations = 1000;
   double over_relaxation = 1.6;  ///< rho
   double penalty = 3.0;          ///< r / mu
+  // In space, where the linear systems are solved by iteration:
+  double solve_reduction = 0.1;  ///< of the residual in one solve, in the energy norm
+  double solve_share = 0.1;      ///< of the tolerated mismatch (squared) that a solve may leave
+  int direct_below = 3000;       ///< unknowns; smaller systems are factorised
 };
 
 namespace detail {
