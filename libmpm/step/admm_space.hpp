@@ -118,7 +118,7 @@ inline void residual_in_space(const YieldProblem<ThreeD>& problem, const CellBat
 template <class Law>
 SolveReport solve_admm_in_space(YieldProblem<ThreeD>& problem, const Law& law, const AdmmSettings& settings,
                                 SpaceSystem& system, std::vector<Vec<3>>& v, Duals<ThreeD>& duals) {
-  const double r = detail::penalty(problem, settings), eta = problem.mu + r;
+  const double r = detail::penalty(problem, settings.penalty_by_iteration), eta = problem.mu + r;
   SolveReport report;
   system.set_up(problem);
   if (!system.prepare(problem, eta)) return report;

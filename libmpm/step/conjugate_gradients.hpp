@@ -34,8 +34,9 @@ struct SolveGoal {
 template <class Multiply, class Precondition>
 double conjugate_gradients(Multiply multiply, Precondition precondition, const SolveGoal& goal,
                            Eigen::VectorXd& R, Eigen::VectorXd& x) {
-  Eigen::VectorXd z(R.size()), Ap(R.size()), r_old;
-  x.setZero(R.size());
+  const Eigen::Index n = R.size();
+  Eigen::VectorXd z(n), Ap(n);
+  x.setZero(n);
   precondition(R, z);
   double rz = block_dot(R, z);
   const double enough = std::max(goal.enough, goal.reduction * goal.reduction * rz);
@@ -43,14 +44,17 @@ double conjugate_gradients(Multiply multiply, Precondition precondition, const S
   for (int i = 0; rz > enough && i < goal.most; ++i) {
     multiply(p, Ap);
     const double alpha = rz / block_dot(p, Ap);
-    x += alpha * p;
-    r_old = R;
-    R -= alpha * Ap;
+#pragma omp parallel for schedule(static)
+    for (Eigen::Index j = 0; j < n; ++j) {
+      x[j] += alpha * p[j];
+      R[j] -= alpha * Ap[j];
+    }
     precondition(R, z);
-    // Polak and Ribiere's form forgives a preconditioner that is rounded.
-    const double rz_new = block_dot(R, z), beta = (rz_new - block_dot(r_old, z)) / rz;
-    rz = rz_new;
-    p = z + beta * p;
+    // Polak and Ribiere's beta, (z, r_new - r_old) / rz, forgives a preconditioner that is rounded.
+    const double beta = -alpha * block_dot(Ap, z) / rz;
+    rz = block_dot(R, z);
+#pragma omp parallel for schedule(static)
+    for (Eigen::Index j = 0; j < n; ++j) p[j] = z[j] + beta * p[j];
   }
   return rz;
 }

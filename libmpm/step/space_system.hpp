@@ -225,7 +225,7 @@ inline double SpaceSystem::solve(const YieldProblem<ThreeD>& problem, Eigen::Vec
                                  const SolveGoal& goal, Eigen::VectorXd& x) {
   return conjugate_gradients([&](const Eigen::VectorXd& p, Eigen::VectorXd& Ap) { multiply(problem, p, Ap); },
                              [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
-                               preconditioner_.apply(batches, problem.grid, problem.quadrature.b, r, z);
+                               preconditioner_.apply(batches, problem.grid, r, z);
                              },
                              goal, R, x);
 }

@@ -12,6 +12,13 @@
 
 namespace tremie::detail {
 
+/// Whether the linear systems of a step are solved by iteration: a body in space that is not tiny.
+template <class Space>
+bool by_iteration(const Body<Space>& body, const StepSettings& settings) {
+  return Space::dim == 3 && settings.method != YieldMethod::newton &&
+         body.grid.n_nodes() * Space::dim >= settings.admm.direct_below;
+}
+
 /// Duals of cells that were active before go on from where they were; new cells start unstressed.
 template <class Space>
 void carry_duals(const IndexMap<Space::dim>& old_map, const ActiveGrid<Space::dim>& grid,
@@ -79,13 +86,6 @@ void update_flocculation(const Body<Space>& body, double dt, Points<Space::dim>&
     points.lambda[p] = flocculation_step(points.lambda[p], *body.mix.thixotropy, body.mix.tau_0,
                                          points.gamma_dot[p], gamma_dot[p], dt);
   points.gamma_dot.swap(gamma_dot);
-}
-
-/// Whether the linear systems of a step are solved by iteration: a body in space that is not tiny.
-template <class Space>
-bool by_iteration(const Body<Space>& body, const StepSettings& settings) {
-  return Space::dim == 3 && settings.method != YieldMethod::newton &&
-         body.grid.n_nodes() * Space::dim >= settings.admm.direct_below;
 }
 
 /// Mean shear rate of every cell over its Gauss places, and the volume mean of all [1/s].

@@ -46,7 +46,7 @@ inline std::vector<Vec<3>> even_out_in_space(const YieldProblem<ThreeD>& problem
   PressurePreconditioner preconditioner;
   if (!preconditioner.build(grid, system.batches, b, std::move(G), cells.stiffness)) return u;
   const auto precondition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
-    preconditioner.apply(system.batches, grid, b, r, z);
+    preconditioner.apply(system.batches, grid, r, z);
   };
   Eigen::VectorXd x;
   conjugate_gradients(multiply, precondition, {.reduction = 1e-6, .most = 50}, R, x);
