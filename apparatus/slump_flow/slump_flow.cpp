@@ -8,9 +8,16 @@ namespace tremie::slump_flow {
 namespace {
 
 void refuse_what_has_no_engine(const Scene& scene) {
-  if (scene.model.space != SpaceKind::axisymmetric)
-    throw std::invalid_argument("model.space: the slump flow runs in \"axisymmetric\" for now");
   engine::refuse_what_has_no_engine(scene.model, "slump flow");
+}
+
+template <class Space>
+void count(const Scene& scene, Estimate& e) {
+  Body<Space> body = filled_cone<Space>(scene);
+  activate(body.grid, body.points);
+  e.points = static_cast<std::int64_t>(body.points.size());
+  e.cells_active = body.grid.n_cells();
+  e.bytes_per_point = bytes_per_point<Space::dim>(body.points.thixotropic());
 }
 
 }  // namespace
@@ -18,18 +25,19 @@ void refuse_what_has_no_engine(const Scene& scene) {
 Outcome run(const Scene& scene, const Observer& observer) {
   refuse_what_has_no_engine(scene);
   omp_set_num_threads(scene.threads);
-  return engine::with_law(scene.model,
-                          [&](const auto& law) { return run_axisymmetric(scene, law, observer); });
+  return engine::with_law(scene.model, [&](const auto& law) {
+    return scene.model.space == SpaceKind::axisymmetric ? run_in<Axisymmetric>(scene, law, observer)
+                                                        : run_in<ThreeD>(scene, law, observer);
+  });
 }
 
 Estimate estimate(const Scene& scene) {
   refuse_what_has_no_engine(scene);
-  Body<Axisymmetric> body = filled_cone(scene);
-  activate(body.grid, body.points);
   Estimate e;
-  e.points = static_cast<std::int64_t>(body.points.size());
-  e.cells_active = body.grid.n_cells();
-  e.bytes_per_point = bytes_per_point<2>(body.points.thixotropic());
+  if (scene.model.space == SpaceKind::axisymmetric)
+    count<Axisymmetric>(scene, e);
+  else
+    count<ThreeD>(scene, e);
   const StepSettings settings = step_settings(scene);
   // The collapse runs at about sqrt(g H) for 0.4 s at the CFL limit, the rest of the flow at the largest
   // step.
