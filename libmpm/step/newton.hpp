@@ -33,9 +33,11 @@ double energy(const YieldProblem<Space>& problem, const Law& law, const std::vec
     const double div = divergence(problem, v, c);
     sum += quad.V_cell[c] * div * (0.5 * problem.K * problem.dt * div - quad.p[c]);
     for (int k = 0; k < power(2, Space::dim); ++k) {
-      const double gamma_dot = strain_rate(problem, v, c, k).norm();
-      sum += quad.V[c][k] *
-             (0.5 * problem.mu * gamma_dot * gamma_dot + law.potential(gamma_dot, quad.tau_y[c][k]));
+      const auto q = strain_rate(problem, v, c, k);
+      const double gamma_dot = q.norm(), excess = excess_divergence<Space>(q, div);
+      sum +=
+          quad.V[c][k] * (0.5 * problem.mu * gamma_dot * gamma_dot +
+                          law.potential(gamma_dot, quad.tau_y[c][k]) + 0.5 * problem.zeta * excess * excess);
     }
   }
   for (std::size_t i = 0; i < problem.drag.size(); ++i) sum += 0.5 * problem.drag[i] * v[i].squaredNorm();
