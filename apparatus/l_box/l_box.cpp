@@ -6,10 +6,9 @@
 namespace tremie::l_box {
 namespace {
 
-constexpr double reading_length = 0.02;         // over which the depths are averaged [m]
-constexpr double drops = 0.005;                 // share of the points that may fall off the column's walls
-constexpr double share_of_time = 0.01;          // largest step, in the time since the start of the lift
-constexpr double alternating_viscosity = 30.0;  // in mu: tests/verification/lbox_study.md
+constexpr double reading_length = 0.02;  // over which the depths are averaged [m]
+constexpr double drops = 0.005;          // share of the points that may fall off the column's walls
+constexpr double share_of_time = 0.01;   // largest step, in the time since the start of the lift
 
 /// Coordinates: x from the back of the column, y from the floor; the gate stands at x = column_length.
 Body<PlaneStrain> filled_column(const Scene& scene) {
@@ -137,7 +136,7 @@ Outcome run_plane(const Scene& scene, const Law& law, const Observer& observer) 
   Body<PlaneStrain> body = filled_column(scene);
   StepSettings settings = engine::step_settings(scene.model);
   settings.strays = drops;
-  settings.alternating_viscosity = alternating_viscosity;
+  settings.alternating_viscosity = scene.alternating_viscosity;
   if (scene.model.space == SpaceKind::plane_with_side_walls) settings.side_wall_distance = scene.box.width;
   const double start_mass = engine::total_mass(body.points);
 
