@@ -135,7 +135,7 @@ template <class Law>
 Outcome run_plane(const Scene& scene, const Law& law, const Observer& observer) {
   Body<PlaneStrain> body = filled_column(scene);
   StepSettings settings = engine::step_settings(scene.model);
-  settings.strays = drops;
+  if (!scene.model.time_step) settings.strays = drops;
   settings.alternating_viscosity = scene.alternating_viscosity;
   if (scene.model.space == SpaceKind::plane_with_side_walls) settings.side_wall_distance = scene.box.width;
   const double start_mass = engine::total_mass(body.points);
@@ -153,6 +153,7 @@ Outcome run_plane(const Scene& scene, const Law& law, const Observer& observer) 
     body.boundary = front_wall(scene, body.time);
     const StepReport step = implicit_step(body, law, settings);
     engine::count_step(body, step, outcome.checks, outcome.cost);
+    engine::watch_fixed_step(body, scene.model, step, outcome.checks);
     if (engine::gave_up(step, outcome.status, outcome.checks, body.time)) break;
     outcome.series.push_back(read(body, scene, step));
     if (observer.on_step) observer.on_step(outcome.series.back());

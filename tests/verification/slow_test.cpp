@@ -3,7 +3,7 @@
 #include "apparatus/l_box/l_box.hpp"
 #include "apparatus/slump_flow/slump_flow.hpp"
 #include "tests/verification/lbox_reference.hpp"
-#include "tests/verification/slender.hpp"
+#include "tests/verification/slender_expectations.hpp"
 
 namespace tremie {
 namespace {
