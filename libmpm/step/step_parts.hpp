@@ -251,6 +251,7 @@ void pose(Body<Space>& body, const StepSettings& settings, const RigidWall<Space
   for (std::size_t i = 0; i < v_old.size(); ++i) body.nodes.v[i] = v_old[i] + dt * body.gravity;
   posed.emplace(YieldProblem<Space>{
       body.grid, body.quadrature, body.nodes, dt, body.mix.mu, body.mix.K, {}, {}, {}, {}, {}});
+  posed->zeta = settings.alternating_viscosity * body.mix.mu;
   apply_flat_walls<D>(body.grid, body.walls, posed->fixed, posed->friction, body.v);
   if (settings.side_wall_distance > 0.0) add_side_walls(settings.side_wall_distance, *posed);
   posed->bound = find_bound_points(body.grid, body.nodes, body.boundary, dt, settings.boundary_stiffness);
@@ -274,18 +275,19 @@ SolveReport solve_step(YieldProblem<Space>& problem, const Law& law, const StepS
   return solve;
 }
 
-/// Whether the step would carry concrete a hundred cells or to nowhere. Nodes with next to no mass do not
-/// count: what they do moves no point.
+/// Whether the step would carry concrete a hundred cells or to nowhere: more of it than the share that may be
+/// drops in the air. Nodes with next to no mass do not count: what they do moves no point.
 template <class Space>
-bool runs_away(const Body<Space>& body, double dt) {
+bool runs_away(const Body<Space>& body, double drops, double dt) {
   const double reach = 100.0 * body.grid.cell_size_min();
-  double heaviest = 0.0;
-  for (double m : body.nodes.mass) heaviest = std::max(heaviest, m);
+  double heaviest = 0.0, total = 0.0, gone = 0.0;
+  for (double m : body.nodes.mass) heaviest = std::max(heaviest, m), total += m;
   for (std::size_t i = 0; i < body.v.size(); ++i) {
     if (!body.v[i].allFinite()) return true;
-    if (Space::advects && body.nodes.mass[i] > 1e-3 * heaviest && body.v[i].norm() * dt > reach) return true;
+    const double m = body.nodes.mass[i];
+    if (Space::advects && m > 1e-3 * heaviest && body.v[i].norm() * dt > reach) gone += m;
   }
-  return false;
+  return gone > drops * total;
 }
 
 }  // namespace tremie::detail
