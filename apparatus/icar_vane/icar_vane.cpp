@@ -33,7 +33,7 @@ Sample read(const Body<typename Section::Space>& body, const Scene& scene, const
   s.speed = speed;
   s.torque = h * t.blades;
   s.torque_wall = h * t.wall;
-  s.torque_power = speed != 0.0 ? h * body.dissipation / angular(speed) : 0.0;
+  s.torque_power = speed != 0.0 ? h * t.power / angular(speed) : 0.0;
   s.momentum_rate = step.dt > 0.0 ? h * (t.angular_momentum - last_momentum) / step.dt : 0.0;
   s.shear_rate_mean = step.shear_rate_mean;
   s.flocculation_mean = engine::mean_flocculation(body.points);
@@ -75,8 +75,6 @@ Outcome run_section(const Scene& scene, const Section& section, const Law& law, 
   engine::rest(body, scene.rest);
   StepSettings settings = engine::step_settings(scene.model);
   settings.keep_forces = true;
-  settings.boundary_stiffness =
-      1e6;  // at the library's 1e3 the concrete slips enough to take 5 % off the torque
   const double start_mass = engine::total_mass(body.points);
 
   Outcome outcome;
@@ -89,7 +87,7 @@ Outcome run_section(const Scene& scene, const Section& section, const Law& law, 
       settings.dt_max = left / std::ceil(left / largest_dt - 1e-9);
       const double ramp = std::clamp((body.time + first_dt - stage_start) / start_up, 0.0, 1.0);
       const double speed = last_speed + ramp * (stage.speed - last_speed);
-      section.turn(body, angular(speed), turned);
+      section.turn(body, angular(speed));
       const StepReport step = implicit_step(body, law, settings);
       turned += angular(speed) * step.dt;
       const Torques t = section.torques(body);

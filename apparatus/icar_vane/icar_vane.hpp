@@ -22,6 +22,7 @@ struct Vane {
   double container_radius = 0.143;
   int blades = 4;                  ///< plane sections alone; a Couette section is a solid cylinder
   double blade_thickness = 0.003;  ///< plane sections alone [m]
+  double shaft_radius = 0.01;      ///< about which the blades stand; plane sections alone [m]
 };
 
 /// A checked scene, SI units; speeds in revolutions a second.

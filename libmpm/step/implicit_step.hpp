@@ -54,8 +54,9 @@ StepReport implicit_step(Body<Space>& body, const Law& law, const StepSettings& 
   const bool even = Space::advects && settings.even_out.on;
   const std::vector<Vec<D>> u =
       even ? even_out(problem, body.points, body.v, settings.even_out, body.system) : std::vector<Vec<D>>{};
-  grid_to_point(body.grid, body.v, v_old, settings.transfer, Space::advects ? dt : 0.0, body.points);
-  if (even) shift_points<D>(body.grid, u, body.points);
+  grid_to_point(body.grid, body.v, v_old, settings.transfer, Space::advects ? dt : 0.0, body.points,
+                body.motion);
+  if (even) shift_points<D>(body.grid, u, body.points, body.motion);
   body.time += dt;
   body.dt = dt;
 

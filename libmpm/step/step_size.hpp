@@ -38,7 +38,8 @@ double choose_dt(const Body<Space>& body, const StepSettings& settings) {
   double dt = body.dt > 0.0 ? std::min(settings.dt_max, settings.growth * body.dt) : settings.dt_max;
   for (int d = 0; d < Space::dim && Space::advects; ++d) {
     double v = 0.0;
-    for (const auto& vp : body.points.v) v = std::max(v, std::abs(vp[d]));
+    for (std::size_t p = 0; p < body.points.size(); ++p)
+      v = std::max(v, std::abs(body.motion.rate(body.points.x[p], body.points.v[p])[d]));
     const double reach = settings.cfl * body.grid.axes[d].h;
     if (v > 0.0) dt = std::min(dt, reach / v);
     // From rest the speed at the end of the step counts: g dt^2 <= reach.
