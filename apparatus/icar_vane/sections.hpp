@@ -79,7 +79,7 @@ struct PlaneSection {
     n_blade = cells(vane.radius - vane.shaft_radius, gap / n_gap, 2);
     n_radial = n_gap + n_blade;
     n_thick = cells(vane.blade_thickness, scene.model.cell[1], 0);
-    n_around = cells(arc, n_thick > 0 ? vane.blade_thickness / n_thick : scene.model.cell[1], n_thick + 4);
+    n_around = n_thick > 0 ? n_thick * cells(arc, vane.blade_thickness, 2) : cells(arc, scene.model.cell[1], 4);
     cell = {gap / n_gap, sector / n_around};
     shaft = vane.radius - n_blade * cell[0];
   }
