@@ -36,7 +36,7 @@ struct Scene {
   double pre_shear_speed = 0.5, pre_shear_time = 20.0;  ///< before a flow curve [rev/s], [s]
   double hold_time = 5.0;                               ///< of each speed of a flow curve [s]
   double average_time = 2.0;    ///< the last part of each hold, over which the torque is averaged [s]
-  double orientation = 0.0;     ///< of the blades against the grid, plane sections alone [rad]
+  double orientation = 0.0;     ///< of the blades against the points, plane sections alone [rad]
   Model model;                  ///< space couette or plane
   double frame_interval = 0.5;  ///< [s]
   int threads = 1;

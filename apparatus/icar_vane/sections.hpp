@@ -17,6 +17,8 @@ struct Torques {
   double power = 0.0;               ///< dissipated by the stresses [W/m]
 };
 
+inline constexpr double thinnest = 0.125;  ///< of a cell: a thinner blade is a sheet
+
 /// Concrete circling between a cylinder and the container: a radial line of cells.
 struct CouetteSection {
   using Space = Couette;
@@ -54,6 +56,7 @@ struct CouetteSection {
   }
   double radius(const Vec<1>& x) const { return x[0]; }
   double speed(const Vec<1>&, const Vec<1>& v) const { return v[0]; }
+  Frame whole(const Frame& line, double) const { return line; }
 };
 
 /// A horizontal section through the blades, in polar coordinates that turn with the vane. One blade and its
@@ -78,8 +81,10 @@ struct PlaneSection {
     const int n_gap = cells(gap, scene.model.cell[0], 2);
     n_blade = cells(vane.radius - vane.shaft_radius, gap / n_gap, 2);
     n_radial = n_gap + n_blade;
-    n_thick = cells(vane.blade_thickness, scene.model.cell[1], 0);
-    n_around = n_thick > 0 ? n_thick * cells(arc, vane.blade_thickness, 2) : cells(arc, scene.model.cell[1], 4);
+    const bool sheet = vane.blade_thickness < thinnest * scene.model.cell[1];
+    n_thick = sheet ? 0 : cells(vane.blade_thickness, scene.model.cell[1], 1);
+    n_around =
+        n_thick > 0 ? n_thick * cells(arc, vane.blade_thickness, 2) : cells(arc, scene.model.cell[1], 4);
     cell = {gap / n_gap, sector / n_around};
     shaft = vane.radius - n_blade * cell[0];
   }
@@ -96,12 +101,17 @@ struct PlaneSection {
     body.grid.axes[1] = {.h = cell[1], .periodic = true, .n_cells = n_around, .creases = {first}};
     if (n_thick > 0) body.grid.axes[1].creases.push_back(first + n_thick);
     body.grid.blocks = {{{0, first}, {n_blade, first + n_thick}, {}}};
+    const auto wrapped = [&](const Vec<2>& x) {
+      return Vec<2>(x[0], x[1] - sector * std::floor(x[1] / sector));
+    };
+    const auto in_concrete = [&](const Vec<2>& x) {
+      return !block_of_cell<2>(body.grid, detail::cell_of<2>(body.grid.axes, wrapped(x)));
+    };
     seed_box<Space>(
-        {shaft, 0.0}, {vane.container_radius, sector},
+        {shaft, scene.orientation}, {vane.container_radius, sector + scene.orientation},
         {n_radial * scene.model.points_per_cell[0], n_around * scene.model.points_per_cell[1]},
-        scene.mix.density, scene.mix.K,
-        [&](const Vec<2>& x) { return !block_of_cell<2>(body.grid, detail::cell_of<2>(body.grid.axes, x)); },
-        [](const Vec<2>&) { return 0.0; }, body.points);
+        scene.mix.density, scene.mix.K, in_concrete, [](const Vec<2>&) { return 0.0; }, body.points);
+    for (Vec<2>& x : body.points.x) x = wrapped(x);
     return body;
   }
   /// The vane turns at omega, and the grid with it.
@@ -128,6 +138,23 @@ struct PlaneSection {
   }
   double radius(const Vec<2>& x) const { return x[0]; }
   double speed(const Vec<2>&, const Vec<2>& v) const { return v[1]; }
+  /// The whole section, as a standing observer sees it after the vane has turned by `turned`; its blades
+  /// stood along the axes at the start.
+  Frame whole(const Frame& part, double turned) const {
+    Frame all;
+    all.time = part.time;
+    for (int b = 0; b < vane.blades; ++b) {
+      const double a = turned + (b - 0.5) * sector, c = std::cos(a), s = std::sin(a);
+      const auto turn_into = [&](const auto& from, auto& to) {
+        for (const auto& x : from) to.push_back({c * x[0] - s * x[1], s * x[0] + c * x[1], 0.0});
+      };
+      turn_into(part.position, all.position);
+      turn_into(part.velocity, all.velocity);
+      for (const auto field : {&Frame::volume, &Frame::pressure, &Frame::shear_rate, &Frame::flocculation})
+        (all.*field).insert((all.*field).end(), (part.*field).begin(), (part.*field).end());
+    }
+    return all;
+  }
 };
 
 }  // namespace tremie::icar_vane
