@@ -94,7 +94,7 @@ inline SplineValues splines(const Axis& axis, int c, double s) {
   return v;
 }
 
-/// Integral of control j's spline over the cells that exist [m]: its share of the line.
+/// Integral of control j's spline over the cells that exist [m]: its share of the line. Without creases.
 inline double spline_integral(const Axis& axis, int j) {
   double share = 1.0;
   if (axis.wall_low()) share = j == 0 ? 1.0 / 3.0 : j == 1 ? 2.0 / 3.0 : share;

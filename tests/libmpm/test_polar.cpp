@@ -40,8 +40,8 @@ double angular_momentum_of(const Body<Polar>& body) {
 
 // Nothing brakes it, in a grid that stands, turns with it or against it. Over 1000 steps its angular momentum
 // stays but for the spin of the points' affine velocities, whose arm changes as points next to the walls
-// breathe: 1e-9. Radii stay but for what the centrifugal pressure compresses, rho (omega r)^2/K = 2e-4; the
-// step's length plays no role, points move along arcs.
+// breathe by 2e-6 of their radius: 1e-8. Radii stay but for what the centrifugal pressure compresses, rho
+// (omega r)^2/K = 2e-4; the step's length plays no role, points move along arcs.
 TEST(Polar, ATurningRingKeepsAngularMomentumAndRadii) {
   for (double grid_rate : {0.0, 2.0, -1.0}) {
     auto body = turning_ring(2.0, grid_rate);
@@ -57,7 +57,7 @@ TEST(Polar, ATurningRingKeepsAngularMomentumAndRadii) {
     const double drift = angular_momentum_of(body) / first - 1.0;
     std::printf("grid at %g rad/s: angular momentum drifts by %.1e, radii by %.1e\n", grid_rate, drift,
                 worst);
-    EXPECT_LE(std::abs(drift), 1e-9);
+    EXPECT_LE(std::abs(drift), 1e-8);
     EXPECT_LE(worst, 2e-4);
   }
 }

@@ -55,7 +55,7 @@ Scene decay(double cell_mm) {
   return scene;
 }
 
-Run run(const Scene& scene) {
+Run timed(const Scene& scene) {
   const std::clock_t start = std::clock();
   Run r{scene, icar_vane::run(scene), 0.0};
   r.cpu = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
@@ -116,7 +116,7 @@ void newtonian_blades(std::ofstream& md, std::ofstream& csv) {
       s.vane.blades = n;
       s.vane.blade_thickness = 1e-6;
       s.vane.container_radius = n == 2 ? 0.25 : 0.143;
-      const Run r = run(s);
+      const Run r = timed(s);
       const double T = r.outcome.results.torque_end, error = T / thin_blades(s) - 1.0;
       md << fmt::format("| {} | {} | {:.5f} | {:.5f} | {:+.2f} % | {:.1f} |\n", n, size, T, thin_blades(s),
                         100 * error, r.cpu);
@@ -137,7 +137,7 @@ void steady(std::ofstream& md, std::ofstream& csv) {
       Scene s = plane(cell[0], 1.5);
       s.model.cell[1] = 1e-3 * cell[1];
       s.mix.tau_0 = yield;
-      const Run r = run(s);
+      const Run r = timed(s);
       const auto off = disagreement(r.outcome.series, 0.5);
       const std::string name =
           cell[0] == cell[1] ? fmt::format("{}", cell[0]) : fmt::format("{}×{}", cell[0], cell[1]);
@@ -153,9 +153,9 @@ void steady(std::ofstream& md, std::ofstream& csv) {
 void what_else(std::ofstream& md) {
   md << "\n## Mix A at 5 mm: what must not matter\n\n| what | torque N m | against 0 deg, 10 mm shaft "
         "|\n|---|---|---|\n";
-  const double base = run(plane(5.0, 1.5)).outcome.results.torque_end;
+  const double base = timed(plane(5.0, 1.5)).outcome.results.torque_end;
   const auto row = [&](const std::string& what, const Scene& s, double sign) {
-    const double T = run(s).outcome.results.torque_end;
+    const double T = timed(s).outcome.results.torque_end;
     md << fmt::format("| {} | {:.5f} | {:+.3g} % |\n", what, T, 100 * (sign * T / base - 1.0));
   };
   for (double degrees : {0.0, 1.0, 7.0, 22.5}) {
@@ -181,7 +181,7 @@ void decays(std::ofstream& md, std::ofstream& csv, std::ofstream& curves) {
   for (double t : times) md << fmt::format(" {} s |", t);
   md << " worst | wall | power | steps | CPU s |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n";
   std::vector<Run> runs;
-  for (double size : sizes) runs.push_back(run(decay(size)));
+  for (double size : sizes) runs.push_back(timed(decay(size)));
   for (std::size_t k = 0; k < runs.size(); ++k) {
     const auto &series = runs[k].outcome.series, &finest = runs.back().outcome.series;
     double worst = 0.0;
@@ -210,7 +210,7 @@ void closed_loop(std::ofstream& md) {
   s.pre_shear_time = 2.0;
   s.hold_time = 2.0;
   s.average_time = 0.5;
-  const Run r = run(s);
+  const Run r = timed(s);
   md << "\n## What an ICAR reports of Mix A\n\nA flow curve without thixotropy, and Reiner-Riwlin's "
         "parameters "
         "from it, which take the vane for a cylinder:\n\n| | in | reported | |\n|---|---|---|---|\n";
