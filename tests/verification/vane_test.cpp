@@ -62,9 +62,9 @@ double cylinder_torque(double tau_0, double h) {
 
 double reiner_riwlin_torque(double tau_0) { return reiner_riwlin({tau_0, mu}, omega, Instrument{}).torque; }
 
-// Without blades the polar section is Couette flow: Reiner-Riwlin's torque within 1 % at 10 mm cells, and at
-// least 2.8 times nearer at half of them without a plug (order 1.5; in a plug's fluid the torque is within 1
-// % as well, but its error changes sign with the place of the plug in a cell).
+// Without blades the polar section is Couette flow: Reiner-Riwlin's torque within 0.1 % at 10 mm cells, and
+// without a plug at least 2.8 times nearer at half of them (order 1.5). With a plug the error changes sign
+// with the plug's place in a cell.
 TEST(VanePlane, ACylinderTakesReinerRiwlinsTorque) {
   const auto error = [](double tau_0, double h) {
     const double e = cylinder_torque(tau_0, h) / reiner_riwlin_torque(tau_0) - 1.0;
@@ -72,10 +72,10 @@ TEST(VanePlane, ACylinderTakesReinerRiwlinsTorque) {
     return std::abs(e);
   };
   const double coarse = error(0.0, 0.01), fine = error(0.0, 0.005);
-  EXPECT_LE(coarse, 0.01);
+  EXPECT_LE(coarse, 1e-3);
   EXPECT_LE(fine, coarse / 2.8);
-  EXPECT_LE(error(54.0, 0.01), 0.01);
-  EXPECT_LE(error(54.0, 0.005), 0.01);
+  EXPECT_LE(error(54.0, 0.01), 1e-3);
+  EXPECT_LE(error(54.0, 0.005), 1e-3);
 }
 
 // Newtonian, n blades of no thickness: the cylinder's torque with R sqrt(1 - 1/n) for its radius (Atkinson
@@ -146,7 +146,7 @@ TEST(VanePlane, AtRestThereIsNoTorque) {
 }
 
 // A frame shows the whole section as a standing observer sees it: the concrete near the shaft turns with the
-// vane.
+// vane (5 %: it creeps a little).
 TEST(VanePlane, FramesShowTheWholeSection) {
   const Frame frame = run(plane(54.0, 0.3)).final_frame;
   double volume = 0.0;
@@ -155,9 +155,9 @@ TEST(VanePlane, FramesShowTheWholeSection) {
   EXPECT_NEAR(volume / section, 1.0, 0.02);  // less the shaft and the blades
   for (std::size_t p = 0; p < frame.position.size(); ++p) {
     const auto &x = frame.position[p], &v = frame.velocity[p];
-    if (std::hypot(x[0], x[1]) > 0.03) continue;
-    EXPECT_NEAR(v[0], -omega * x[1], 0.02 * omega * 0.03);
-    EXPECT_NEAR(v[1], omega * x[0], 0.02 * omega * 0.03);
+    if (std::hypot(x[0], x[1]) > 0.025) continue;
+    EXPECT_NEAR(v[0], -omega * x[1], 0.05 * omega * 0.025);
+    EXPECT_NEAR(v[1], omega * x[0], 0.05 * omega * 0.025);
   }
 }
 
