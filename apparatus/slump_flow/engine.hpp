@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "apparatus/engine.hpp"
 #include "apparatus/slump_flow/cone.hpp"
@@ -80,6 +81,15 @@ inline void read_results(const engine::RestWatch& watch, bool stopped, Outcome& 
   read_t500(outcome);
 }
 
+/// A body that is thinner than its cells has a spread that they do not resolve.
+inline void judge_depth(const Scene& scene, Outcome& outcome) {
+  const double R = 0.5 * outcome.results.spread, depth = volume(scene.cone) / (std::numbers::pi * R * R);
+  if (depth < 0.5 * scene.model.cell[1])
+    outcome.checks.reasons.push_back("the concrete is thinner than half a cell, " +
+                                     std::to_string(1e3 * depth).substr(0, 4) +
+                                     " mm on average: a smaller model.cell upwards");
+}
+
 template <class Law>
 Outcome run_axisymmetric(const Scene& scene, const Law& law, const Observer& observer) {
   Body<Axisymmetric> body = filled_cone(scene);
@@ -100,6 +110,7 @@ Outcome run_axisymmetric(const Scene& scene, const Law& law, const Observer& obs
         scene.lift_speed && rim_height(scene, body.time) > outcome.series.back().height + 0.02;
     const StepReport step = implicit_step(body, law, settings, cone_gone ? RigidWall<2>{} : wall);
     engine::count_step(body, step, outcome.checks, outcome.cost);
+    engine::watch_fixed_step(body, scene.model, step, outcome.checks);
     if (engine::gave_up(step, outcome.status, outcome.checks, body.time)) break;
     outcome.series.push_back(read(body, step));
     if (observer.on_step) observer.on_step(outcome.series.back());
@@ -117,6 +128,7 @@ Outcome run_axisymmetric(const Scene& scene, const Law& law, const Observer& obs
   }
   read_results(watch, stopped, outcome);
   engine::judge(body, start_mass, outcome.checks, outcome.cost);
+  judge_depth(scene, outcome);
   outcome.final_frame = engine::frame_of(body);
   if (observer.on_frame) observer.on_frame(outcome.final_frame);
   return outcome;
