@@ -211,7 +211,8 @@ void watch_fixed_step(const Body<Space>& body, const Model& model, const StepRep
   if (!model.time_step) return;
   for (int d = 0; d < Space::dim; ++d) {
     double v = 0.0;
-    for (const auto& vp : body.points.v) v = std::max(v, std::abs(vp[d]));
+    for (std::size_t p = 0; p < body.points.size(); ++p)
+      v = std::max(v, std::abs(body.motion.rate(body.points.x[p], body.points.v[p])[d]));
     checks.cells_in_a_step = std::max(checks.cells_in_a_step, v * step.dt / body.grid.axes[d].h);
   }
 }
