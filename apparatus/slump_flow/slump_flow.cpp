@@ -42,7 +42,7 @@ double first_explicit_step(const Scene& scene) {
   const ExplicitSettings settings = explicit_settings(scene);
   const auto limit = [&](const auto& law) {
     return stability_limits(scene.mix, law, static_yield_stress(lambda, scene.mix.tau_0),
-                            largest_eigenvalues(shape_of<ThreeD>(model).kind, settings.cell_pressure),
+                            largest_eigenvalues(shape_of<ThreeD>(model).kind),
                             std::min(model.cell[0], model.cell[1]))
         .together;
   };

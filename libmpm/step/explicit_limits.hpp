@@ -15,8 +15,12 @@
 //
 // kappa and chi are the largest eigenvalues of a body that fills its cells, with its surface on a face of the
 // grid or flat walls at its ends: the worst of the patches in tests/libmpm/test_explicit_limits.cpp, which
-// computes them. Inside an endless body kappa is 2 for pressure waves (the spline's 3/2 times 4/3); free
-// corners raise it to 4; where the concrete slides along a wall, the open end of the spline does, to 5.4.
+// computes them. Inside an endless body kappa is 2 for stretching (the spline's 3/2 times 4/3); free corners
+// raise it to 4, and where the concrete slides along a wall the open end of the spline does, to 5.4. chi is
+// largest at free corners, whose controls have little mass: 4.2 for splines, 5.9 for GIMP. The way from the
+// grid to the points and back leaves such a mode a share p of its velocity, and the second condition becomes
+// omega^2 dt^2 < 2 (1 + p); chi is taken by a third larger, for p down to 1/2. Cells that hold a few stray
+// points may need less yet: a chosen step keeps a margin.
 
 #include <algorithm>
 #include <cmath>
@@ -41,10 +45,9 @@ struct StabilityLimits {
   double together = std::numeric_limits<double>::infinity();
 };
 
-/// The eigenvalues that the limits are computed with. `cell_pressure`: one divergence a cell.
-inline Eigenvalues largest_eigenvalues(ShapeFunctions shape, bool cell_pressure) {
-  if (shape == ShapeFunctions::gimp) return {6.0, cell_pressure ? 4.0 : 4.0};
-  return {5.4, cell_pressure ? 4.0 : 4.0};
+/// The eigenvalues that the limits are computed with, for one divergence a cell or one a point.
+inline Eigenvalues largest_eigenvalues(ShapeFunctions shape) {
+  return shape == ShapeFunctions::gimp ? Eigenvalues{6.1, 7.8} : Eigenvalues{5.4, 5.6};
 }
 
 /// Limits for the stiffest state of the concrete, tau_y the largest static yield stress in it [Pa]; h: the

@@ -45,7 +45,7 @@ void choose_next_step(const Body<Space>& body, const Law& law, const ExplicitSet
   for (const Axis& a : state.grid.axes) h = std::min(h, a.h);
   const double tau_y = static_yield_stress(state.lambda_max, body.mix.tau_0);
   state.limits = stability_limits(body.mix, law, tau_y,
-                                  largest_eigenvalues(state.shape.kind, settings.cell_pressure), h);
+                                  largest_eigenvalues(state.shape.kind), h);
   state.next_dt = settings.fixed_dt.value_or(std::min(
       {settings.dt_max, settings.safety * state.limits.together,
        state.max_speed > 0.0 ? settings.cfl * h / state.max_speed : settings.dt_max}));

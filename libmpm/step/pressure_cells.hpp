@@ -39,7 +39,7 @@ class PressureCells {
       const double mass = points.mass[g][l];
       if (mass == 0.0) continue;
       Row& row = row_of(cells[static_cast<std::size_t>(l)]);
-      row.mass += mass;
+      row.weight += mass;
       for (int d = 0; d < D; ++d) row.moment[d] += mass * points.x[d][g][l];
     }
   }
@@ -83,7 +83,7 @@ class PressureCells {
  private:
   struct Row {
     int cell = 0;
-    double mass = 0.0, divergence = 0.0, impulse = 0.0;
+    double weight = 0.0, divergence = 0.0, impulse = 0.0;
     std::array<double, D> moment{};
   };
 
@@ -117,11 +117,11 @@ class PressureCells {
       for (int d = 0; d < D; ++d) {
         base = base * tile_span + at[d] + 1;
         const int cell = tile_[d] * tile_cells + at[d];
-        const double s = (row.moment[d] / row.mass - axes_[d].origin) / axes_[d].h - cell;
+        const double s = (row.moment[d] / row.weight - axes_[d].origin) / axes_[d].h - cell;
         const SplineValues one = splines(axes_[d], cell, s);
         for (int k = 0; k < 3; ++k) weights.w[d][k] = one.N[k], weights.dw[d][k] = one.dN[k];
       }
-      use(base, weights, row.moment[0] / row.mass);
+      use(base, weights, row.moment[0] / row.weight);
     }
   }
 
