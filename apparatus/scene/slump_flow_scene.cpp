@@ -60,8 +60,8 @@ Section test_section() {
                     .help = "of the cone"}}};
 }
 
-/// Three dimensions start from cells and points that a desk computer carries; a scene that gives one of the two
-/// is taken at its word.
+/// Three dimensions start from cells and points that a desk computer carries; a scene that gives one of the
+/// two is taken at its word.
 void settle_model(Values& values) {
   if (values.word("model.space") == "axisymmetric") return;
   const char* note = "the default in three dimensions";

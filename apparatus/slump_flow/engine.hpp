@@ -1,6 +1,7 @@
 #pragma once
 
-// The slump-flow test in an axisymmetric section or in space for one yield law: set up, step until rest, read.
+// The slump-flow test in an axisymmetric section or in space for one yield law: set up, step until rest,
+// read.
 
 #include <algorithm>
 #include <cmath>

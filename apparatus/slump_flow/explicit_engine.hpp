@@ -13,13 +13,13 @@ inline constexpr double reading_interval = 0.02;
 inline ExplicitSettings explicit_settings(const Scene& scene) {
   const StepSettings common = step_settings(scene);
   ExplicitSettings settings;
-  settings.stress =
-      scene.model.scheme == SchemeKind::explicit_usf ? StressUpdate::first : StressUpdate::last;
+  settings.stress = scene.model.scheme == SchemeKind::explicit_usf ? StressUpdate::first : StressUpdate::last;
   settings.transfer = common.transfer;
   settings.cell_pressure = scene.model.pressure == PressureKind::cell;
   settings.fixed_dt = scene.model.time_step;
   settings.friction_coefficient = common.friction_coefficient;
   settings.wall_gap = common.wall_gap;
+  settings.wall_speed = scene.lift_speed.value_or(0.0);
   return settings;
 }
 
@@ -59,10 +59,11 @@ struct LimitWatch {
     if (beyond == 0) return;
     checks.stability_limit_exceeded = true;
     char text[200];
-    std::snprintf(text, sizeof text,
-                  "%lld of %lld steps were longer than the explicit scheme is stable for: up to %.2f times the "
-                  "%s limit of %.3g s (model.time_step)",
-                  static_cast<long long>(beyond), static_cast<long long>(steps), worst, which, limit);
+    std::snprintf(
+        text, sizeof text,
+        "%lld of %lld steps were longer than the explicit scheme is stable for: up to %.2f times the "
+        "%s limit of %.3g s (model.time_step)",
+        static_cast<long long>(beyond), static_cast<long long>(steps), worst, which, limit);
     checks.reasons.push_back(text);
   }
 };

@@ -48,8 +48,7 @@ double outermost_radius(const Points<D>& points) {
 
 /// How far out the concrete reaches: the outermost value that has company, plus half the size of its point.
 double reach_of(std::vector<Weighted>& out, double cell) {
-  std::sort(out.begin(), out.end(),
-            [](const Weighted& a, const Weighted& b) { return a.value > b.value; });
+  std::sort(out.begin(), out.end(), [](const Weighted& a, const Weighted& b) { return a.value > b.value; });
   std::size_t i = 0;
   while (i + company < out.size() && out[i].value - out[i + company].value > 0.5 * cell) ++i;
   return out.empty() ? 0.0 : out[i].value + 0.5 * out[i].size;

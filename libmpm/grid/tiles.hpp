@@ -24,8 +24,8 @@ using NodeLanes [[gnu::vector_size(32)]] = double;
 
 template <int D>
 struct Tile {
-  Index<D> at{};                       ///< its cells are 4 at ... 4 at + 3
-  int first_group = 0, last_group = 0;  ///< its points, in groups of eight: [first, last)
+  Index<D> at{};                         ///< its cells are 4 at ... 4 at + 3
+  int first_group = 0, last_group = 0;   ///< its points, in groups of eight: [first, last)
   std::array<int, power(2, D)> block{};  ///< blocks at + offset, the last direction running fastest
 };
 

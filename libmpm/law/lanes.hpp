@@ -52,9 +52,18 @@ inline Lanes exp(const Lanes& x) {
   const Lanes r = (y - k * 6.93147180369123816490e-01) - k * 1.90821492927058770002e-10;  // ln 2 in two parts
   // Taylor's polynomial on |r| <= ln 2 / 2: the first term left out is 4e-18.
   Lanes p = all_lanes(1.0 / 6227020800.0);
-  constexpr double coefficients[] = {1.0 / 479001600.0, 1.0 / 39916800.0, 1.0 / 3628800.0, 1.0 / 362880.0,
-                                     1.0 / 40320.0,     1.0 / 5040.0,     1.0 / 720.0,     1.0 / 120.0,
-                                     1.0 / 24.0,        1.0 / 6.0,        0.5,             1.0,
+  constexpr double coefficients[] = {1.0 / 479001600.0,
+                                     1.0 / 39916800.0,
+                                     1.0 / 3628800.0,
+                                     1.0 / 362880.0,
+                                     1.0 / 40320.0,
+                                     1.0 / 5040.0,
+                                     1.0 / 720.0,
+                                     1.0 / 120.0,
+                                     1.0 / 24.0,
+                                     1.0 / 6.0,
+                                     0.5,
+                                     1.0,
                                      1.0};
   for (double c : coefficients) p = p * r + c;
   LaneMask bits;
@@ -69,10 +78,18 @@ inline Lanes exp(const Lanes& x) {
 inline Lanes mean_decay(const Lanes& x) {
   // Below 1/2 the difference loses digits; there the series' first term left out is 5e-17.
   Lanes series = all_lanes(-1.0 / 87178291200.0);
-  constexpr double coefficients[] = {1.0 / 6227020800.0, -1.0 / 479001600.0, 1.0 / 39916800.0,
-                                     -1.0 / 3628800.0,   1.0 / 362880.0,     -1.0 / 40320.0,
-                                     1.0 / 5040.0,       -1.0 / 720.0,       1.0 / 120.0,
-                                     -1.0 / 24.0,        1.0 / 6.0,          -0.5,
+  constexpr double coefficients[] = {1.0 / 6227020800.0,
+                                     -1.0 / 479001600.0,
+                                     1.0 / 39916800.0,
+                                     -1.0 / 3628800.0,
+                                     1.0 / 362880.0,
+                                     -1.0 / 40320.0,
+                                     1.0 / 5040.0,
+                                     -1.0 / 720.0,
+                                     1.0 / 120.0,
+                                     -1.0 / 24.0,
+                                     1.0 / 6.0,
+                                     -0.5,
                                      1.0};
   for (double c : coefficients) series = series * x + c;
   const Lanes direct = (1.0 - exp(-x)) / max(x, all_lanes(0.5));

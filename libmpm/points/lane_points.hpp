@@ -17,10 +17,10 @@ namespace tremie {
 /// without mass, whose id is -1.
 template <int D>
 struct LanePoints {
-  std::array<std::vector<Lanes>, D> x, v;     ///< [m], [m/s]
-  std::array<std::vector<Lanes>, D * D> C;    ///< affine velocity, row by row [1/s]; empty with FLIP
-  std::vector<Lanes> mass, V0, ln_J;          ///< [kg], [m^3], ln(V/V0)
-  std::vector<Lanes> lambda, gamma_dot;       ///< empty without thixotropy
+  std::array<std::vector<Lanes>, D> x, v;             ///< [m], [m/s]
+  std::array<std::vector<Lanes>, D * D> C;            ///< affine velocity, row by row [1/s]; empty with FLIP
+  std::vector<Lanes> mass, V0, ln_J;                  ///< [kg], [m^3], ln(V/V0)
+  std::vector<Lanes> lambda, gamma_dot;               ///< empty without thixotropy
   std::vector<std::array<std::int32_t, n_lanes>> id;  ///< place in the Points that it came from
 
   std::size_t groups() const { return mass.size(); }
@@ -89,7 +89,8 @@ std::vector<Tile<D>> sort_into_tiles(const std::array<Axis, D>& axes, double ste
     Key& key = keys[p];
     key.cell = 0, key.id = static_cast<std::int32_t>(p);
     for (int d = 0; d < D; ++d) {
-      const int c = static_cast<int>(std::floor((points.x[p][d] - axes[d].origin) / axes[d].h + stencil_shift));
+      const int c =
+          static_cast<int>(std::floor((points.x[p][d] - axes[d].origin) / axes[d].h + stencil_shift));
       key.tile[d] = (c >= 0 ? c : c - tile_cells + 1) / tile_cells;
       key.cell = key.cell * tile_cells + (c - key.tile[d] * tile_cells);
       key.tile[d] = detail::wrapped(axes[d], key.tile[d]);

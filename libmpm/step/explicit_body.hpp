@@ -26,7 +26,8 @@ struct ExplicitSettings {
   double dt_max = 0.01;  ///< [s]
   double cfl = 0.2;      ///< largest move in a step of a chosen length, in cells
   double friction_coefficient = 0.0;
-  double wall_gap = 0.0;  ///< how near a point may come to a rigid wall [m]
+  double wall_gap = 0.0;    ///< how near a point may come to a rigid wall [m]
+  double wall_speed = 0.0;  ///< of a rigid wall, at most [m/s]
 };
 
 struct ExplicitReport {
@@ -50,6 +51,8 @@ struct ExplicitState {
   double max_speed = 0.0;   ///< of the points [m/s]
   double lambda_max = 0.0;  ///< largest flocculation in a point
   StabilityLimits limits;
+  std::vector<std::array<int, 3>> near_wall;  ///< tile, group and lane of what may touch a rigid wall soon
+  double wall_drift = 1e300;                  ///< since they were looked for [m]
   std::int64_t sorts = 0;
 };
 

@@ -2,16 +2,17 @@
 
 // How long an explicit step may be.
 //
-// A field of velocities on the controls, v = phi(t) e with e an eigenvector of the lumped pencil (K_1, M), K_1
-// the stiffness of unit viscosity (or of unit bulk modulus) and M the mass of unit density, decays at the rate
-// eta/rho kappa/h^2 under a viscosity eta and rings at the angular frequency sqrt(K/rho chi)/h under a bulk
-// modulus K; kappa and chi are eigenvalues on cells of size 1. One step multiplies the decay by
-// 1 - dt eta kappa/(rho h^2), so that it is stable for
+// A field of velocities on the controls, v = phi(t) e with e an eigenvector of the lumped pencil (K_1, M),
+// K_1 the stiffness of unit viscosity (or of unit bulk modulus) and M the mass of unit density, decays at the
+// rate eta/rho kappa/h^2 under a viscosity eta and rings at the angular frequency sqrt(K/rho chi)/h under a
+// bulk modulus K; kappa and chi are eigenvalues on cells of size 1. One step multiplies the decay by 1 - dt
+// eta kappa/(rho h^2), so that it is stable for
 //
 //   dt < 2/kappa rho h^2/eta,        dt < 2/sqrt(chi) h/sqrt(K/rho),
 //
 // each alone. Together (stress from velocities, pressure from the volume, one after the other) the polynomial
-// z^2 - (2 - c dt - omega^2 dt^2) z + 1 - c dt has its roots in the unit circle for omega^2 dt^2 + 2 c dt < 4.
+// z^2 - (2 - c dt - omega^2 dt^2) z + 1 - c dt has its roots in the unit circle for omega^2 dt^2 + 2 c dt
+// < 4.
 //
 // kappa and chi are the largest eigenvalues of a body that fills its cells, with its surface on a face of the
 // grid or flat walls at its ends: the worst of the patches in tests/libmpm/test_explicit_limits.cpp, which

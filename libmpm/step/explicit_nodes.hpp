@@ -38,7 +38,8 @@ void apply_walls(const std::array<Axis, D>& axes, const Shape<D>& shape, const W
 template <int D>
 Index<D> control_of(const Block<D>& block, int k) {
   Index<D> control;
-  for (int d = D - 1; d >= 0; --d, k /= tile_cells) control[d] = block.at[d] * tile_cells - 1 + k % tile_cells;
+  for (int d = D - 1; d >= 0; --d, k /= tile_cells)
+    control[d] = block.at[d] * tile_cells - 1 + k % tile_cells;
   return control;
 }
 

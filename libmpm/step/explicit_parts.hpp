@@ -22,10 +22,12 @@ template <class Space>
 void sort_points(Body<Space>& body, const ExplicitSettings& settings, ExplicitState<Space>& state) {
   const bool flip = settings.transfer.flip;
   constexpr int D = Space::dim;
-  lay_tiles(state.grid,
-            sort_into_tiles<D>(state.grid.axes, state.shape.stencil_shift(), !flip, body.points, state.points),
-            flip);
+  lay_tiles(
+      state.grid,
+      sort_into_tiles<D>(state.grid.axes, state.shape.stencil_shift(), !flip, body.points, state.points),
+      flip);
   state.drift = 0.0;
+  state.wall_drift = 1e300;
   ++state.sorts;
 }
 
@@ -44,11 +46,10 @@ void choose_next_step(const Body<Space>& body, const Law& law, const ExplicitSet
   double h = state.grid.axes[0].h;
   for (const Axis& a : state.grid.axes) h = std::min(h, a.h);
   const double tau_y = static_yield_stress(state.lambda_max, body.mix.tau_0);
-  state.limits = stability_limits(body.mix, law, tau_y,
-                                  largest_eigenvalues(state.shape.kind), h);
-  state.next_dt = settings.fixed_dt.value_or(std::min(
-      {settings.dt_max, settings.safety * state.limits.together,
-       state.max_speed > 0.0 ? settings.cfl * h / state.max_speed : settings.dt_max}));
+  state.limits = stability_limits(body.mix, law, tau_y, largest_eigenvalues(state.shape.kind), h);
+  state.next_dt = settings.fixed_dt.value_or(
+      std::min({settings.dt_max, settings.safety * state.limits.together,
+                state.max_speed > 0.0 ? settings.cfl * h / state.max_speed : settings.dt_max}));
 }
 
 }  // namespace detail

@@ -42,29 +42,37 @@ struct Fields {
   Lanes v[4] = {}, dv[4] = {}, L[D][4] = {}, moment[D][4] = {};  ///< L[b][a] = dv_a/dx_b
 };
 
-template <int D>
+template <Wanted wanted, int D>
 void gather_group(const std::array<NodeLanes, TileGrid<D>::tile_nodes>& v,
                   const std::array<NodeLanes, TileGrid<D>::tile_nodes>& dv, const Weights<D>& weights, int n,
-                  bool moments, bool change, Fields<D>& fields) {
+                  bool change, Fields<D>& fields) {
   NodeLanes value[n_lanes] = {}, slope[D][n_lanes] = {}, moment[D][n_lanes] = {}, changed[n_lanes] = {};
   for (int l = 0; l < n; ++l) {
     const auto w = of_lane<D>(weights, l);
     const int base = weights.base[static_cast<std::size_t>(l)];
-    if (moments) {
-      const auto at = gather<D, 3, true>(&v[base], w);
-      value[l] = at.value;
-      for (int d = 0; d < D; ++d) slope[d][l] = at.slope[d], moment[d][l] = at.moment[d];
-    } else {
-      const auto at = gather<D, 3, false>(&v[base], w);
-      value[l] = at.value;
-      for (int d = 0; d < D; ++d) slope[d][l] = at.slope[d];
-    }
-    if (change) changed[l] = gather<D, 3, false>(&dv[base], w).value;
+    const auto at = gather<D, 3, wanted>(&v[base], w);
+    value[l] = at.value;
+    for (int d = 0; d < D && wanted.slopes; ++d) slope[d][l] = at.slope[d];
+    for (int d = 0; d < D && wanted.moments; ++d) moment[d][l] = at.moment[d];
+    if (change) changed[l] = gather<D, 3, value_only>(&dv[base], w).value;
   }
   to_columns(value, fields.v);
-  for (int d = 0; d < D; ++d) to_columns(slope[d], fields.L[d]);
-  for (int d = 0; d < D && moments; ++d) to_columns(moment[d], fields.moment[d]);
+  for (int d = 0; d < D && wanted.slopes; ++d) to_columns(slope[d], fields.L[d]);
+  for (int d = 0; d < D && wanted.moments; ++d) to_columns(moment[d], fields.moment[d]);
   if (change) to_columns(changed, fields.dv);
+}
+
+/// Reads what a pass needs. FLIP needs no moments, and a pass without stress no slopes.
+template <Pass pass, int D>
+void gather_for(const std::array<NodeLanes, TileGrid<D>::tile_nodes>& v,
+                const std::array<NodeLanes, TileGrid<D>::tile_nodes>& dv, const Weights<D>& weights, int n,
+                bool flip, Fields<D>& fields) {
+  constexpr Wanted without{.slopes = pass.stress, .moments = false};
+  constexpr Wanted with{.slopes = pass.stress, .moments = true};
+  if (pass.move && !flip)
+    gather_group<with, D>(v, dv, weights, n, false, fields);
+  else
+    gather_group<without, D>(v, dv, weights, n, pass.move && flip, fields);
 }
 
 /// Deviatoric stress and its hoop part, times volume; the pressure's part is added to the stress or, with one
@@ -97,7 +105,8 @@ GroupStress<Space::dim> update_state(const Mix& mix, const Law& law, bool cell_p
   }
   Lanes& ln_J = points.ln_J[g];
   ln_J += dt * (cell_pressure ? cell_divergence : divergence);
-  const Lanes volume = points.V0[g] * exp(ln_J), viscosity = volume * (mix.mu + secant(law, gamma_dot, tau_y));
+  const Lanes volume = points.V0[g] * exp(ln_J),
+              viscosity = volume * (mix.mu + secant(law, gamma_dot, tau_y));
   sums.volume += sum(volume), sums.volume_rate += sum(volume * gamma_dot);
 
   GroupStress<D> stress;
@@ -110,8 +119,9 @@ GroupStress<Space::dim> update_state(const Mix& mix, const Law& law, bool cell_p
 
 /// New velocities and places of group g.
 template <int D>
-void move_group(const std::array<Axis, D>& axes, const Transfer& transfer, double dt, const Weights<D>& weights,
-                const Fields<D>& fields, LanePoints<D>& points, std::size_t g, PassSums& sums) {
+void move_group(const std::array<Axis, D>& axes, const Transfer& transfer, double dt,
+                const Weights<D>& weights, const Fields<D>& fields, LanePoints<D>& points, std::size_t g,
+                PassSums& sums) {
   Lanes speed2 = {};
   for (int d = 0; d < D; ++d) {
     Lanes &v = points.v[d][g], &x = points.x[d][g];
@@ -182,8 +192,8 @@ void scatter_group(bool momentum, bool flip, bool apart, double impulse_dt,
 
 /// One tile.
 template <Pass pass, class Space, class Law>
-PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& settings, const PassInput& input,
-                        int t, ExplicitState<Space>& state) {
+PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& settings,
+                        const PassInput& input, int t, ExplicitState<Space>& state) {
   constexpr int D = Space::dim;
   TileGrid<D>& grid = state.grid;
   LanePoints<D>& points = state.points;
@@ -197,12 +207,14 @@ PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& 
   auto& forces = apart ? grid.forces[t] : sums;
   sums.fill(NodeLanes{});
   if (apart) forces.fill(NodeLanes{});
-  const auto first = static_cast<std::size_t>(tile.first_group), last = static_cast<std::size_t>(tile.last_group);
-  PressureCells<Space> before(grid.axes, state.shape, tile.at), after(before);
+  const auto first = static_cast<std::size_t>(tile.first_group),
+             last = static_cast<std::size_t>(tile.last_group);
+  PressureCells<Space> before(grid.axes, state.shape, tile.at), after(grid.axes, state.shape, tile.at);
   PressureCells<Space>& pushed = pass.gather && pass.move ? after : before;
+  static thread_local std::vector<std::array<int, n_lanes>> cells_before;
   if (pass.stress && cells && pass.gather) {
-    std::array<int, n_lanes> cell;
-    for (std::size_t g = first; g < last; ++g) before.add_group(points, g, cell);
+    cells_before.resize(last - first);
+    for (std::size_t g = first; g < last; ++g) before.add_group(points, g, cells_before[g - first]);
     before.read_divergences(v);
   }
   PassSums reduced;
@@ -217,12 +229,12 @@ PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& 
     };
     place();
     Fields<D> fields;
-    if (pass.gather) gather_group<D>(v, dv, weights, n, pass.move && !flip, pass.move && flip, fields);
+    if (pass.gather) gather_for<pass, D>(v, dv, weights, n, flip, fields);
     GroupStress<D> stress;
     std::array<int, n_lanes> cell{};
     if (pass.stress) {
       Lanes divergence = {};
-      if (cells && pass.gather) before.cells_of(points, g, cell);
+      if (cells && pass.gather) cell = cells_before[g - first];
       for (int l = 0; l < n && cells && pass.gather; ++l)
         divergence[l] = before.divergence(cell[static_cast<std::size_t>(l)]);
       stress = update_state<Space>(mix, law, cells, input.dt, fields, divergence, points, g, reduced);

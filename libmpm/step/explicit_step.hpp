@@ -46,7 +46,8 @@ detail::PassSums stress_last(Body<Space>& body, const Law& law, const ExplicitSe
   detail::sort_if_drifted(body, settings, state);
 
   // Grid to points, stress, motion, points to grid.
-  return detail::pass_over_points<detail::whole_pass, Space>(body.mix, law, settings, {dt, state.next_dt}, state);
+  return detail::pass_over_points<detail::whole_pass, Space>(body.mix, law, settings, {dt, state.next_dt},
+                                                             state);
 }
 
 /// Updates the stress first (USF), the paper's order: with the points' velocities as the grid has them before
@@ -87,6 +88,7 @@ ExplicitReport explicit_step(Body<Space>& body, const Law& law, const ExplicitSe
   report.shear_rate_mean = sums.volume > 0.0 ? sums.volume_rate / sums.volume : 0.0;
   state.lambda_max = sums.lambda;
   state.drift += sums.farthest;
+  state.wall_drift += sums.farthest * body.grid.axes[0].h + settings.wall_speed * dt;
   return report;
 }
 

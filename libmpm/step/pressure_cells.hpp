@@ -25,16 +25,11 @@ class PressureCells {
     slot_.fill(-1);
   }
 
-  /// Cells of the points of group g.
-  void cells_of(const LanePoints<D>& points, std::size_t g, std::array<int, n_lanes>& cells) const {
+  /// Enters the cells of the points of group g, with their places.
+  void add_group(const LanePoints<D>& points, std::size_t g, std::array<int, n_lanes>& cells) {
     std::array<Lanes, D> x;
     for (int d = 0; d < D; ++d) x[d] = points.x[d][g];
     find_pressure_cells<D>(axes_, shape_, tile_, x, cells);
-  }
-
-  /// Enters the cells of the points of group g, with their places.
-  void add_group(const LanePoints<D>& points, std::size_t g, std::array<int, n_lanes>& cells) {
-    cells_of(points, g, cells);
     for (int l = 0; l < n_lanes; ++l) {
       const double mass = points.mass[g][l];
       if (mass == 0.0) continue;
@@ -49,7 +44,7 @@ class PressureCells {
       Row& row = rows_[i];
       with_row(row, [&](int base, const auto& weights, double x_0) {
         constexpr int width = std::remove_cvref_t<decltype(weights)>::n_controls;
-        const auto at = gather<D, width, false>(&v[base], weights);
+        const auto at = gather<D, width, slopes_only>(&v[base], weights);
         double L[D][D], q[Space::n_strain];
         for (int a = 0; a < D; ++a)
           for (int b = 0; b < D; ++b) L[a][b] = at.slope[b][a];
@@ -81,16 +76,16 @@ class PressureCells {
   }
 
  private:
-  struct Row {
-    int cell = 0;
-    double weight = 0.0, divergence = 0.0, impulse = 0.0;
-    std::array<double, D> moment{};
+  struct Row {  // without defaults: most of a tile's cells are never entered
+    int cell;
+    double weight, divergence, impulse;
+    std::array<double, D> moment;
   };
 
   Row& row_of(int cell) {
     if (slot_[cell] < 0) {
       slot_[cell] = static_cast<std::int16_t>(count_);
-      rows_[count_] = {.cell = cell};
+      rows_[count_] = {.cell = cell, .weight = 0.0, .divergence = 0.0, .impulse = 0.0, .moment = {}};
       ++count_;
     }
     return rows_[slot_[cell]];

@@ -28,8 +28,8 @@ struct Shape {
   }
 };
 
-/// Values, slopes [1/m] and arms times values [m] of eight points' three controls in each direction, and where
-/// their stencils begin in the tile's cube.
+/// Values, slopes [1/m] and arms times values [m] of eight points' three controls in each direction, and
+/// where their stencils begin in the tile's cube.
 template <int D>
 struct Weights {
   std::array<std::array<Lanes, 3>, D> w, dw, wa;
@@ -139,30 +139,39 @@ PointWeights<D, 3> of_lane(const Weights<D>& weights, int l) {
   return one;
 }
 
-/// A nodal field at a point: its value, its slopes and, with Moments, its first moments, each direction
-/// factored out in turn.
-template <int R, bool Moments>
+/// What is summed up beside the value.
+struct Wanted {
+  bool slopes = true, moments = true;
+};
+inline constexpr Wanted slopes_and_moments{}, slopes_only{.moments = false}, moments_only{.slopes = false},
+    value_only{.slopes = false, .moments = false};
+
+/// A nodal field at a point: its value and, as wanted, its slopes and first moments, each direction factored
+/// out in turn.
+template <int R, Wanted wanted>
 struct Gathered {
   NodeLanes value = {};
-  NodeLanes slope[R > 0 ? R : 1] = {};
-  NodeLanes moment[Moments && R > 0 ? R : 1] = {};
+  NodeLanes slope[wanted.slopes && R > 0 ? R : 1] = {};
+  NodeLanes moment[wanted.moments && R > 0 ? R : 1] = {};
 };
 
-template <int D, int n, bool Moments, int d = 0>
-[[gnu::always_inline]] inline Gathered<D - d, Moments> gather(const NodeLanes* node,
-                                                              const PointWeights<D, n>& p) {
-  Gathered<D - d, Moments> sum;
+template <int D, int n, Wanted wanted, int d = 0>
+[[gnu::always_inline]] inline Gathered<D - d, wanted> gather(const NodeLanes* node,
+                                                             const PointWeights<D, n>& p) {
+  Gathered<D - d, wanted> sum;
   if constexpr (d == D) {
     sum.value = *node;
   } else {
     for (int k = 0; k < n; ++k) {
-      const auto part = gather<D, n, Moments, d + 1>(node + k * stride<D>(tile_span, d), p);
+      const auto part = gather<D, n, wanted, d + 1>(node + k * stride<D>(tile_span, d), p);
       sum.value += p.w[d][k] * part.value;
-      sum.slope[0] += p.dw[d][k] * part.value;
-      if constexpr (Moments) sum.moment[0] += p.wa[d][k] * part.value;
-      for (int e = 1; e < D - d; ++e) {
-        sum.slope[e] += p.w[d][k] * part.slope[e - 1];
-        if constexpr (Moments) sum.moment[e] += p.w[d][k] * part.moment[e - 1];
+      if constexpr (wanted.slopes) {
+        sum.slope[0] += p.dw[d][k] * part.value;
+        for (int e = 1; e < D - d; ++e) sum.slope[e] += p.w[d][k] * part.slope[e - 1];
+      }
+      if constexpr (wanted.moments) {
+        sum.moment[0] += p.wa[d][k] * part.value;
+        for (int e = 1; e < D - d; ++e) sum.moment[e] += p.w[d][k] * part.moment[e - 1];
       }
     }
   }
@@ -201,7 +210,8 @@ inline void to_columns(const NodeLanes (&row)[n_lanes], Lanes (&column)[4]) {
     for (int l = 0; l < n_lanes; ++l) column[c][l] = row[l][c];
 }
 inline void to_rows(const Lanes (&column)[4], NodeLanes (&row)[n_lanes]) {
-  for (int l = 0; l < n_lanes; ++l) row[l] = NodeLanes{column[0][l], column[1][l], column[2][l], column[3][l]};
+  for (int l = 0; l < n_lanes; ++l)
+    row[l] = NodeLanes{column[0][l], column[1][l], column[2][l], column[3][l]};
 }
 
 }  // namespace tremie

@@ -174,9 +174,9 @@ TEST(ExplicitThreads, SameBits) {
 }
 
 // A column under its own weight between free-slip walls stays as it is: pressures within 3 % of rho g H (one
-// pressure a cell on 10 cells over the height: a quarter of a cell's head), nothing faster than 15 mm/s. Rings
-// are another matter: two points across a cell integrate d(rN)/dr, a parabola, with an error of 6 % in the
-// cell at the axis, so that a uniform pressure is not in balance there; 15 % are allowed.
+// pressure a cell on 10 cells over the height: a quarter of a cell's head), nothing faster than 15 mm/s.
+// Rings are another matter: two points across a cell integrate d(rN)/dr, a parabola, with an error of 6 % in
+// the cell at the axis, so that a uniform pressure is not in balance there; 15 % are allowed.
 TYPED_TEST(ExplicitSpaces, HydrostaticStart) {
   constexpr int D = TypeParam::dim, up = TypeParam::up;
   const double H = 0.2;
@@ -189,12 +189,15 @@ TYPED_TEST(ExplicitSpaces, HydrostaticStart) {
     body.grid.axes[up] = {.h = 0.02, .low = FaceKind::no_slip};
     Vec<D> high = Vec<D>::Constant(0.04);
     high[up] = H;
-    fill_box<TypeParam>(body, Vec<D>::Zero(), high, 2, [&](const auto& x) { return 2400.0 * g * (H - x[up]); });
+    fill_box<TypeParam>(body, Vec<D>::Zero(), high, 2,
+                        [&](const auto& x) { return 2400.0 * g * (H - x[up]); });
     const auto worst = advance(body, settings_of(scheme, 2e-4), shape_of<D>(scheme.shape), 500);
     double pressure_error = 0.0;
     for (std::size_t p = 0; p < body.points.size(); ++p)
-      pressure_error = std::max(pressure_error, std::abs(pressure(body.points.ln_J[p], body.mix.K) / (2400.0 * g) -
-                                                         (H - body.points.x[p][up])) / H);
+      pressure_error = std::max(
+          pressure_error,
+          std::abs(pressure(body.points.ln_J[p], body.mix.K) / (2400.0 * g) - (H - body.points.x[p][up])) /
+              H);
     std::printf("hydrostatic start, explicit: worst pressure error %.2e of rho g H, speed %.1e m/s\n",
                 pressure_error, worst.max_speed);
     EXPECT_FALSE(worst.failed);
@@ -207,13 +210,15 @@ TYPED_TEST(ExplicitSpaces, HydrostaticStart) {
 /// Kinetic energy after 400 steps of `share` times the limit over that at the start, from random velocities,
 /// walls all around or free in space; infinite if the points ran away.
 template <class Space>
-double growth_of_energy(const Mix& mix, const Papanastasiou& of, ShapeFunctions kind, bool walls, double share) {
+double growth_of_energy(const Mix& mix, const Papanastasiou& of, ShapeFunctions kind, bool walls,
+                        double share) {
   constexpr int D = Space::dim;
   Body<Space> body;
   body.mix = mix;
   for (Axis& a : body.grid.axes) {
     a = {.h = 0.02};
-    if (walls) a = {.h = 0.02, .low = FaceKind::free_slip, .high = FaceKind::free_slip, .n_cells = D == 3 ? 3 : 5};
+    if (walls)
+      a = {.h = 0.02, .low = FaceKind::free_slip, .high = FaceKind::free_slip, .n_cells = D == 3 ? 3 : 5};
   }
   if (std::is_same_v<Space, Axisymmetric>) body.grid.axes[0].low = FaceKind::free_slip;
   fill_box<Space>(body, Vec<D>::Zero(), Vec<D>::Constant(D == 3 ? 0.06 : 0.1), 2);

@@ -25,7 +25,8 @@ double largest(const Pencil& p, const std::vector<char>& fixed) {
   const auto n = static_cast<Eigen::Index>(free.size());
   Eigen::MatrixXd A(n, n);
   for (Eigen::Index i = 0; i < n; ++i)
-    for (Eigen::Index j = 0; j < n; ++j) A(i, j) = p.K(free[i], free[j]) / std::sqrt(p.M[free[i]] * p.M[free[j]]);
+    for (Eigen::Index j = 0; j < n; ++j)
+      A(i, j) = p.K(free[i], free[j]) / std::sqrt(p.M[free[i]] * p.M[free[j]]);
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(A, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
 }
 
@@ -108,8 +109,10 @@ void expect_bounds(ShapeFunctions kind) {
     const double chi_point = largest(patch<D>(axes, shape, Row::point_divergence), fixed);
     std::printf("D = %d %s, %s: kappa %.3f, chi %.3f by the cell, %.3f by the point\n", D,
                 kind == ShapeFunctions::gimp ? "GIMP" : "splines",
-                face == FaceKind::open ? "free" : face == FaceKind::no_slip ? "sticking" : "sliding", kappa, chi_cell,
-                chi_point);
+                face == FaceKind::open      ? "free"
+                : face == FaceKind::no_slip ? "sticking"
+                                            : "sliding",
+                kappa, chi_cell, chi_point);
     EXPECT_LE(kappa, bound.viscous);
     EXPECT_LE(4.0 / 3.0 * chi_cell, bound.acoustic);
     EXPECT_LE(chi_point, bound.acoustic);

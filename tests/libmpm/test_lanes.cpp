@@ -171,7 +171,7 @@ TEST(FactoredSums, GatherAndScatterAreAdjoint) {
   std::uniform_real_distribution<double> u(-1.0, 1.0);
   for (NodeLanes& node : v) node = NodeLanes{u(random), u(random), u(random), u(random)};
   const auto w = of_lane<D>(weights, 3);
-  const auto got = gather<D, 3, true>(&v[weights.base[3]], w);
+  const auto got = gather<D, 3, slopes_and_moments>(&v[weights.base[3]], w);
   double value = 0.0, slope = 0.0, moment = 0.0;
   for (int i = 0; i < 27; ++i) {
     const Index<D> o = local_offset<D>(i);
