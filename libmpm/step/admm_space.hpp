@@ -12,13 +12,13 @@ namespace detail {
 
 /// Duals and yield stresses by batches of cells.
 struct BatchDuals {
-  Lanes stress[8][5], rate[8][5], tau_y[8];
+  BatchLanes stress[8][5], rate[8][5], tau_y[8];
 };
 
 template <class Visit>
 void for_each_lane(int n_cells, Visit visit) {
 #pragma omp parallel for schedule(static)
-  for (int c = 0; c < n_cells; ++c) visit(c, c / n_lanes, c % n_lanes);
+  for (int c = 0; c < n_cells; ++c) visit(c, c / batch_size, c % batch_size);
 }
 
 inline std::vector<BatchDuals> to_batches(const YieldProblem<ThreeD>& problem, const Duals<ThreeD>& duals,
@@ -61,25 +61,25 @@ Mismatch pass_over_cells(const YieldProblem<ThreeD>& problem, const Law& law, co
     PlaceTensors G;
     system.batches.gradients(b, v, G);
     const BatchVolumes& vol = system.volumes[b];
-    Lanes p, mean = Lanes::Zero(), primal = mean, dual = mean, scale = mean;
-    for (int l = 0; l < n_lanes; ++l)
-      p[l] = p_cell[std::min<std::size_t>(b * n_lanes + l, p_cell.size() - 1)];
+    BatchLanes p, mean = BatchLanes::Zero(), primal = mean, dual = mean, scale = mean;
+    for (int l = 0; l < batch_size; ++l)
+      p[l] = p_cell[std::min<std::size_t>(b * batch_size + l, p_cell.size() - 1)];
     for (int k = 0; k < 8; ++k) mean += vol.V[k] * (G.g[0][0][k] + G.g[1][1][k] + G.g[2][2][k]);
     p -= bulk * vol.inverse_cell * mean;
     for (int k = 0; k < 8; ++k) {
-      Lanes q[5], div, stress[5];
+      BatchLanes q[5], div, stress[5];
       strain_at(G, k, q, div);
       auto& s = duals[b].stress[k];
       auto& d = duals[b].rate[k];
       if (update) {
-        Lanes a[5];
+        BatchLanes a[5];
         for (int j = 0; j < 5; ++j) a[j] = s[j] + r * (rho * q[j] + (1.0 - rho) * d[j]);
-        const Lanes a_norm = norm(a);
-        Lanes factor;
-        for (int l = 0; l < n_lanes; ++l)
+        const BatchLanes a_norm = norm(a);
+        BatchLanes factor;
+        for (int l = 0; l < batch_size; ++l)
           factor[l] = a_norm[l] > 0.0 ? law.prox(a_norm[l], duals[b].tau_y[k][l], r) / a_norm[l] : 0.0;
         for (int j = 0; j < 5; ++j) {
-          const Lanes d_new = factor * a[j];
+          const BatchLanes d_new = factor * a[j];
           primal += vol.V[k] * (q[j] - d_new).square();
           dual += vol.V[k] * (d_new - d[j]).square();
           s[j] = a[j] - r * d_new;

@@ -17,13 +17,13 @@
 
 namespace tremie {
 
-inline constexpr int n_lanes = 8;
-using Lanes = Eigen::Array<double, n_lanes, 1>;
+inline constexpr int batch_size = 8;
+using BatchLanes = Eigen::Array<double, batch_size, 1>;
 
 /// Gradients g[d][e][k] = d v_d / d x_e at Gauss place k of a batch of cells, or the stresses that work on
 /// them.
 struct PlaceTensors {
-  Lanes g[3][3][8];
+  BatchLanes g[3][3][8];
 };
 
 class CellBatches {
@@ -57,9 +57,9 @@ class CellBatches {
   static constexpr double near = 0.78867513459481288, far = 1.0 - near;
   static constexpr double near2 = 0.5 * near * near, far2 = 0.5 * far * far;
 
-  using Nodes = std::array<std::array<int, n_lanes>, 27>;
+  using Nodes = std::array<std::array<int, batch_size>, 27>;
   struct Ends {
-    Lanes low[3], high[3];
+    BatchLanes low[3], high[3];
   };
 
   int n_cells_ = 0, n_nodes_ = 0;
@@ -74,13 +74,14 @@ inline void CellBatches::lay_out(const ActiveGrid<3>& grid) {
   n_cells_ = grid.n_cells();
   n_nodes_ = grid.n_nodes();
   for (int d = 0; d < 3; ++d) inverse_h_[d] = 1.0 / grid.axes[d].h;
-  const int n = (n_cells_ + n_lanes - 1) / n_lanes;
+  const int n = (n_cells_ + batch_size - 1) / batch_size;
   nodes_.resize(n);
   ends_.resize(n);
 #pragma omp parallel for schedule(static)
   for (int b = 0; b < n; ++b)
-    for (int l = 0; l < n_lanes; ++l) {
-      const int c = std::min(b * n_lanes + l, n_cells_ - 1);  // lanes beyond the last cell repeat it, unheard
+    for (int l = 0; l < batch_size; ++l) {
+      const int c =
+          std::min(b * batch_size + l, n_cells_ - 1);  // lanes beyond the last cell repeat it, unheard
       for (int k = 0; k < 27; ++k) nodes_[b][k][l] = grid.cell_nodes[c][k];
       for (int d = 0; d < 3; ++d) {
         const Axis& a = grid.axes[d];
@@ -103,44 +104,46 @@ inline void CellBatches::lay_out(const ActiveGrid<3>& grid) {
 inline void CellBatches::gradients(int batch, const double* v, PlaceTensors& out) const {
   const Nodes& nodes = nodes_[batch];
   const Ends& ends = ends_[batch];
-  Lanes u[3][27];
+  BatchLanes u[3][27];
   for (int k = 0; k < 27; ++k)
-    for (int l = 0; l < n_lanes; ++l) {
+    for (int l = 0; l < batch_size; ++l) {
       const double* at = v + 3 * static_cast<std::ptrdiff_t>(nodes[k][l]);
       u[0][k][l] = at[0], u[1][k][l] = at[1], u[2][k][l] = at[2];
     }
   for (int d = 0; d < 3; ++d) {
-    Lanes X[2][9], dX[2][9];
+    BatchLanes X[2][9], dX[2][9];
     for (int j = 0; j < 9; ++j) {
-      const Lanes a = ends.low[0] * (u[d][j] - u[d][9 + j]), c = ends.high[0] * (u[d][18 + j] - u[d][9 + j]);
+      const BatchLanes a = ends.low[0] * (u[d][j] - u[d][9 + j]),
+                       c = ends.high[0] * (u[d][18 + j] - u[d][9 + j]);
       X[0][j] = u[d][9 + j] + near2 * a + far2 * c;
       X[1][j] = u[d][9 + j] + far2 * a + near2 * c;
       dX[0][j] = inverse_h_[0] * (far * c - near * a);
       dX[1][j] = inverse_h_[0] * (near * c - far * a);
     }
     for (int p = 0; p < 2; ++p) {
-      Lanes XY[2][3], XdY[2][3], dXY[2][3];
+      BatchLanes XY[2][3], XdY[2][3], dXY[2][3];
       for (int k = 0; k < 3; ++k) {
-        const Lanes a = ends.low[1] * (X[p][k] - X[p][3 + k]), c = ends.high[1] * (X[p][6 + k] - X[p][3 + k]);
+        const BatchLanes a = ends.low[1] * (X[p][k] - X[p][3 + k]),
+                         c = ends.high[1] * (X[p][6 + k] - X[p][3 + k]);
         XY[0][k] = X[p][3 + k] + near2 * a + far2 * c;
         XY[1][k] = X[p][3 + k] + far2 * a + near2 * c;
         XdY[0][k] = inverse_h_[1] * (far * c - near * a);
         XdY[1][k] = inverse_h_[1] * (near * c - far * a);
-        const Lanes da = ends.low[1] * (dX[p][k] - dX[p][3 + k]),
-                    dc = ends.high[1] * (dX[p][6 + k] - dX[p][3 + k]);
+        const BatchLanes da = ends.low[1] * (dX[p][k] - dX[p][3 + k]),
+                         dc = ends.high[1] * (dX[p][6 + k] - dX[p][3 + k]);
         dXY[0][k] = dX[p][3 + k] + near2 * da + far2 * dc;
         dXY[1][k] = dX[p][3 + k] + far2 * da + near2 * dc;
       }
       for (int q = 0; q < 2; ++q) {
         const int lo = p + 2 * q, hi = lo + 4;
-        const auto value = [&](const Lanes* w, Lanes& low, Lanes& high) {
-          const Lanes a = ends.low[2] * (w[0] - w[1]), c = ends.high[2] * (w[2] - w[1]);
+        const auto value = [&](const BatchLanes* w, BatchLanes& low, BatchLanes& high) {
+          const BatchLanes a = ends.low[2] * (w[0] - w[1]), c = ends.high[2] * (w[2] - w[1]);
           low = w[1] + near2 * a + far2 * c;
           high = w[1] + far2 * a + near2 * c;
         };
         value(dXY[q], out.g[d][0][lo], out.g[d][0][hi]);
         value(XdY[q], out.g[d][1][lo], out.g[d][1][hi]);
-        const Lanes a = ends.low[2] * (XY[q][0] - XY[q][1]), c = ends.high[2] * (XY[q][2] - XY[q][1]);
+        const BatchLanes a = ends.low[2] * (XY[q][0] - XY[q][1]), c = ends.high[2] * (XY[q][2] - XY[q][1]);
         out.g[d][2][lo] = inverse_h_[2] * (far * c - near * a);
         out.g[d][2][hi] = inverse_h_[2] * (near * c - far * a);
       }
@@ -150,50 +153,51 @@ inline void CellBatches::gradients(int batch, const double* v, PlaceTensors& out
 
 inline void CellBatches::scatter(int batch, const PlaceTensors& T) {
   const Ends& ends = ends_[batch];
-  Lanes u[3][27];
+  BatchLanes u[3][27];
   // A value's adjoint gives a, c and u1 their shares of X0, X1; a slope's those of D0, D1.
-  const auto adjoint = [](const Lanes& low, const Lanes& high, const Lanes& a, const Lanes& c,
-                          const Lanes& sum, Lanes& u0, Lanes& u1, Lanes& u2) {
+  const auto adjoint = [](const BatchLanes& low, const BatchLanes& high, const BatchLanes& a,
+                          const BatchLanes& c, const BatchLanes& sum, BatchLanes& u0, BatchLanes& u1,
+                          BatchLanes& u2) {
     u0 = low * a;
     u2 = high * c;
     u1 = sum - u0 - u2;
   };
   for (int d = 0; d < 3; ++d) {
-    Lanes X[2][9], dX[2][9];
+    BatchLanes X[2][9], dX[2][9];
     for (int p = 0; p < 2; ++p) {
-      Lanes XY[2][3], XdY[2][3], dXY[2][3];
+      BatchLanes XY[2][3], XdY[2][3], dXY[2][3];
       for (int q = 0; q < 2; ++q) {
         const int lo = p + 2 * q, hi = lo + 4;
-        const auto value = [&](const Lanes& x0, const Lanes& x1, Lanes* w) {
+        const auto value = [&](const BatchLanes& x0, const BatchLanes& x1, BatchLanes* w) {
           adjoint(ends.low[2], ends.high[2], near2 * x0 + far2 * x1, far2 * x0 + near2 * x1, x0 + x1, w[0],
                   w[1], w[2]);
         };
         value(T.g[d][0][lo], T.g[d][0][hi], dXY[q]);
         value(T.g[d][1][lo], T.g[d][1][hi], XdY[q]);
-        const Lanes d0 = inverse_h_[2] * T.g[d][2][lo], d1 = inverse_h_[2] * T.g[d][2][hi];
-        adjoint(ends.low[2], ends.high[2], -near * d0 - far * d1, far * d0 + near * d1, Lanes::Zero(),
+        const BatchLanes d0 = inverse_h_[2] * T.g[d][2][lo], d1 = inverse_h_[2] * T.g[d][2][hi];
+        adjoint(ends.low[2], ends.high[2], -near * d0 - far * d1, far * d0 + near * d1, BatchLanes::Zero(),
                 XY[q][0], XY[q][1], XY[q][2]);
       }
       for (int k = 0; k < 3; ++k) {
-        const Lanes d0 = inverse_h_[1] * XdY[0][k], d1 = inverse_h_[1] * XdY[1][k];
-        const Lanes &x0 = XY[0][k], &x1 = XY[1][k];
+        const BatchLanes d0 = inverse_h_[1] * XdY[0][k], d1 = inverse_h_[1] * XdY[1][k];
+        const BatchLanes &x0 = XY[0][k], &x1 = XY[1][k];
         adjoint(ends.low[1], ends.high[1], near2 * x0 + far2 * x1 - near * d0 - far * d1,
                 far2 * x0 + near2 * x1 + far * d0 + near * d1, x0 + x1, X[p][k], X[p][3 + k], X[p][6 + k]);
-        const Lanes &y0 = dXY[0][k], &y1 = dXY[1][k];
+        const BatchLanes &y0 = dXY[0][k], &y1 = dXY[1][k];
         adjoint(ends.low[1], ends.high[1], near2 * y0 + far2 * y1, far2 * y0 + near2 * y1, y0 + y1, dX[p][k],
                 dX[p][3 + k], dX[p][6 + k]);
       }
     }
     for (int j = 0; j < 9; ++j) {
-      const Lanes d0 = inverse_h_[0] * dX[0][j], d1 = inverse_h_[0] * dX[1][j];
-      const Lanes &x0 = X[0][j], &x1 = X[1][j];
+      const BatchLanes d0 = inverse_h_[0] * dX[0][j], d1 = inverse_h_[0] * dX[1][j];
+      const BatchLanes &x0 = X[0][j], &x1 = X[1][j];
       adjoint(ends.low[0], ends.high[0], near2 * x0 + far2 * x1 - near * d0 - far * d1,
               far2 * x0 + near2 * x1 + far * d0 + near * d1, x0 + x1, u[d][j], u[d][9 + j], u[d][18 + j]);
     }
   }
-  const int count = std::min(n_lanes, n_cells_ - batch * n_lanes);
+  const int count = std::min(batch_size, n_cells_ - batch * batch_size);
   for (int l = 0; l < count; ++l) {
-    double* out = &local_[81 * (static_cast<std::size_t>(batch) * n_lanes + static_cast<std::size_t>(l))];
+    double* out = &local_[81 * (static_cast<std::size_t>(batch) * batch_size + static_cast<std::size_t>(l))];
     for (int k = 0; k < 27; ++k)
       out[3 * k] = u[0][k][l], out[3 * k + 1] = u[1][k][l], out[3 * k + 2] = u[2][k][l];
   }

@@ -46,9 +46,9 @@ inline void invert_blocks(const std::vector<char>& fixed, std::vector<Mat<3, 3>>
 }
 
 /// Strain rate q at place k as ThreeD has it, and the divergence.
-inline void strain_at(const PlaceTensors& G, int k, Lanes (&q)[5], Lanes& div) {
-  const Lanes &xx = G.g[0][0][k], &yy = G.g[1][1][k], &zz = G.g[2][2][k];
-  const Lanes plane = xx + yy;
+inline void strain_at(const PlaceTensors& G, int k, BatchLanes (&q)[5], BatchLanes& div) {
+  const BatchLanes &xx = G.g[0][0][k], &yy = G.g[1][1][k], &zz = G.g[2][2][k];
+  const BatchLanes plane = xx + yy;
   q[0] = xx - yy;
   q[1] = (plane - 2.0 * zz) * inv_sqrt3;
   q[2] = G.g[0][1][k] + G.g[1][0][k];
@@ -57,13 +57,13 @@ inline void strain_at(const PlaceTensors& G, int k, Lanes (&q)[5], Lanes& div) {
   div = plane + zz;
 }
 
-inline Lanes norm(const Lanes (&q)[5]) {
+inline BatchLanes norm(const BatchLanes (&q)[5]) {
   return (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] + q[4] * q[4]).sqrt();
 }
 
 /// The tensor whose adjoint is that of the deviatoric stress s, with a pull p in all directions: T = s + p I.
-inline void stress_at(const Lanes (&s)[5], const Lanes& p, int k, PlaceTensors& T) {
-  const Lanes half = s[1] * inv_sqrt3;
+inline void stress_at(const BatchLanes (&s)[5], const BatchLanes& p, int k, PlaceTensors& T) {
+  const BatchLanes half = s[1] * inv_sqrt3;
   T.g[0][0][k] = p + half + s[0];
   T.g[1][1][k] = p + half - s[0];
   T.g[2][2][k] = p - 2.0 * half;
@@ -74,7 +74,7 @@ inline void stress_at(const Lanes (&s)[5], const Lanes& p, int k, PlaceTensors& 
 
 /// Volumes of a batch of cells, lane by lane; 0 where a lane has no cell.
 struct BatchVolumes {
-  Lanes V[8], inverse_cell;
+  BatchLanes V[8], inverse_cell;
 };
 
 class SpaceSystem {
@@ -115,8 +115,8 @@ inline void SpaceSystem::set_up(YieldProblem<ThreeD>& problem) {
   volumes.resize(batches.n_batches());
 #pragma omp parallel for schedule(static)
   for (int b = 0; b < batches.n_batches(); ++b)
-    for (int l = 0; l < n_lanes; ++l) {
-      const int c = b * n_lanes + l;
+    for (int l = 0; l < batch_size; ++l) {
+      const int c = b * batch_size + l;
       const bool there = c < batches.n_cells();
       for (int k = 0; k < 8; ++k) volumes[b].V[k][l] = there ? quad.V[c][k] : 0.0;
       volumes[b].inverse_cell[l] = there && quad.V_cell[c] > 0.0 ? 1.0 / quad.V_cell[c] : 0.0;
@@ -192,14 +192,14 @@ inline void SpaceSystem::multiply(const YieldProblem<ThreeD>& problem, const Eig
       PlaceTensors G;
       batches.gradients(b, x.data(), G);
       const BatchVolumes& v = volumes[b];
-      Lanes mean = Lanes::Zero();
+      BatchLanes mean = BatchLanes::Zero();
       for (int k = 0; k < 8; ++k) mean += v.V[k] * (G.g[0][0][k] + G.g[1][1][k] + G.g[2][2][k]);
       mean *= bulk * v.inverse_cell;
       for (int k = 0; k < 8; ++k) {
-        Lanes q[5], div;
+        BatchLanes q[5], div;
         strain_at(G, k, q, div);
-        const Lanes w = eta_ * v.V[k];
-        for (Lanes& s : q) s *= w;
+        const BatchLanes w = eta_ * v.V[k];
+        for (BatchLanes& s : q) s *= w;
         stress_at(q, v.V[k] * mean, k, G);
       }
       batches.scatter(b, G);
@@ -238,17 +238,17 @@ inline void SpaceSystem::shear_rates(const std::vector<Vec<3>>& v, std::vector<d
   for (int b = 0; b < batches.n_batches(); ++b) {
     PlaceTensors G;
     batches.gradients(b, v.data()->data(), G);
-    Lanes total = Lanes::Zero(), weighted = total, V = total;
+    BatchLanes total = BatchLanes::Zero(), weighted = total, V = total;
     for (int k = 0; k < 8; ++k) {
-      Lanes q[5], div;
+      BatchLanes q[5], div;
       strain_at(G, k, q, div);
-      const Lanes rate = norm(q);
+      const BatchLanes rate = norm(q);
       total += rate;
       weighted += volumes[b].V[k] * rate;
       V += volumes[b].V[k];
     }
-    for (int c = b * n_lanes; c < std::min((b + 1) * n_lanes, batches.n_cells()); ++c)
-      of_cell[c] = total[c % n_lanes] / 8.0;
+    for (int c = b * batch_size; c < std::min((b + 1) * batch_size, batches.n_cells()); ++c)
+      of_cell[c] = total[c % batch_size] / 8.0;
     sum[b] = weighted.sum();
     volume[b] = V.sum();
   }

@@ -99,13 +99,13 @@ TEST(SpaceSolver, GradientsAndTheirAdjoint) {
     PlaceTensors G;
     batches.gradients(b, v.data(), G);
     batches.scatter(b, G);
-    for (int c = b * n_lanes; c < std::min((b + 1) * n_lanes, body.grid.n_cells()); ++c)
+    for (int c = b * batch_size; c < std::min((b + 1) * batch_size, body.grid.n_cells()); ++c)
       for (int k = 0; k < 8; ++k) {
         const Stencil<3> st = stencil<3>(body.grid.axes, body.grid.cell_index[c], gauss_place<3>(k));
         Mat<3, 3> L = Mat<3, 3>::Zero();
         for (int i = 0; i < 27; ++i) L += v.segment<3>(3 * body.grid.cell_nodes[c][i]) * st.g[i].transpose();
         for (int d = 0; d < 3; ++d)
-          for (int e = 0; e < 3; ++e) worst = std::max(worst, std::abs(G.g[d][e][k][c % n_lanes] - L(d, e)));
+          for (int e = 0; e < 3; ++e) worst = std::max(worst, std::abs(G.g[d][e][k][c % batch_size] - L(d, e)));
         work_on_gradients += L.squaredNorm();
       }
   }
