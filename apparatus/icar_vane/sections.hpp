@@ -8,6 +8,7 @@
 #include "apparatus/engine.hpp"
 #include "apparatus/icar_vane/icar_vane.hpp"
 #include "libmpm/points/seed.hpp"
+#include "libmpm/transfer/refill.hpp"
 
 namespace tremie::icar_vane {
 
@@ -114,10 +115,11 @@ struct PlaneSection {
     for (Vec<2>& x : body.points.x) x = wrapped(x);
     return body;
   }
-  /// The vane turns at omega, and the grid with it.
+  /// The vane turns at omega, and the grid with it. The section is full.
   void turn(Body<Space>& body, double omega) const {
     body.motion.grid_rate = omega;
     body.walls.v[0][0] = Vec<2>(0.0, omega * shaft);
+    refill<2>(body.grid.axes, body.grid.blocks, body.points);
     body.grid.blocks[0].velocity = [omega](const Vec<2>& x) { return Vec<2>(0.0, omega * x[0]); };
   }
   /// The nodal velocity v_theta = r of a turn as a whole strains nothing, so that the moments of the nodal

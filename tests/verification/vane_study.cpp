@@ -5,7 +5,7 @@
 // Closed form, Newtonian, n blades of no thickness in an unbounded plane: T = 4 pi mu Omega R^2 (1 - 1/n) h
 // (Atkinson and Sherwood 1992; n = 2 is a plate, half of the cylinder's torque, n -> infinity the cylinder).
 // A container at R_o turns what the vane sees by A/R_o^2 where the vane's far field is A/r: R is replaced by
-// R sqrt(1 - 1/n) in the cylinder's formula, to (R/R_o)^(2n).
+// R sqrt(1 - 1/n) in the cylinder's formula, to (R/R_o)^(2n-2).
 
 #include <fmt/format.h>
 
@@ -108,22 +108,19 @@ void newtonian_blades(std::ofstream& md, std::ofstream& csv) {
   md << "## Newtonian, thin blades, against the closed form\n\n| blades | cells mm | torque N m | closed "
         "form "
         "| error | CPU s |\n|---|---|---|---|---|---|\n";
-  for (int n : {2, 4, 6})
+  for (int n : {4, 6})
     for (double size : sizes) {
-      if (n != 4 && size < 5.0) continue;
       Scene s = plane(size, 0.8);
       s.mix.tau_0 = 0.0;
       s.vane.blades = n;
       s.vane.blade_thickness = 1e-6;
-      s.vane.container_radius = n == 2 ? 0.25 : 0.143;
       const Run r = timed(s);
       const double T = r.outcome.results.torque_end, error = T / thin_blades(s) - 1.0;
       md << fmt::format("| {} | {} | {:.5f} | {:.5f} | {:+.2f} % | {:.1f} |\n", n, size, T, thin_blades(s),
                         100 * error, r.cpu);
       csv << fmt::format("thin blades {},{},{:.6f},{:.6f},{:.3f}\n", n, size, T, error, r.cpu);
     }
-  md << "\nWith 2 blades the container is at 250 mm, where the next term of the closed form is below 0.5 "
-        "%.\n";
+  md << "\nThe closed form leaves out (R/R_o)^(2n-2): 0.8 % with 4 blades, 0.03 % with 6.\n";
 }
 
 void steady(std::ofstream& md, std::ofstream& csv) {

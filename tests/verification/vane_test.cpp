@@ -79,8 +79,8 @@ TEST(VanePlane, ACylinderTakesReinerRiwlinsTorque) {
 }
 
 // Newtonian, n blades of no thickness: the cylinder's torque with R sqrt(1 - 1/n) for its radius (Atkinson
-// and Sherwood 1992, and a container far enough: (R/R_o)^(2n) is 0.2 %). 1 %: the flow at a blade's edge is
-// singular, the error of first order in the cells.
+// and Sherwood 1992), to (R/R_o)^(2n-2), 0.8 % here. 1.5 %: that, and the error of first order in the cells
+// at a blade's edge.
 TEST(VanePlane, ThinBladesInANewtonianFluid) {
   Scene s = plane(0.0);
   s.vane.blade_thickness = 1e-6;
@@ -89,7 +89,7 @@ TEST(VanePlane, ThinBladesInANewtonianFluid) {
   const double exact = 4.0 * std::numbers::pi * s.vane.height * omega * mu / (1.0 / R2 - 1.0 / Ro2);
   const double torque = run(s).results.torque_end;
   std::printf("four thin blades: %.5f N m, closed form %.5f\n", torque, exact);
-  EXPECT_NEAR(torque / exact, 1.0, 0.01);
+  EXPECT_NEAR(torque / exact, 1.0, 0.015);
 }
 
 // Steady in Mix A: torque on the blades, on the container and power over speed are one number (0.2 %:
