@@ -43,6 +43,24 @@ inline void fill(const Cone& cone, const Mix& mix, double g, double dr, double d
   }
 }
 
+/// The same rows and rings in space: each ring is points of equal volume about dr apart along it, the same in
+/// all four quadrants; `quarter`: those of the first alone.
+inline void fill(const Cone& cone, const Mix& mix, double g, double dr, double dz, bool quarter,
+                 Points<3>& points) {
+  Points<2> rings;
+  fill(cone, mix, g, dr, dz, rings);
+  for (std::size_t i = 0; i < rings.size(); ++i) {
+    const double r = rings.x[i][0], z = rings.x[i][1], right = 0.5 * std::numbers::pi;
+    const int n = std::max(1, static_cast<int>(std::lround(right * r / dr)));
+    for (int k = 0; k < n; ++k) {
+      const double x = r * std::cos(right * (k + 0.5) / n), y = r * std::sin(right * (k + 0.5) / n);
+      for (int quadrant = 0; quadrant < (quarter ? 1 : 4); ++quadrant)
+        add_point<3>(points, {quadrant & 1 ? -x : x, quadrant & 2 ? -y : y, z}, rings.mass[i] / (4 * n),
+                     rings.V0[i] / (4 * n), rings.ln_J[i]);
+    }
+  }
+}
+
 /// Height of the cone's rim at a time [m].
 inline double rim_height(const Scene& scene, double time) { return *scene.lift_speed * time; }
 
@@ -59,6 +77,17 @@ inline RigidWall<2> lifted_wall(const Scene& scene, double reach) {
     const double gap = normal.dot(x - Vec<2>(cone.bottom_radius, speed * time));
     if (std::abs(gap) > reach) return std::nullopt;
     return WallView<2>{gap, normal, Vec<2>(0.0, speed)};
+  };
+}
+
+/// The wall that a wall in the section (r, z) makes when it is turned about the axis.
+inline RigidWall<3> revolved(const RigidWall<2>& section) {
+  return [=](const Vec<3>& x, double time) -> std::optional<WallView<3>> {
+    const double r = std::hypot(x[0], x[1]);
+    const auto view = section({r, x[2]}, time);
+    if (!view || r == 0.0) return std::nullopt;
+    const auto turn = [&](const Vec<2>& a) { return Vec<3>(a[0] * x[0] / r, a[0] * x[1] / r, a[1]); };
+    return WallView<3>{view->gap, turn(view->normal), turn(view->velocity)};
   };
 }
 

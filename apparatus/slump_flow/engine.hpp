@@ -1,6 +1,7 @@
 #pragma once
 
-// The slump-flow test in an axisymmetric section for one yield law: set up, step until rest, read.
+// The slump-flow test in an axisymmetric section or in space for one yield law: set up, step until rest,
+// read.
 
 #include <algorithm>
 #include <cmath>
@@ -17,16 +18,26 @@ using engine::gravity;
 
 inline constexpr double standard_t500 = 0.5;  ///< diameter of the t500 circle [m]
 
+/// Whether only the first quadrant is computed, between planes of symmetry.
+inline bool is_quarter(const Scene& scene) { return scene.model.space == SpaceKind::quarter; }
+
 /// The filled cone after its rest, before the lift.
-inline Body<Axisymmetric> filled_cone(const Scene& scene) {
-  Body<Axisymmetric> body;
+template <class Space>
+Body<Space> filled_cone(const Scene& scene) {
+  constexpr int D = Space::dim, up = Space::up;
+  Body<Space> body;
   body.mix = scene.mix;
-  body.gravity = {0.0, -gravity};
-  const auto [across, up] = scene.model.cell;
-  body.grid.axes[0] = {.h = across, .low = FaceKind::free_slip};
-  body.grid.axes[1] = {.h = up, .low = engine::face_of(scene.floor.contact)};
-  const auto [n_across, n_up] = scene.model.points_per_cell;
-  fill(scene.cone, scene.mix, gravity, across / n_across, up / n_up, body.points);
+  body.gravity[up] = -gravity;
+  const auto [h, h_up] = scene.model.cell;
+  const bool axis_or_symmetry = D == 2 || is_quarter(scene);
+  for (int d = 0; d < up; ++d)
+    body.grid.axes[d] = {.h = h, .low = axis_or_symmetry ? FaceKind::free_slip : FaceKind::open};
+  body.grid.axes[up] = {.h = h_up, .low = engine::face_of(scene.floor.contact)};
+  const auto [n, n_up] = scene.model.points_per_cell;
+  if constexpr (D == 2)
+    fill(scene.cone, scene.mix, gravity, h / n, h_up / n_up, body.points);
+  else
+    fill(scene.cone, scene.mix, gravity, h / n, h_up / n_up, is_quarter(scene), body.points);
   engine::rest(body, scene.rest);
   return body;
 }
@@ -38,18 +49,26 @@ inline StepSettings step_settings(const Scene& scene) {
   return settings;
 }
 
-inline Sample read(const Body<Axisymmetric>& body, const StepReport& step) {
-  const Points<2>& points = body.points;
+inline double spread_of(const Scene& scene, const Points<2>& points) {
+  return spread(points, scene.model.cell[0]);
+}
+inline double spread_of(const Scene& scene, const Points<3>& points) {
+  return spread(points, scene.model.cell[0], is_quarter(scene));
+}
+
+template <class Space>
+Sample read(const Scene& scene, const Body<Space>& body, const StepReport& step) {
+  const auto& points = body.points;
   Sample s;
   s.time = body.time;
-  s.spread = spread(points, body.grid.axes[0].h);
+  s.spread = spread_of(scene, points);
   s.spread_max_point = spread_of_outermost_point(points);
   s.height = centre_height(points, 2.0 * body.grid.axes[0].h);
   s.max_speed = step.max_speed;
   s.shear_rate_mean = step.shear_rate_mean;
   s.flocculation_mean = engine::mean_flocculation(points);
   s.volume_change = engine::volume_change(points);
-  s.kinetic_energy = engine::kinetic_energy(points);
+  s.kinetic_energy = (is_quarter(scene) ? 4.0 : 1.0) * engine::kinetic_energy(points);
   s.time_step = step.dt;
   s.iterations = step.iterations;
   return s;
@@ -90,16 +109,24 @@ inline void judge_depth(const Scene& scene, Outcome& outcome) {
                                      " mm on average: a smaller model.cell upwards");
 }
 
-template <class Law>
-Outcome run_axisymmetric(const Scene& scene, const Law& law, const Observer& observer) {
-  Body<Axisymmetric> body = filled_cone(scene);
+inline void lifted_wall(const Scene& scene, double reach, RigidWall<2>& wall) {
+  wall = lifted_wall(scene, reach);
+}
+inline void lifted_wall(const Scene& scene, double reach, RigidWall<3>& wall) {
+  wall = revolved(lifted_wall(scene, reach));
+}
+
+template <class Space, class Law>
+Outcome run_in(const Scene& scene, const Law& law, const Observer& observer) {
+  Body<Space> body = filled_cone<Space>(scene);
   StepSettings settings = step_settings(scene);
   const double start_mass = engine::total_mass(body.points);
   const double reach = settings.wall_gap + settings.cfl * scene.model.cell[0];
-  const RigidWall<2> wall = scene.lift_speed ? lifted_wall(scene, reach) : RigidWall<2>{};
+  RigidWall<Space::dim> wall;
+  if (scene.lift_speed) lifted_wall(scene, reach, wall);
 
   Outcome outcome;
-  outcome.series.push_back(read(body, {}));
+  outcome.series.push_back(read(scene, body, {}));
   if (observer.on_frame) observer.on_frame(engine::frame_of(body));
   engine::RestWatch watch;
   bool stopped = false;
@@ -108,11 +135,11 @@ Outcome run_axisymmetric(const Scene& scene, const Law& law, const Observer& obs
     settings.dt_max = std::min(StepSettings{}.dt_max, scene.duration - body.time);
     const bool cone_gone =
         scene.lift_speed && rim_height(scene, body.time) > outcome.series.back().height + 0.02;
-    const StepReport step = implicit_step(body, law, settings, cone_gone ? RigidWall<2>{} : wall);
+    const StepReport step = implicit_step(body, law, settings, cone_gone ? RigidWall<Space::dim>{} : wall);
     engine::count_step(body, step, outcome.checks, outcome.cost);
     engine::watch_fixed_step(body, scene.model, step, outcome.checks);
     if (engine::gave_up(step, outcome.status, outcome.checks, body.time)) break;
-    outcome.series.push_back(read(body, step));
+    outcome.series.push_back(read(scene, body, step));
     if (observer.on_step) observer.on_step(outcome.series.back());
     if (observer.on_frame && body.time >= next_frame) {
       observer.on_frame(engine::frame_of(body));

@@ -33,37 +33,88 @@ double section_size(const Points<2>& points, std::size_t p) {
   return std::sqrt(points.volume(p) / (2.0 * std::numbers::pi * std::max(points.x[p][0], 1e-6)));
 }
 
-}  // namespace
+/// Side of the cube that a point stands for [m].
+double section_size(const Points<3>& points, std::size_t p) { return std::cbrt(points.volume(p)); }
 
-double spread_of_outermost_point(const Points<2>& points) {
+double radius(const Vec<2>& x) { return x[0]; }
+double radius(const Vec<3>& x) { return std::hypot(x[0], x[1]); }
+
+template <int D>
+double outermost_radius(const Points<D>& points) {
   double r = 0.0;
-  for (const auto& x : points.x) r = std::max(r, x[0]);
-  return 2.0 * r;
+  for (const auto& x : points.x) r = std::max(r, radius(x));
+  return r;
 }
 
-double spread(const Points<2>& points, double cell) {
-  // Strays aside, the outline lies within a few cells of the outermost point; sorting those is enough.
-  double reach = 0.5 * spread_of_outermost_point(points) - 4.0 * cell;
-  std::vector<Weighted> radii;
-  for (; radii.size() <= company && reach > -4.0 * cell; reach -= 4.0 * cell) {
-    radii.clear();
-    for (std::size_t p = 0; p < points.size(); ++p)
-      if (points.x[p][0] > reach)
-        radii.push_back({points.x[p][0], points.volume(p), section_size(points, p)});
+/// How far out the concrete reaches: the outermost value that has company, plus half the size of its point.
+double reach_of(std::vector<Weighted>& out, double cell) {
+  // Few are strays, so that a look at the outermost is nearly always enough.
+  for (std::size_t n = std::min<std::size_t>(out.size(), 32); n > 0; n = out.size()) {
+    std::partial_sort(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(n), out.end(),
+                      [](const Weighted& a, const Weighted& b) { return a.value > b.value; });
+    std::size_t i = 0;
+    while (i + company < n && out[i].value - out[i + company].value > 0.5 * cell) ++i;
+    if (i + company < n || n == out.size()) return out[i].value + 0.5 * out[i].size;
   }
-  std::sort(radii.begin(), radii.end(),
-            [](const Weighted& a, const Weighted& b) { return a.value > b.value; });
-  std::size_t i = 0;
-  while (i + company < radii.size() && radii[i].value - radii[i + company].value > 0.5 * cell) ++i;
-  return radii.empty() ? 0.0 : 2.0 * radii[i].value + radii[i].size;
+  return 0.0;
 }
 
-double centre_height(const Points<2>& points, double radius) {
+/// Numbers of the points that may lie on the outline: strays aside, within a few cells of the outermost.
+template <int D>
+std::vector<std::size_t> points_far_out(const Points<D>& points, double cell) {
+  std::vector<std::size_t> far;
+  double reach = outermost_radius(points) - 4.0 * cell;
+  for (; far.size() <= company && reach > -4.0 * cell; reach -= 4.0 * cell) {
+    far.clear();
+    for (std::size_t p = 0; p < points.size(); ++p)
+      if (radius(points.x[p]) > reach) far.push_back(p);
+  }
+  return far;
+}
+
+template <int D>
+double height_within(const Points<D>& points, double reach) {
   std::vector<Weighted> heights;
   for (std::size_t p = 0; p < points.size(); ++p)
-    if (points.x[p][0] < radius)
-      heights.push_back({points.x[p][1], points.volume(p), section_size(points, p)});
+    if (radius(points.x[p]) < reach)
+      heights.push_back({points.x[p][D - 1], points.volume(p), section_size(points, p)});
   return upper_quantile(heights, 1e-2);
 }
+
+}  // namespace
+
+double spread_of_outermost_point(const Points<2>& points) { return 2.0 * outermost_radius(points); }
+double spread_of_outermost_point(const Points<3>& points) { return 2.0 * outermost_radius(points); }
+
+double spread(const Points<2>& points, double cell) {
+  std::vector<Weighted> radii;
+  for (std::size_t p : points_far_out(points, cell))
+    radii.push_back({points.x[p][0], points.volume(p), section_size(points, p)});
+  return 2.0 * reach_of(radii, cell);
+}
+
+double spread(const Points<3>& points, double cell, bool quarter) {
+  constexpr int directions = 16;  // over the full turn; opposite ones make a diameter
+  const std::vector<std::size_t> far = points_far_out(points, cell);
+  double sum = 0.0;
+  std::vector<Weighted> out;
+  for (int k = 0; k < directions; ++k) {
+    const double angle = 2.0 * std::numbers::pi * (k + 0.5) / directions;
+    const double ex = std::cos(angle), ey = std::sin(angle);
+    out.clear();
+    for (std::size_t p : far)
+      for (int mirror = 0; mirror < (quarter ? 4 : 1); ++mirror) {
+        const double x = mirror & 1 ? -points.x[p][0] : points.x[p][0];
+        const double y = mirror & 2 ? -points.x[p][1] : points.x[p][1];
+        if (const double a = ex * x + ey * y; a > 0.0)
+          out.push_back({a, points.volume(p), section_size(points, p)});
+      }
+    sum += reach_of(out, cell);
+  }
+  return 2.0 * sum / directions;
+}
+
+double centre_height(const Points<2>& points, double reach) { return height_within(points, reach); }
+double centre_height(const Points<3>& points, double reach) { return height_within(points, reach); }
 
 }  // namespace tremie::slump_flow

@@ -17,4 +17,11 @@ double spread(const Points<2>& points, double cell);
 /// Height of the concrete at its centre [m]: of the points within `radius` of the axis, likewise robust.
 double centre_height(const Points<2>& points, double radius);
 
+/// The same of a body in space with its axis at x = y = 0; `quarter`: the points of its first quadrant. The
+/// diameter is the mean over pairs of perpendicular diameters, each the distance of two parallel rulers that
+/// touch the outline: turned about, as nothing favours a direction.
+double spread_of_outermost_point(const Points<3>& points);
+double spread(const Points<3>& points, double cell, bool quarter);
+double centre_height(const Points<3>& points, double radius);
+
 }  // namespace tremie::slump_flow

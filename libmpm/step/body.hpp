@@ -8,10 +8,10 @@
 
 #include "libmpm/contact/boundary_points.hpp"
 #include "libmpm/law/mix.hpp"
-#include "libmpm/step/admm.hpp"
+#include "libmpm/step/admm_space.hpp"
 #include "libmpm/step/newton.hpp"
 #include "libmpm/transfer/apic.hpp"
-#include "libmpm/transfer/even_out.hpp"
+#include "libmpm/transfer/even_out_space.hpp"
 
 namespace tremie {
 
@@ -46,6 +46,8 @@ struct WallVelocities {
   }
 };
 
+struct Nothing {};
+
 /// A body of one mix on its grid: everything that a step reads and writes.
 template <class Space>
 struct Body {
@@ -54,6 +56,7 @@ struct Body {
   Vec<D> gravity = Vec<D>::Zero();  ///< [m/s^2]
   Points<D> points;
   ActiveGrid<D> grid;
+  Motion<Space> motion{};                  ///< of the points
   WallVelocities<D> walls{};               ///< of the walls at the ends of the axes
   std::vector<BoundaryPoint<D>> boundary;  ///< walls inside the grid
   double time = 0.0, dt = 0.0;             ///< [s]; dt of the last step
@@ -67,6 +70,7 @@ struct Body {
   double dissipation = 0.0;          ///< power of the stresses in the last step [W], if asked for
   std::vector<Vec<D>> wall_force;    ///< of the flat walls on each node in the last step [N], if asked for
   BlockSystem<D> system;
+  std::conditional_t<D == 3, SpaceSystem, Nothing> space_system;  ///< for large bodies in space
 };
 
 struct StepReport {

@@ -50,7 +50,7 @@ inline SlenderFlow slender_flow(double across, double up) {
   scene.lift_speed.reset();
   scene.model.cell = {across, up};
   omp_set_num_threads(1);
-  auto body = slump_flow::filled_cone(scene);
+  auto body = slump_flow::filled_cone<Axisymmetric>(scene);
   StepSettings settings = slump_flow::step_settings(scene);
   SlenderFlow flow;
   const auto march = [&](double until) {
