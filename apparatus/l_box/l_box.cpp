@@ -149,6 +149,7 @@ Outcome run_plane(const Scene& scene, const Law& law, const Observer& observer) 
     body.boundary = front_wall(scene, body.time);
     const StepReport step = implicit_step(body, law, settings);
     engine::count_step(body, step, outcome.checks, outcome.cost);
+    engine::watch_fixed_step(body, scene.model, step, outcome.checks);
     if (engine::gave_up(step, outcome.status, outcome.checks, body.time)) break;
     outcome.series.push_back(read(body, scene, step));
     if (observer.on_step) observer.on_step(outcome.series.back());

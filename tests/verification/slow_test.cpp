@@ -1,7 +1,7 @@
 // Rung 6, the long runs: the slender case on fine cells and Mix A to its rest.
 
 #include "apparatus/slump_flow/slump_flow.hpp"
-#include "tests/verification/slender.hpp"
+#include "tests/verification/slender_expectations.hpp"
 
 namespace tremie {
 namespace {
