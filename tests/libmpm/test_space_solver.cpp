@@ -40,14 +40,17 @@ TEST(SpaceSolver, AgreesWithTheFactorisedSystem) {
   omp_set_num_threads(1);
   for (double K : {33e3, 1e6}) {
     Body<ThreeD> direct = block(K), iterated = block(K);
-    StepSettings exact = by_iteration(1e-6), tight = exact;
+    StepSettings exact = by_iteration(1e-5), tight = exact;
+    exact.admm.max_iterations = tight.admm.max_iterations = 4000;
     exact.admm.direct_below = 1'000'000;
     exact.fixed_dt = tight.fixed_dt = 0.01;
     for (int i = 0; i < 3; ++i) {
       EXPECT_TRUE(implicit_step(direct, ExactBingham{}, exact).converged);
       EXPECT_TRUE(implicit_step(iterated, ExactBingham{}, tight).converged);
     }
-    EXPECT_LE(difference(direct.points, iterated.points), 5e-5);
+    const double worst = difference(direct.points, iterated.points);
+    std::printf("K = %.0f kPa: velocities differ by at most %.1e m/s\n", 1e-3 * K, worst);
+    EXPECT_LE(worst, 2e-5);
   }
 }
 
