@@ -18,6 +18,7 @@ enum class YieldKind { exact, papanastasiou, bi_viscous };
 enum class SchemeKind { implicit, explicit_usl, explicit_usf };
 enum class MethodKind { automatic, admm, newton };
 enum class ShapeKind { b_spline, gimp };
+enum class PressureKind { cell, point };
 enum class TransferKind { apic, flip };
 enum class ContactKind { no_slip, friction, free_slip };
 
@@ -34,6 +35,7 @@ struct Model {
   SchemeKind scheme = SchemeKind::implicit;
   MethodKind method = MethodKind::automatic;
   ShapeKind shape = ShapeKind::b_spline;
+  PressureKind pressure = PressureKind::cell;  ///< one divergence a cell or a point, explicit schemes alone
   TransferKind transfer = TransferKind::apic;
   double flip_blend = 0.95;                    ///< share of FLIP, transfer = flip alone
   std::optional<double> time_step;             ///< fixed step [s]; empty: chosen at every step

@@ -4,6 +4,8 @@ target_include_directories(tremie_flags INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_options(tremie_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror
   -fno-math-errno
+  # Eight doubles are passed between inlined functions alone, never over a binary interface.
+  -Wno-psabi
   # g++ 12 reports these two inside Eigen's and the standard library's inlined code.
   $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized -Wno-array-bounds>)
 

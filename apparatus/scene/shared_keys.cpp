@@ -31,6 +31,7 @@ const Words<SchemeKind> scheme_words{{"implicit", SchemeKind::implicit},
 const Words<MethodKind> method_words{
     {"auto", MethodKind::automatic}, {"admm", MethodKind::admm}, {"newton", MethodKind::newton}};
 const Words<ShapeKind> shape_words{{"b_spline", ShapeKind::b_spline}, {"gimp", ShapeKind::gimp}};
+const Words<PressureKind> pressure_words{{"cell", PressureKind::cell}, {"point", PressureKind::point}};
 const Words<TransferKind> transfer_words{{"apic", TransferKind::apic}, {"flip", TransferKind::flip}};
 
 Section material_section() {
@@ -235,6 +236,12 @@ Section model_section(const std::vector<std::string>& spaces, const ModelDefault
                .only_with = Condition{"scheme", {"implicit"}},
                .help = "for the yield"},
               {.name = "shape", .kind = Kind::choice, .words = names(shape_words), .fallback = "b_spline"},
+              {.name = "pressure",
+               .kind = Kind::choice,
+               .words = names(pressure_words),
+               .fallback = "cell",
+               .only_with = Condition{"scheme", {"explicit", "explicit_usf"}},
+               .help = "one divergence a cell, against locking, or one a point"},
               {.name = "transfer", .kind = Kind::choice, .words = names(transfer_words), .fallback = "apic"},
               {.name = "flip_blend",
                .kind = Kind::number,
@@ -273,6 +280,7 @@ Model read_model(const Values& values) {
   model.scheme = values.choice("model.scheme", scheme_words);
   if (values.has("model.method")) model.method = values.choice("model.method", method_words);
   model.shape = values.choice("model.shape", shape_words);
+  if (values.has("model.pressure")) model.pressure = values.choice("model.pressure", pressure_words);
   model.transfer = values.choice("model.transfer", transfer_words);
   if (values.has("model.flip_blend")) model.flip_blend = values.number("model.flip_blend");
   model.time_step = values.number_unless("model.time_step", "auto");

@@ -23,6 +23,7 @@ yield           = "papanastasiou"
 regularisation  = "5 s"
 scheme          = "explicit_usf"
 shape           = "gimp"
+pressure        = "cell"
 time_step       = "1e-4 s"
 cell            = "15 mm"
 points_per_cell = 2

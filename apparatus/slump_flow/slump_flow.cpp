@@ -2,13 +2,22 @@
 
 #include <stdexcept>
 
-#include "apparatus/slump_flow/engine.hpp"
+#include "apparatus/slump_flow/engines.hpp"
+#include "apparatus/slump_flow/explicit_engine.hpp"
 
 namespace tremie::slump_flow {
 namespace {
 
+bool is_explicit(const Model& model) { return model.scheme != SchemeKind::implicit; }
+
 void refuse_what_has_no_engine(const Scene& scene) {
-  engine::refuse_what_has_no_engine(scene.model, "slump flow");
+  if (is_explicit(scene.model) && scene.model.yield == YieldKind::exact)
+    throw std::invalid_argument(
+        "model.yield: \"exact\" has an unbounded viscosity at rest, for which no explicit step is short "
+        "enough; give \"papanastasiou\" or \"bi_viscous\", or model.scheme = \"implicit\"");
+  if (!is_explicit(scene.model) && scene.model.shape == ShapeKind::gimp)
+    throw std::invalid_argument(
+        "model.shape: \"gimp\" goes with model.scheme = \"explicit\" or \"explicit_usf\"");
 }
 
 template <class Space>
@@ -17,7 +26,29 @@ void count(const Scene& scene, Estimate& e) {
   activate(body.grid, body.points);
   e.points = static_cast<std::int64_t>(body.points.size());
   e.cells_active = body.grid.n_cells();
-  e.bytes_per_point = bytes_per_point<Space::dim>(body.points.thixotropic());
+  const bool thixotropic = body.points.thixotropic();
+  e.bytes_per_point = is_explicit(scene.model) ? explicit_bytes_per_point<Space::dim>(thixotropic)
+                                               : bytes_per_point<Space::dim>(thixotropic);
+}
+
+/// Longest step of an explicit scheme at the start [s].
+double first_explicit_step(const Scene& scene) {
+  const Model& model = scene.model;
+  double lambda = 0.0;
+  if (scene.mix.thixotropy) {
+    const Thixotropy& t = *scene.mix.thixotropy;
+    lambda = flocculation_after_rest(t.initial_flocculation, t, scene.mix.tau_0, scene.rest);
+  }
+  const ExplicitSettings settings = explicit_settings(scene);
+  const auto limit = [&](const auto& law) {
+    return stability_limits(scene.mix, law, static_yield_stress(lambda, scene.mix.tau_0),
+                            largest_eigenvalues(shape_of<ThreeD>(model).kind),
+                            std::min(model.cell[0], model.cell[1]))
+        .together;
+  };
+  return settings.safety * (model.yield == YieldKind::papanastasiou
+                                ? limit(Papanastasiou{model.regularisation})
+                                : limit(BiViscous{model.critical_shear_rate}));
 }
 
 }  // namespace
@@ -25,10 +56,7 @@ void count(const Scene& scene, Estimate& e) {
 Outcome run(const Scene& scene, const Observer& observer) {
   refuse_what_has_no_engine(scene);
   omp_set_num_threads(scene.threads);
-  return engine::with_law(scene.model, [&](const auto& law) {
-    return scene.model.space == SpaceKind::axisymmetric ? run_in<Axisymmetric>(scene, law, observer)
-                                                        : run_in<ThreeD>(scene, law, observer);
-  });
+  return is_explicit(scene.model) ? run_explicit(scene, observer) : run_implicit(scene, observer);
 }
 
 Estimate estimate(const Scene& scene) {
@@ -38,6 +66,10 @@ Estimate estimate(const Scene& scene) {
     count<Axisymmetric>(scene, e);
   else
     count<ThreeD>(scene, e);
+  if (is_explicit(scene.model)) {
+    e.steps = std::llround(scene.duration / scene.model.time_step.value_or(first_explicit_step(scene)));
+    return e;
+  }
   const StepSettings settings = step_settings(scene);
   // The collapse runs at about sqrt(g H) for 0.4 s at the CFL limit, the rest of the flow at the largest
   // step.

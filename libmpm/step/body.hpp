@@ -27,9 +27,11 @@ struct StepSettings {
   double dt_max = 0.1;             ///< [s]
   double cfl = 0.6;                ///< largest move in a step, in cells
   double growth = 1.3;             ///< largest ratio of successive steps
+  double strays = 0.0;             ///< share of the points that may be drops in the air (strays.hpp)
   double friction_coefficient = 0.0;
   bool keep_forces = false;            ///< fill Body::wall_force and Body::dissipation
   double boundary_stiffness = 1000.0;  ///< of walls inside the grid, in m/dt
+  double alternating_viscosity = 0.0;  ///< zeta of yield_problem.hpp, in mu; plane strain alone
   double side_wall_distance = 0.0;     ///< of a width-averaged section [m]; 0: plane strain, no side walls
   double wall_gap = 0.0;               ///< how near a point may come to a rigid wall [m]
   double wall_penalty = 100.0;         ///< stiffness of a rigid wall, in m/dt
@@ -54,6 +56,7 @@ struct Body {
   Vec<D> gravity = Vec<D>::Zero();  ///< [m/s^2]
   Points<D> points;
   ActiveGrid<D> grid;
+  Motion<Space> motion{};                  ///< of the points
   WallVelocities<D> walls{};               ///< of the walls at the ends of the axes
   std::vector<BoundaryPoint<D>> boundary;  ///< walls inside the grid
   double time = 0.0, dt = 0.0;             ///< [s]; dt of the last step

@@ -6,6 +6,7 @@
 
 #include "libmpm/step/step_parts.hpp"
 #include "libmpm/step/step_size.hpp"
+#include "libmpm/step/strays.hpp"
 
 namespace tremie {
 
@@ -39,7 +40,7 @@ StepReport implicit_step(Body<Space>& body, const Law& law, const StepSettings& 
     solve = detail::solve_step(*posed, law, settings, body);
   }
   const YieldProblem<Space>& problem = *posed;
-  if (detail::runs_away(body, dt)) {
+  if (detail::runs_away(body, settings.strays, dt)) {
     body.v = v_old;
     return {.dt = dt, .converged = false, .failed = true, .iterations = solve.iterations};
   }
@@ -55,8 +56,10 @@ StepReport implicit_step(Body<Space>& body, const Law& law, const StepSettings& 
   const bool even = Space::advects && settings.even_out.on;
   const std::vector<Vec<D>> u =
       even ? detail::evening_shift(problem, settings, gamma_dot, body) : std::vector<Vec<D>>{};
-  grid_to_point(body.grid, body.v, v_old, settings.transfer, Space::advects ? dt : 0.0, body.points);
-  if (even) shift_points<D>(body.grid, u, body.points);
+  grid_to_point(body.grid, body.v, v_old, settings.transfer, Space::advects ? dt : 0.0, body.points,
+                body.motion);
+  if (settings.strays > 0.0) hold_strays<D>(body.grid.axes, dt, body.points);
+  if (even) shift_points<D>(body.grid, u, body.points, body.motion);
   body.time += dt;
   body.dt = dt;
 
@@ -65,7 +68,7 @@ StepReport implicit_step(Body<Space>& body, const Law& law, const StepSettings& 
           .converged = solve.converged,
           .iterations = solve.iterations,
           .max_speed = detail::max_speed(body.points),
-          .bulk_speed = detail::speed_of_most(body.points, detail::strays, speed),
+          .bulk_speed = detail::speed_of_most(body.points, detail::drops, speed),
           .shear_rate_mean = shear_rate_mean};
 }
 

@@ -66,6 +66,18 @@ void apply_flat_walls(const ActiveGrid<D>& grid, const WallVelocities<D>& walls,
     }
 }
 
+/// Blocks prescribe the velocities of their nodes.
+template <int D>
+void apply_blocks(const ActiveGrid<D>& grid, std::vector<char>& fixed, std::vector<Vec<D>>& v) {
+  if (grid.blocks.empty()) return;
+  for (int i = 0; i < grid.n_nodes(); ++i) {
+    const Block<D>* block = block_of_node<D>(grid, grid.node_index[i]);
+    if (!block) continue;
+    v[i] = block->velocity(grid.node_position(i));
+    for (int d = 0; d < D; ++d) fixed[i * D + d] = 1;
+  }
+}
+
 /// ln J of the points from the mean divergence of their cells, the same that the step's pressure used.
 template <class Space>
 void update_volumes(const YieldProblem<Space>& problem, const std::vector<Vec<Space::dim>>& v,
@@ -251,7 +263,9 @@ void pose(Body<Space>& body, const StepSettings& settings, const RigidWall<Space
   for (std::size_t i = 0; i < v_old.size(); ++i) body.nodes.v[i] = v_old[i] + dt * body.gravity;
   posed.emplace(YieldProblem<Space>{
       body.grid, body.quadrature, body.nodes, dt, body.mix.mu, body.mix.K, {}, {}, {}, {}, {}});
+  posed->zeta = settings.alternating_viscosity * body.mix.mu;
   apply_flat_walls<D>(body.grid, body.walls, posed->fixed, posed->friction, body.v);
+  apply_blocks<D>(body.grid, posed->fixed, body.v);
   if (settings.side_wall_distance > 0.0) add_side_walls(settings.side_wall_distance, *posed);
   posed->bound = find_bound_points(body.grid, body.nodes, body.boundary, dt, settings.boundary_stiffness);
   carry_friction<Space>(body.friction, old_nodes, body.grid, posed->friction);
@@ -274,18 +288,19 @@ SolveReport solve_step(YieldProblem<Space>& problem, const Law& law, const StepS
   return solve;
 }
 
-/// Whether the step would carry concrete a hundred cells or to nowhere. Nodes with next to no mass do not
-/// count: what they do moves no point.
+/// Whether the step would carry concrete a hundred cells or to nowhere: more of it than the share that may be
+/// drops in the air. Nodes with next to no mass do not count: what they do moves no point.
 template <class Space>
-bool runs_away(const Body<Space>& body, double dt) {
+bool runs_away(const Body<Space>& body, double drops, double dt) {
   const double reach = 100.0 * body.grid.cell_size_min();
-  double heaviest = 0.0;
-  for (double m : body.nodes.mass) heaviest = std::max(heaviest, m);
+  double heaviest = 0.0, total = 0.0, gone = 0.0;
+  for (double m : body.nodes.mass) heaviest = std::max(heaviest, m), total += m;
   for (std::size_t i = 0; i < body.v.size(); ++i) {
     if (!body.v[i].allFinite()) return true;
-    if (Space::advects && body.nodes.mass[i] > 1e-3 * heaviest && body.v[i].norm() * dt > reach) return true;
+    const double m = body.nodes.mass[i];
+    if (Space::advects && m > 1e-3 * heaviest && body.v[i].norm() * dt > reach) gone += m;
   }
-  return false;
+  return gone > drops * total;
 }
 
 }  // namespace tremie::detail

@@ -1,0 +1,126 @@
+#pragma once
+
+// The slump-flow test by explicit steps: many short ones between two readings.
+
+#include "apparatus/slump_flow/engine.hpp"
+#include "libmpm/step/explicit_step.hpp"
+
+namespace tremie::slump_flow {
+
+/// Simulated time between two lines of the series [s].
+inline constexpr double reading_interval = 0.02;
+
+inline ExplicitSettings explicit_settings(const Scene& scene) {
+  const StepSettings common = step_settings(scene);
+  ExplicitSettings settings;
+  settings.stress = scene.model.scheme == SchemeKind::explicit_usf ? StressUpdate::first : StressUpdate::last;
+  settings.transfer = common.transfer;
+  settings.cell_pressure = scene.model.pressure == PressureKind::cell;
+  settings.fixed_dt = scene.model.time_step;
+  settings.friction_coefficient = common.friction_coefficient;
+  settings.wall_gap = common.wall_gap;
+  settings.wall_speed = scene.lift_speed.value_or(0.0);
+  return settings;
+}
+
+/// A GIMP point is as large as it was seeded.
+template <class Space>
+Shape<Space::dim> shape_of(const Model& model) {
+  Shape<Space::dim> shape;
+  if (model.shape == ShapeKind::gimp) shape.kind = ShapeFunctions::gimp;
+  shape.half.fill(0.5 / model.points_per_cell[0]);
+  shape.half[Space::up] = 0.5 / model.points_per_cell[1];
+  return shape;
+}
+
+/// Bytes that one more point costs: what is sorted, and where it is sorted from.
+template <int D>
+std::int64_t explicit_bytes_per_point(bool thixotropic) {
+  return 2 * bytes_per_point<D>(thixotropic) + static_cast<std::int64_t>(sizeof(std::int32_t));
+}
+
+/// Counts of the steps that were longer than the scheme allows.
+struct LimitWatch {
+  std::int64_t beyond = 0;
+  double worst = 0.0;  ///< largest step over its limit
+  const char* which = "";
+  double limit = 0.0;
+
+  void see(const ExplicitReport& step) {
+    if (!step.beyond_limit) return;
+    ++beyond;
+    const bool viscous = step.limits.viscous < step.limits.acoustic;
+    const double shortest = std::min(step.limits.viscous, step.limits.acoustic);
+    if (step.dt / shortest <= worst) return;
+    worst = step.dt / shortest, limit = shortest;
+    which = viscous ? "viscous" : "acoustic";
+  }
+  void tell(std::int64_t steps, Checks& checks) const {
+    if (beyond == 0) return;
+    checks.stability_limit_exceeded = true;
+    char text[200];
+    std::snprintf(
+        text, sizeof text,
+        "%lld of %lld steps were longer than the explicit scheme is stable for: up to %.2f times the "
+        "%s limit of %.3g s (model.time_step)",
+        static_cast<long long>(beyond), static_cast<long long>(steps), worst, which, limit);
+    checks.reasons.push_back(text);
+  }
+};
+
+template <class Space, class Law>
+Outcome run_explicit_in(const Scene& scene, const Law& law, const Observer& observer) {
+  constexpr int D = Space::dim;
+  Body<Space> body = filled_cone<Space>(scene);
+  const ExplicitSettings settings = explicit_settings(scene);
+  const double start_mass = engine::total_mass(body.points);
+  RigidWall<D> wall;
+  if (scene.lift_speed) lifted_wall(scene, settings.wall_gap + 0.6 * scene.model.cell[0], wall);
+
+  Outcome outcome;
+  outcome.series.push_back(read(scene, body, {}));
+  if (observer.on_frame) observer.on_frame(engine::frame_of(body));
+  auto state = start_explicit(body, law, settings, shape_of<Space>(scene.model));
+  engine::RestWatch watch;
+  LimitWatch limits;
+  bool stopped = false;
+  double next_frame = scene.frame_interval;
+  while (!stopped && body.time < scene.duration - 0.5 * state.next_dt) {
+    if (scene.lift_speed && rim_height(scene, body.time) > outcome.series.back().height + 0.02) wall = {};
+    const double until = std::min(body.time + reading_interval, scene.duration);
+    StepReport step;
+    do {
+      const ExplicitReport one = explicit_step(body, law, settings, state, wall);
+      limits.see(one);
+      step = {.dt = one.dt, .converged = true, .failed = one.failed, .max_speed = one.max_speed};
+      step.shear_rate_mean = one.shear_rate_mean;
+      outcome.cost.steps += 1;
+    } while (!step.failed && body.time < until - 0.5 * state.next_dt);
+    if (engine::gave_up(step, outcome.status, outcome.checks, body.time)) break;
+    write_back(state, body);
+    activate(body.grid, body.points);
+    outcome.cost.cells_active = std::max<std::int64_t>(outcome.cost.cells_active, body.grid.n_cells());
+    outcome.series.push_back(read(scene, body, step));
+    if (observer.on_step) observer.on_step(outcome.series.back());
+    if (observer.on_frame && body.time >= next_frame) {
+      observer.on_frame(engine::frame_of(body));
+      next_frame += scene.frame_interval;
+    }
+    const Sample& now = outcome.series.back();
+    const bool clear = !scene.lift_speed || rim_height(scene, now.time) > now.height + scene.model.cell[1];
+    stopped = watch.at_rest(clear, now.max_speed, now.time);
+    if (observer.interrupted && *observer.interrupted) {
+      outcome.status = Status::interrupted;
+      break;
+    }
+  }
+  read_results(watch, stopped, outcome);
+  limits.tell(outcome.cost.steps, outcome.checks);
+  engine::judge(body, start_mass, outcome.checks, outcome.cost);
+  outcome.cost.bytes_per_point = explicit_bytes_per_point<D>(body.points.thixotropic());
+  outcome.final_frame = engine::frame_of(body);
+  if (observer.on_frame) observer.on_frame(outcome.final_frame);
+  return outcome;
+}
+
+}  // namespace tremie::slump_flow

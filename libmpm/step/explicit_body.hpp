@@ -1,0 +1,59 @@
+#pragma once
+
+// What an explicit step needs beside the body: its settings, the points side by side on their tiles, and what
+// it reports.
+
+#include <cstdint>
+#include <optional>
+
+#include "libmpm/points/lane_points.hpp"
+#include "libmpm/step/body.hpp"
+#include "libmpm/step/explicit_limits.hpp"
+
+namespace tremie {
+
+enum class StressUpdate {
+  last,  ///< USL: with the velocities at the end of the step, which also move the points
+  first  ///< USF: with the velocities of the points brought back to the grid, before the forces
+};
+
+struct ExplicitSettings {
+  StressUpdate stress = StressUpdate::last;
+  Transfer transfer;
+  bool cell_pressure = true;       ///< one divergence and one pressure row a cell, against locking
+  std::optional<double> fixed_dt;  ///< [s]; empty: `safety` times the stability limit
+  double safety = 0.8;
+  double dt_max = 0.01;  ///< [s]
+  double cfl = 0.2;      ///< largest move in a step of a chosen length, in cells
+  double friction_coefficient = 0.0;
+  double wall_gap = 0.0;    ///< how near a point may come to a rigid wall [m]
+  double wall_speed = 0.0;  ///< of a rigid wall, at most [m/s]
+};
+
+struct ExplicitReport {
+  double dt = 0.0;               ///< [s]
+  StabilityLimits limits = {};   ///< at the start of the step
+  bool beyond_limit = false;     ///< dt was longer than one of them
+  bool failed = false;           ///< a point moved half a cell in the step, or is not finite
+  double max_speed = 0.0;        ///< of the points [m/s]
+  double shear_rate_mean = 0.0;  ///< volume mean [1/s]
+};
+
+/// The body on its tiles. body.points is what it was at the last write_back.
+template <class Space>
+struct ExplicitState {
+  static constexpr int D = Space::dim;
+  Shape<D> shape;
+  LanePoints<D> points;
+  TileGrid<D> grid;
+  double next_dt = 0.0;     ///< of the step to come [s]
+  double drift = 0.0;       ///< no point is further from where it was sorted, in cells
+  double max_speed = 0.0;   ///< of the points [m/s]
+  double lambda_max = 0.0;  ///< largest flocculation in a point
+  StabilityLimits limits;
+  std::vector<std::array<int, 3>> near_wall;  ///< tile, group and lane of what may touch a rigid wall soon
+  double wall_drift = 1e300;                  ///< since they were looked for [m]
+  std::int64_t sorts = 0;
+};
+
+}  // namespace tremie

@@ -1,0 +1,56 @@
+#pragma once
+
+// Parts of an explicit step: sorting the points, and how long the next step is.
+
+#include "libmpm/step/explicit_body.hpp"
+
+namespace tremie {
+
+/// Brings the state of the points to body.points.
+template <class Space>
+void write_back(ExplicitState<Space>& state, Body<Space>& body) {
+  write_back<Space::dim>(state.points, state.grid.axes, body.points);
+}
+
+namespace detail {
+
+/// Points are sorted anew before any can have left the cells that its tile sees: one cell beyond its own. A
+/// step may add half a cell.
+inline constexpr double drift_allowed = 0.45;
+
+template <class Space>
+void sort_points(Body<Space>& body, const ExplicitSettings& settings, ExplicitState<Space>& state) {
+  const bool flip = settings.transfer.flip;
+  constexpr int D = Space::dim;
+  lay_tiles(
+      state.grid,
+      sort_into_tiles<D>(state.grid.axes, state.shape.stencil_shift(), !flip, body.points, state.points),
+      flip);
+  state.drift = 0.0;
+  state.wall_drift = 1e300;
+  ++state.sorts;
+}
+
+/// Sorts the points again if they have drifted too far. The velocities on the grid stay.
+template <class Space>
+void sort_if_drifted(Body<Space>& body, const ExplicitSettings& settings, ExplicitState<Space>& state) {
+  if (state.drift <= drift_allowed) return;
+  write_back(state, body);
+  sort_points(body, settings, state);
+}
+
+/// The limits of the step to come, and its length.
+template <class Space, class Law>
+void choose_next_step(const Body<Space>& body, const Law& law, const ExplicitSettings& settings,
+                      ExplicitState<Space>& state) {
+  double h = state.grid.axes[0].h;
+  for (const Axis& a : state.grid.axes) h = std::min(h, a.h);
+  const double tau_y = static_yield_stress(state.lambda_max, body.mix.tau_0);
+  state.limits = stability_limits(body.mix, law, tau_y, largest_eigenvalues(state.shape.kind), h);
+  state.next_dt = settings.fixed_dt.value_or(
+      std::min({settings.dt_max, settings.safety * state.limits.together,
+                state.max_speed > 0.0 ? settings.cfl * h / state.max_speed : settings.dt_max}));
+}
+
+}  // namespace detail
+}  // namespace tremie

@@ -1,0 +1,95 @@
+#pragma once
+
+// One explicit step of the material point method, from top to bottom.
+
+#include "libmpm/contact/impulses.hpp"
+#include "libmpm/step/explicit_nodes.hpp"
+#include "libmpm/step/explicit_parts.hpp"
+#include "libmpm/step/explicit_pass.hpp"
+
+namespace tremie {
+
+/// Sorts the body's points into tiles and brings their mass, momentum and first stresses to the grid.
+template <class Space, class Law>
+ExplicitState<Space> start_explicit(Body<Space>& body, const Law& law, const ExplicitSettings& settings,
+                                    const Shape<Space::dim>& shape) {
+  ExplicitState<Space> state;
+  state.shape = shape;
+  state.grid.axes = body.grid.axes;
+  detail::sort_points(body, settings, state);
+  for (double lambda : body.points.lambda) state.lambda_max = std::max(state.lambda_max, lambda);
+  detail::choose_next_step(body, law, settings, state);
+  const detail::PassInput input{.impulse_dt = state.next_dt};
+  if (settings.stress == StressUpdate::last)
+    detail::pass_over_points<detail::first_sums, Space>(body.mix, law, settings, input, state);
+  else
+    detail::pass_over_points<detail::first_momenta, Space>(body.mix, law, settings, input, state);
+  return state;
+}
+
+/// Updates the stress last (USL): the velocities at the end of the step deform and move the points. Points to
+/// grid for the step to come happens in the same pass, with the impulses that the new stresses give in it.
+template <class Space, class Law>
+detail::PassSums stress_last(Body<Space>& body, const Law& law, const ExplicitSettings& settings,
+                             const RigidWall<Space::dim>& wall, double dt, ExplicitState<Space>& state) {
+  // Momentum balance on the grid; the stresses' impulses are in the momenta, but for FLIP.
+  const bool flip = settings.transfer.flip;
+  const Vec<Space::dim> pull = dt * body.gravity;
+  if (flip) {
+    detail::velocities_from_sums(body, state, 0.0, Vec<Space::dim>::Zero());
+    detail::add_impulses(body, state, settings.friction_coefficient, state.grid.forces, flip, pull);
+  } else {
+    detail::velocities_from_sums(body, state, settings.friction_coefficient, pull);
+  }
+  detail::push_off_wall(wall, body.time + dt, dt, settings.wall_gap, state);
+  if (flip) detail::finish_change(state);
+  detail::sort_if_drifted(body, settings, state);
+
+  // Grid to points, stress, motion, points to grid.
+  return detail::pass_over_points<detail::whole_pass, Space>(body.mix, law, settings, {dt, state.next_dt},
+                                                             state);
+}
+
+/// Updates the stress first (USF), the paper's order: with the points' velocities as the grid has them before
+/// the forces act.
+template <class Space, class Law>
+detail::PassSums stress_first(Body<Space>& body, const Law& law, const ExplicitSettings& settings,
+                              const RigidWall<Space::dim>& wall, double dt, ExplicitState<Space>& state) {
+  const bool flip = settings.transfer.flip;
+  detail::velocities_from_sums(body, state, 0.0, Vec<Space::dim>::Zero());
+  detail::sort_if_drifted(body, settings, state);
+  detail::PassSums sums =
+      detail::pass_over_points<detail::stress_pass, Space>(body.mix, law, settings, {dt, dt}, state);
+  detail::add_impulses(body, state, settings.friction_coefficient, state.grid.sums, flip, dt * body.gravity);
+  detail::push_off_wall(wall, body.time + dt, dt, settings.wall_gap, state);
+  if (flip) detail::finish_change(state);
+  sums.add(detail::pass_over_points<detail::motion_pass, Space>(body.mix, law, settings, {dt, 0.0}, state));
+  return sums;
+}
+
+/// Advances the body by one step. Its points are left on the tiles: write_back brings them to body.points.
+template <class Space, class Law>
+ExplicitReport explicit_step(Body<Space>& body, const Law& law, const ExplicitSettings& settings,
+                             ExplicitState<Space>& state, const RigidWall<Space::dim>& wall = {}) {
+  ExplicitReport report;
+  const double dt = state.next_dt;
+  report.dt = dt;
+  report.limits = state.limits;
+  report.beyond_limit = dt > state.limits.viscous || dt > state.limits.acoustic;
+  detail::choose_next_step(body, law, settings, state);
+
+  const detail::PassSums sums = settings.stress == StressUpdate::last
+                                    ? stress_last(body, law, settings, wall, dt, state)
+                                    : stress_first(body, law, settings, wall, dt, state);
+  body.time += dt;
+  body.dt = dt;
+  report.failed = sums.ran_away;
+  report.max_speed = state.max_speed = std::sqrt(sums.speed2);
+  report.shear_rate_mean = sums.volume > 0.0 ? sums.volume_rate / sums.volume : 0.0;
+  state.lambda_max = sums.lambda;
+  state.drift += sums.farthest;
+  state.wall_drift += sums.farthest * body.grid.axes[0].h + settings.wall_speed * dt;
+  return report;
+}
+
+}  // namespace tremie

@@ -1,0 +1,217 @@
+#pragma once
+
+// Shape functions of eight points at once, and the sums over a point's 3^D controls.
+
+#include "libmpm/grid/tiles.hpp"
+#include "libmpm/law/lanes.hpp"
+
+namespace tremie {
+
+enum class ShapeFunctions {
+  b_spline,  ///< quadratic B-splines with open ends at walls (grid/axis.hpp)
+  gimp       ///< linear hats averaged over the point's own extent (Bardenhagen and Kober 2004)
+};
+
+/// What the explicit steps need to know of the shape functions.
+template <int D>
+struct Shape {
+  ShapeFunctions kind = ShapeFunctions::b_spline;
+  std::array<double, D> half{};  ///< GIMP: half of a point's extent, in cells; at most 1/2
+
+  double stencil_shift() const { return kind == ShapeFunctions::gimp ? 0.5 : 0.0; }
+  /// Control that lies on a low wall.
+  int low_wall() const { return kind == ShapeFunctions::gimp ? 1 : 0; }
+  /// Place of a control [m].
+  double control_position(const Axis& axis, int control) const {
+    if (kind == ShapeFunctions::gimp) return axis.origin + (control - 1) * axis.h;
+    return axis.control_position(control);
+  }
+};
+
+/// Values, slopes [1/m] and arms times values [m] of eight points' three controls in each direction, and
+/// where their stencils begin in the tile's cube.
+template <int D>
+struct Weights {
+  std::array<std::array<Lanes, 3>, D> w, dw, wa;
+  std::array<Lanes, D> inertia;  ///< sum of w times arm squared [m^2]
+  std::array<int, n_lanes> base;
+};
+
+/// Cells of a tile in each direction that a point may have its pressure in.
+inline constexpr int tile_pressure_cells = tile_cells + 3;
+
+namespace detail {
+
+inline void b_spline_weights(const Axis& axis, const Lanes& cell_index, const Lanes& s, Lanes (&w)[3],
+                             Lanes (&dw)[3], Lanes (&arm)[3]) {
+  const Lanes one = all_lanes(1.0), half = all_lanes(0.5), t = 1.0 - s;
+  const LaneMask low = axis.wall_low() ? cell_index == 0.0 : one < 0.0;
+  const LaneMask high = axis.wall_high() ? cell_index == double(axis.n_cells - 1) : one < 0.0;
+  const Lanes a = low ? one : half, b = high ? one : half;
+  const double ih = 1.0 / axis.h;
+  w[0] = a * t * t, dw[0] = (-2.0 * ih) * a * t;
+  w[2] = b * s * s, dw[2] = (2.0 * ih) * b * s;
+  w[1] = 1.0 - w[0] - w[2], dw[1] = -dw[0] - dw[2];
+  arm[0] = axis.h * ((low ? one - 1.0 : -half) - s);
+  arm[1] = axis.h * (0.5 - s);
+  arm[2] = axis.h * ((high ? one : one + 0.5) - s);
+}
+
+/// u: distance from the nearest corner, in cells. A point whose extent would reach beyond a wall is taken
+/// without extent: linear hats, whose control on the wall sets the velocity of the whole wall.
+inline void gimp_weights(const Axis& axis, double half, const Lanes& corner_index, const Lanes& u,
+                         Lanes (&w)[3], Lanes (&dw)[3], Lanes (&arm)[3]) {
+  const Lanes none = {}, one = none + 1.0;
+  const double ih = 1.0 / axis.h;
+  const LaneMask wall = (axis.wall_low() ? corner_index == 0.0 : one < 0.0) |
+                        (axis.wall_high() ? corner_index == double(axis.n_cells) : one < 0.0);
+  const LaneMask smooth = (u < half) & (u > -half) & ~wall;
+  const Lanes below = half - u, above = half + u;
+  w[0] = smooth ? below * below * (0.25 / half) : max(-u, none);
+  w[2] = smooth ? above * above * (0.25 / half) : max(u, none);
+  w[1] = 1.0 - w[0] - w[2];
+  dw[0] = ih * (smooth ? below * (-0.5 / half) : (u < 0.0 ? -one : none));
+  dw[2] = ih * (smooth ? above * (0.5 / half) : (u < 0.0 ? none : one));
+  dw[1] = -dw[0] - dw[2];
+  for (int k = 0; k < 3; ++k) arm[k] = axis.h * ((k - 1) - u);
+}
+
+}  // namespace detail
+
+/// Cells of eight points at x, numbered within a tile.
+template <int D>
+void find_pressure_cells(const std::array<Axis, D>& axes, const Shape<D>& shape, const Index<D>& tile,
+                         const std::array<Lanes, D>& x, std::array<int, n_lanes>& cells) {
+  Lanes cell = {};
+  const Lanes low = all_lanes(shape.kind == ShapeFunctions::gimp ? -2.0 : -1.0), high = all_lanes(tile_cells);
+  for (int d = 0; d < D; ++d) {
+    const Lanes X = (x[d] - axes[d].origin) * (1.0 / axes[d].h) - tile[d] * tile_cells;
+    cell = cell * tile_pressure_cells + (min(max(floor(X), low), high) + 2.0);
+  }
+  for (int l = 0; l < n_lanes; ++l) cells[static_cast<std::size_t>(l)] = static_cast<int>(cell[l]);
+}
+
+/// Weights of eight points at x in a tile. Points more than a cell outside of it are taken at its rim: the
+/// caller makes sure that there are none.
+template <int D>
+void weigh(const std::array<Axis, D>& axes, const Shape<D>& shape, const Index<D>& tile,
+           const std::array<Lanes, D>& x, Weights<D>& weights) {
+  Lanes base = {};
+  const Lanes low = all_lanes(-1.0), high = all_lanes(tile_cells);
+  for (int d = 0; d < D; ++d) {
+    const Axis& axis = axes[d];
+    const double first = tile[d] * tile_cells;
+    const Lanes X = (x[d] - axis.origin) * (1.0 / axis.h) - first;
+    Lanes w[3], dw[3], arm[3], at;
+    if (shape.kind == ShapeFunctions::gimp) {
+      at = min(max(floor(X + 0.5), low), high);
+      detail::gimp_weights(axis, shape.half[d], at + first, X - at, w, dw, arm);
+    } else {
+      at = min(max(floor(X), low), high);
+      detail::b_spline_weights(axis, at + first, X - at, w, dw, arm);
+    }
+    base = base * tile_span + (at + 1.0);
+    weights.inertia[d] = Lanes{};
+    for (int k = 0; k < 3; ++k) {
+      weights.w[d][k] = w[k], weights.dw[d][k] = dw[k], weights.wa[d][k] = w[k] * arm[k];
+      weights.inertia[d] += weights.wa[d][k] * arm[k];
+    }
+  }
+  for (int l = 0; l < n_lanes; ++l) weights.base[static_cast<std::size_t>(l)] = static_cast<int>(base[l]);
+}
+
+/// Weights of one point: what the sums below take. n: controls a direction.
+template <int D, int n>
+struct PointWeights {
+  static constexpr int n_controls = n;
+  double w[D][n], dw[D][n], wa[D][n];
+};
+
+template <int D>
+PointWeights<D, 3> of_lane(const Weights<D>& weights, int l) {
+  PointWeights<D, 3> one;
+  for (int d = 0; d < D; ++d)
+    for (int k = 0; k < 3; ++k) {
+      one.w[d][k] = weights.w[d][k][l];
+      one.dw[d][k] = weights.dw[d][k][l];
+      one.wa[d][k] = weights.wa[d][k][l];
+    }
+  return one;
+}
+
+/// What is summed up beside the value.
+struct Wanted {
+  bool slopes = true, moments = true;
+};
+inline constexpr Wanted slopes_and_moments{}, slopes_only{.moments = false}, moments_only{.slopes = false},
+    value_only{.slopes = false, .moments = false};
+
+/// A nodal field at a point: its value and, as wanted, its slopes and first moments, each direction factored
+/// out in turn.
+template <int R, Wanted wanted>
+struct Gathered {
+  NodeLanes value = {};
+  NodeLanes slope[wanted.slopes && R > 0 ? R : 1] = {};
+  NodeLanes moment[wanted.moments && R > 0 ? R : 1] = {};
+};
+
+template <int D, int n, Wanted wanted, int d = 0>
+[[gnu::always_inline]] inline Gathered<D - d, wanted> gather(const NodeLanes* node,
+                                                             const PointWeights<D, n>& p) {
+  Gathered<D - d, wanted> sum;
+  if constexpr (d == D) {
+    sum.value = *node;
+  } else {
+    for (int k = 0; k < n; ++k) {
+      const auto part = gather<D, n, wanted, d + 1>(node + k * stride<D>(tile_span, d), p);
+      sum.value += p.w[d][k] * part.value;
+      if constexpr (wanted.slopes) {
+        sum.slope[0] += p.dw[d][k] * part.value;
+        for (int e = 1; e < D - d; ++e) sum.slope[e] += p.w[d][k] * part.slope[e - 1];
+      }
+      if constexpr (wanted.moments) {
+        sum.moment[0] += p.wa[d][k] * part.value;
+        for (int e = 1; e < D - d; ++e) sum.moment[e] += p.w[d][k] * part.moment[e - 1];
+      }
+    }
+  }
+  return sum;
+}
+
+/// Adds to every control value times w plus, for each direction e, slope[e] times the gradient's and
+/// moment[e] times the arm's component e.
+template <int D, int n, int d = 0>
+[[gnu::always_inline]] inline void scatter(NodeLanes* node, const PointWeights<D, n>& p,
+                                           const NodeLanes (&along)[D][n], const NodeLanes& carried,
+                                           const NodeLanes& weight) {
+  for (int k = 0; k < n; ++k) {
+    const NodeLanes next = p.w[d][k] * carried + weight * along[d][k];
+    NodeLanes* const at = node + k * stride<D>(tile_span, d);
+    if constexpr (d == D - 1)
+      *at += next;
+    else
+      scatter<D, n, d + 1>(at, p, along, next, p.w[d][k] * weight);
+  }
+}
+
+template <int D, int n>
+[[gnu::always_inline]] inline void scatter(NodeLanes* node, const PointWeights<D, n>& p,
+                                           const NodeLanes& value, const NodeLanes (&slope)[D],
+                                           const NodeLanes (&moment)[D]) {
+  NodeLanes along[D][n];
+  for (int d = 0; d < D; ++d)
+    for (int k = 0; k < n; ++k) along[d][k] = p.dw[d][k] * slope[d] + p.wa[d][k] * moment[d];
+  scatter<D, n, 0>(node, p, along, value, NodeLanes{} + 1.0);
+}
+
+/// Rows of four (one a point) to columns of eight (one a component), and back.
+inline void to_columns(const NodeLanes (&row)[n_lanes], Lanes (&column)[4]) {
+  for (int c = 0; c < 4; ++c)
+    for (int l = 0; l < n_lanes; ++l) column[c][l] = row[l][c];
+}
+inline void to_rows(const Lanes (&column)[4], NodeLanes (&row)[n_lanes]) {
+  for (int l = 0; l < n_lanes; ++l)
+    row[l] = NodeLanes{column[0][l], column[1][l], column[2][l], column[3][l]};
+}
+
+}  // namespace tremie

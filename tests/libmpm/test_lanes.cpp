@@ -1,0 +1,200 @@
+// Eight points at once: functions, laws, rates and shape functions against their scalar twins.
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "libmpm/law/lane_laws.hpp"
+#include "libmpm/space/gradients.hpp"
+#include "libmpm/transfer/lane_stencils.hpp"
+
+namespace tremie {
+namespace {
+
+Lanes random_lanes(std::mt19937& random, double low, double high) {
+  std::uniform_real_distribution<double> u(low, high);
+  Lanes a;
+  for (int l = 0; l < n_lanes; ++l) a[l] = u(random);
+  return a;
+}
+
+// Four units in the last place: the polynomial's rounding.
+TEST(LaneFunctions, ExpAndMeanDecay) {
+  std::mt19937 random(1);
+  for (int i = 0; i < 2000; ++i) {
+    const double reach = std::pow(10.0, -8.0 + 10.8 * i / 2000.0);
+    const Lanes x = random_lanes(random, -reach, reach), y = exp(x);
+    const Lanes z = x < 0.0 ? -x : x, d = mean_decay(z);
+    for (int l = 0; l < n_lanes; ++l) {
+      EXPECT_NEAR(y[l] / std::exp(x[l]), 1.0, 1e-15);
+      EXPECT_NEAR(d[l] / (-std::expm1(-z[l]) / z[l]), 1.0, 2e-15);
+    }
+  }
+  EXPECT_EQ(exp(Lanes{})[0], 1.0);
+  EXPECT_EQ(mean_decay(Lanes{})[0], 1.0);
+  EXPECT_GT(exp(all_lanes(-1e5))[3], 0.0);
+  EXPECT_TRUE(std::isfinite(exp(all_lanes(1e5))[3]));
+}
+
+TEST(LaneFunctions, Floor) {
+  const Lanes x = {-2.0, -1.5, -0.1, 0.0, 0.1, 1.0, 1.9, 1e6 + 0.5}, f = floor(x);
+  for (int l = 0; l < n_lanes; ++l) EXPECT_EQ(f[l], std::floor(x[l]));
+}
+
+TEST(LaneLaws, AsTheScalarLaws) {
+  std::mt19937 random(2);
+  for (int i = 0; i < 500; ++i) {
+    const Lanes gamma = random_lanes(random, 0.0, std::pow(10.0, -9.0 + i / 45.0));
+    const Lanes tau_y = random_lanes(random, 1.0, 900.0);
+    const Papanastasiou smooth{5.0};
+    const BiViscous broken{0.01};
+    const Lanes a = secant(smooth, gamma, tau_y), b = secant(broken, gamma, tau_y);
+    for (int l = 0; l < n_lanes; ++l) {
+      EXPECT_NEAR(a[l] / smooth.secant(gamma[l], tau_y[l]), 1.0, 1e-10);  // the scalar series below 1e-5
+      EXPECT_DOUBLE_EQ(b[l], broken.secant(gamma[l], tau_y[l]));
+      EXPECT_LE(a[l], largest_secant(smooth, tau_y[l]) * (1.0 + 1e-15));
+      EXPECT_LE(b[l], largest_secant(broken, tau_y[l]));
+    }
+  }
+}
+
+// Both kinetics at rates on either side of the gate and across it.
+TEST(LaneLaws, FlocculationAsTheScalarUpdate) {
+  std::mt19937 random(3);
+  for (const Kinetics kinetics : {Kinetics::gated, Kinetics::roussel})
+    for (int i = 0; i < 500; ++i) {
+      const Thixotropy t{1.3, 0.03, kinetics, 0.1, 0.0};
+      const Lanes lambda = random_lanes(random, 0.0, 7.0);
+      const Lanes g0 = random_lanes(random, 0.0, i % 2 ? 0.2 : 10.0);
+      const Lanes g1 = random_lanes(random, 0.0, i % 3 ? 0.2 : 10.0);
+      const Lanes next = flocculation_step(lambda, t, 54.0, g0, g1, 0.37);
+      for (int l = 0; l < n_lanes; ++l)
+        EXPECT_NEAR(next[l], flocculation_step(lambda[l], t, 54.0, g0[l], g1[l], 0.37), 1e-13);
+    }
+}
+
+template <class Space>
+class Gradients : public testing::Test {};
+using SpaceTypes = testing::Types<Axisymmetric, PlaneStrain, ThreeD>;
+TYPED_TEST_SUITE(Gradients, SpaceTypes);
+
+// q and div of a random stencil are the sums of the space's rows, and the power of a stress is s.q - p div.
+TYPED_TEST(Gradients, AreTheRowsSummedUp) {
+  constexpr int D = TypeParam::dim, ns = TypeParam::n_strain;
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  const Vec<D> x = Vec<D>::Constant(0.3);
+  Vec<ns> q = Vec<ns>::Zero();
+  Vec<D> v = Vec<D>::Zero();
+  Mat<D, D> slope = Mat<D, D>::Zero();
+  double div = 0.0;
+  for (int i = 0; i < 9; ++i) {
+    const double N = u(random);
+    Vec<D> g, vi;
+    for (int d = 0; d < D; ++d) g[d] = u(random), vi[d] = u(random);
+    q += TypeParam::strain_rows(N, g, x) * vi;
+    div += TypeParam::divergence_row(N, g, x).dot(vi);
+    v += N * vi, slope += vi * g.transpose();
+  }
+  double L[D][D], rate[ns], divergence, s[ns], sigma[D][D], hoop;
+  for (int a = 0; a < D; ++a)
+    for (int b = 0; b < D; ++b) L[a][b] = slope(a, b);
+  strain_rate_of<TypeParam, double>(L, v[0], x[0], rate, divergence);
+  EXPECT_NEAR(divergence, div, 1e-13);
+  double power = 0.0;
+  for (int k = 0; k < ns; ++k) {
+    EXPECT_NEAR(rate[k], q[k], 1e-13);
+    s[k] = u(random), power += s[k] * q[k];
+  }
+  const double p = 3.7;
+  stress_tensor_of<TypeParam, double>(s, p, sigma, hoop);
+  double work = std::is_same_v<TypeParam, Axisymmetric> ? hoop * v[0] / x[0] : 0.0;
+  for (int a = 0; a < D; ++a)
+    for (int b = 0; b < D; ++b) work += sigma[a][b] * slope(a, b);
+  EXPECT_NEAR(work, power - p * div, 1e-12);
+}
+
+class ShapeFunctionsOfLanes : public testing::TestWithParam<ShapeFunctions> {};
+
+// Everywhere between two walls, in both shapes: values sum to one and give back the place, slopes those of
+// the place; none is negative, so that a control's mass is not. On a wall its control has all the weight.
+TEST_P(ShapeFunctionsOfLanes, PartitionOfUnityAndLinearFields) {
+  const std::array<Axis, 2> axes = {
+      Axis{.h = 0.02, .origin = -0.1, .low = FaceKind::no_slip, .high = FaceKind::no_slip, .n_cells = 6},
+      Axis{.h = 0.01, .low = FaceKind::free_slip}};
+  const Shape<2> shape{GetParam(), {0.25, 0.2}};
+  std::mt19937 random(5);
+  for (int i = 0; i < 300; ++i) {
+    const int tile = i % 2;  // the high wall lies in the second one
+    std::array<Lanes, 2> x = {random_lanes(random, -0.1 + 0.08 * tile, tile ? 0.02 : -0.02),
+                              random_lanes(random, 0.0, 0.04)};
+    if (i == 0) x[0] = all_lanes(-0.1);
+    Weights<2> weights;
+    weigh<2>(axes, shape, {tile, 0}, x, weights);
+    for (int d = 0; d < 2; ++d)
+      for (int l = 0; l < n_lanes; ++l) {
+        const int base = d == 0 ? weights.base[static_cast<std::size_t>(l)] / tile_span
+                                : weights.base[static_cast<std::size_t>(l)] % tile_span;
+        double one = 0.0, place = 0.0, flat = 0.0, slope = 0.0;
+        for (int k = 0; k < 3; ++k) {
+          const double at = shape.control_position(axes[d], (d == 0 ? tile : 0) * tile_cells - 1 + base + k);
+          const double w = weights.w[d][k][l], dw = weights.dw[d][k][l];
+          EXPECT_GE(w, -1e-16);
+          EXPECT_NEAR(weights.wa[d][k][l], w * (at - x[d][l]), 1e-15);
+          one += w, place += w * at, flat += dw, slope += dw * at;
+        }
+        EXPECT_NEAR(one, 1.0, 1e-14);
+        EXPECT_NEAR(place, x[d][l], 1e-15);
+        EXPECT_NEAR(flat, 0.0, 1e-11);
+        EXPECT_NEAR(slope, 1.0, 1e-12);
+      }
+    if (i == 0) {
+      EXPECT_NEAR(weights.w[0][GetParam() == ShapeFunctions::gimp ? 1 : 0][0], 1.0, 1e-15);
+    }
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Shapes, ShapeFunctionsOfLanes,
+                         testing::Values(ShapeFunctions::b_spline, ShapeFunctions::gimp));
+
+// Two points whose weights come from the factored sums see a quadratic field's values and slopes as the plain
+// sum over 27 controls does.
+TEST(FactoredSums, GatherAndScatterAreAdjoint) {
+  constexpr int D = 3;
+  std::array<Axis, D> axes;
+  for (Axis& a : axes) a = {.h = 0.1};
+  std::mt19937 random(6);
+  Weights<D> weights;
+  const std::array<Lanes, D> x = {random_lanes(random, 0.0, 0.4), random_lanes(random, 0.0, 0.4),
+                                  random_lanes(random, 0.0, 0.4)};
+  weigh<D>(axes, {}, {0, 0, 0}, x, weights);
+  std::array<NodeLanes, TileGrid<D>::tile_nodes> v, sums{};
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  for (NodeLanes& node : v) node = NodeLanes{u(random), u(random), u(random), u(random)};
+  const auto w = of_lane<D>(weights, 3);
+  const auto got = gather<D, 3, slopes_and_moments>(&v[weights.base[3]], w);
+  double value = 0.0, slope = 0.0, moment = 0.0;
+  for (int i = 0; i < 27; ++i) {
+    const Index<D> o = local_offset<D>(i);
+    const double n = v[weights.base[3] + o[0] * 64 + o[1] * 8 + o[2]][1];
+    value += w.w[0][o[0]] * w.w[1][o[1]] * w.w[2][o[2]] * n;
+    slope += w.w[0][o[0]] * w.dw[1][o[1]] * w.w[2][o[2]] * n;
+    moment += w.w[0][o[0]] * w.w[1][o[1]] * w.wa[2][o[2]] * n;
+  }
+  EXPECT_NEAR(got.value[1], value, 1e-14);
+  EXPECT_NEAR(got.slope[1][1], slope, 1e-12);
+  EXPECT_NEAR(got.moment[2][1], moment, 1e-15);
+
+  NodeLanes P = {1.0, -2.0, 0.5, 3.0}, S[D] = {P * 0.1, P * 0.2, P * 0.3}, Q[D] = {P * 2.0, P, P * -1.0};
+  scatter<D, 3>(&sums[weights.base[3]], w, P, S, Q);
+  double left = 0.0, right = 0.0;
+  for (std::size_t i = 0; i < v.size(); ++i)
+    for (int c = 0; c < 4; ++c) left += sums[i][c] * v[i][c];
+  for (int c = 0; c < 4; ++c) {
+    right += P[c] * got.value[c];
+    for (int d = 0; d < D; ++d) right += S[d][c] * got.slope[d][c] + Q[d][c] * got.moment[d][c];
+  }
+  EXPECT_NEAR(left, right, 1e-12);
+}
+
+}  // namespace
+}  // namespace tremie
