@@ -11,7 +11,7 @@
 //
 // with one unknown a cell in S, the pressures, coupled over two cells each way. For bodies of some thousand
 // cells S is factorised as a band. The band's n b^2 operations grow like n^(7/3); beyond, S is solved by
-// conjugate gradients of its own, to a twentieth: C^-1 bounds its condition, so that their number does not
+// conjugate gradients of its own, to a hundredth: C^-1 bounds its condition, so that their number does not
 // grow with the body.
 
 #include <omp.h>
@@ -44,7 +44,7 @@ class PressurePreconditioner {
                  const std::vector<double>& stiffness);
   void solve_by_rows();
 
-  static constexpr double most_band_operations = 2e9;
+  static constexpr double most_band_operations = 2e10;
   /// A row of S: its cells within two each way; an empty place is the cell itself with 0.
   struct Row {
     std::array<int, 125> cell;
@@ -143,14 +143,14 @@ inline bool PressurePreconditioner::build(const ActiveGrid<3>& grid, const CellB
   return !by_band_ || band_.factorise();
 }
 
-/// p <- S^-1 p to a twentieth, by conjugate gradients on the diagonally scaled S.
+/// p <- S^-1 p to a hundredth, by conjugate gradients on the diagonally scaled S.
 inline void PressurePreconditioner::solve_by_rows() {
   const Eigen::Index n = p_.size();
   Eigen::VectorXd r = p_.cast<double>(), z = r.cwiseQuotient(diagonal_.cast<double>()), d = z, Sd(n);
   Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
   double rz = block_dot(r, z);
-  const double enough = rz / 400.0;
-  for (int i = 0; i < 100 && rz > enough; ++i) {
+  const double enough = rz / 1e4;
+  for (int i = 0; i < 200 && rz > enough; ++i) {
 #pragma omp parallel for schedule(static)
     for (Eigen::Index c = 0; c < n; ++c) {
       double sum = 0.0;

@@ -34,20 +34,23 @@ double difference(const Points<3>& a, const Points<3>& b) {
   return worst;
 }
 
-// Both solve the same convex problem: with a tight tolerance the velocities agree to it, for a soft and a
-// stiff bulk modulus. The body slumps at about 0.3 m/s.
+// Both solve the same convex problem, for a soft and a stiff bulk modulus. The body slumps at about 0.3 m/s;
+// 2e-5 is ten times what a tolerance of 1e-5 leaves.
 TEST(SpaceSolver, AgreesWithTheFactorisedSystem) {
   omp_set_num_threads(1);
   for (double K : {33e3, 1e6}) {
     Body<ThreeD> direct = block(K), iterated = block(K);
-    StepSettings exact = by_iteration(1e-6), tight = exact;
+    StepSettings exact = by_iteration(1e-5), tight = exact;
+    exact.admm.max_iterations = tight.admm.max_iterations = 4000;
     exact.admm.direct_below = 1'000'000;
     exact.fixed_dt = tight.fixed_dt = 0.01;
     for (int i = 0; i < 3; ++i) {
       EXPECT_TRUE(implicit_step(direct, ExactBingham{}, exact).converged);
       EXPECT_TRUE(implicit_step(iterated, ExactBingham{}, tight).converged);
     }
-    EXPECT_LE(difference(direct.points, iterated.points), 5e-5);
+    const double worst = difference(direct.points, iterated.points);
+    std::printf("K = %.0f kPa: velocities differ by at most %.1e m/s\n", 1e-3 * K, worst);
+    EXPECT_LE(worst, 2e-5);
   }
 }
 
@@ -117,7 +120,7 @@ TEST(SpaceSolver, GradientsAndTheirAdjoint) {
 // A ball of Newtonian fluid that collapses on a slippery floor: its four quadrants stay mirror images to 1e-9
 // of its radius, and its mass is kept to the bit.
 TEST(SpaceSolver, BallCollapsesSymmetrically) {
-  omp_set_num_threads(2);
+  omp_set_num_threads(1);
   const double R = 0.06;
   Body<ThreeD> body;
   body.mix = concrete(0.0, 20.0);
@@ -148,7 +151,6 @@ TEST(SpaceSolver, BallCollapsesSymmetrically) {
   EXPECT_LE(top, 0.9 * top_before);
   EXPECT_LE(worst, 1e-9);
   EXPECT_EQ(total_mass(body.points), total_mass(start));
-  omp_set_num_threads(1);
 }
 
 }  // namespace
