@@ -196,6 +196,17 @@ void count_step(const Body<Space>& body, const StepReport& step, Checks& checks,
   cost.cells_active = std::max<std::int64_t>(cost.cells_active, body.grid.n_cells());
 }
 
+/// A step that the scene fixes is not bound to the cells: how many the fastest point crossed in it.
+template <class Space>
+void watch_fixed_step(const Body<Space>& body, const Model& model, const StepReport& step, Checks& checks) {
+  if (!model.time_step) return;
+  for (int d = 0; d < Space::dim; ++d) {
+    double v = 0.0;
+    for (const auto& vp : body.points.v) v = std::max(v, std::abs(vp[d]));
+    checks.cells_in_a_step = std::max(checks.cells_in_a_step, v * step.dt / body.grid.axes[d].h);
+  }
+}
+
 /// Ends a run whose last step failed: the points are where they were before it.
 inline bool gave_up(const StepReport& step, Status& status, Checks& checks, double time) {
   if (!step.failed) return false;
@@ -217,6 +228,12 @@ void judge(const Body<Space>& body, double start_mass, Checks& checks, Cost& cos
   if (checks.points_lost > 0)
     checks.reasons.push_back(std::to_string(checks.points_lost) +
                              " points left the domain or are not finite");
+  if (checks.cells_in_a_step > 1.0) {
+    checks.stability_limit_exceeded = true;
+    checks.reasons.push_back("model.time_step is too long: a point crossed " +
+                             std::to_string(std::lround(std::ceil(checks.cells_in_a_step))) +
+                             " cells in a step; up to one is trusted");
+  }
   cost.points = static_cast<std::int64_t>(body.points.size());
   cost.bytes_per_point = bytes_per_point<Space::dim>(body.points.thixotropic());
   cost.simulated = body.time;

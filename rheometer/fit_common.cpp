@@ -8,6 +8,28 @@
 
 namespace tremie {
 
+namespace {
+
+/// A record in a wrong unit fits as well as in the right one. Fresh concretes, mortars and pastes shear at
+/// stresses from a few Pa to, rested, a few kPa, and vanes turn at a few rev/s at most; what is far beyond is
+/// told.
+void judge_sizes(const TorqueRecord& record, const FitInput& input, FitResult& result) {
+  const double stress =
+      shear_stress_at(input.instrument.vane_radius,
+                      *std::max_element(record.torque.begin(), record.torque.end()), input.instrument);
+  if (stress < 1.0 || stress > 2e4)
+    result.reasons.push_back("the largest shear stress at the vane is " + std::to_string(stress) +
+                             " Pa, which no fresh concrete has: is the torque's unit right?");
+  const double speed = record.kind == RecordKind::flow_curve
+                           ? *std::max_element(record.omega.begin(), record.omega.end())
+                           : input.omega.value_or(0.0);
+  if (speed > angular_speed(10.0))
+    result.reasons.push_back("the vane turns at " + std::to_string(speed / angular_speed(1.0)) +
+                             " rev/s: is the speed's unit right?");
+}
+
+}  // namespace
+
 FitResult fit(const TorqueRecord& record, const FitInput& input) {
   check(input.instrument);
   const auto positive = [](const std::optional<double>& v, const char* what) {
@@ -18,8 +40,10 @@ FitResult fit(const TorqueRecord& record, const FitInput& input) {
   positive(input.mu, "the plastic viscosity");
   positive(input.omega, "the speed");
   positive(input.rest, "the rest");
-  return record.kind == RecordKind::flow_curve ? fitting::fit_flow_curve(record, input)
-                                               : fitting::fit_torque_decay(record, input);
+  FitResult result = record.kind == RecordKind::flow_curve ? fitting::fit_flow_curve(record, input)
+                                                           : fitting::fit_torque_decay(record, input);
+  judge_sizes(record, input, result);
+  return result;
 }
 
 namespace fitting {
@@ -83,24 +107,36 @@ std::optional<Estimate> tell(double value, double variance, double degrees, doub
 Estimate given(double value) { return {value, Interval{value, value}, true}; }
 
 void report(const Readings& readings, const LeastSquaresFit& fit, FitResult& result) {
+  double square = 0.0, left_out = 0.0;
   for (std::size_t i = 0; i < readings.size(); ++i) {
     if (fit.outlier[i]) {
       drop(result, readings.line[i], readings.x[i], readings.torque[i], "outlier from the fitted curve");
+      result.dropped_count += std::lround(readings.count[i]) - 1;  // the mean of so many rows
+      left_out += 1.0;
       continue;
     }
     result.curve.x.push_back(readings.x[i]);
     result.curve.observed.push_back(readings.torque[i]);
     result.curve.fitted.push_back(fit.fitted[i]);
     result.readings += std::lround(readings.count[i]);
+    square += fit.residual[i] * fit.residual[i];
   }
   result.scatter = fit.scatter;
   result.correlation = fit.correlation;
+  const auto n = static_cast<double>(readings.size());
+  const double misfit = 100.0 * std::sqrt(square / std::max(1.0, n - left_out));
   // An instrument's readings scatter by a few per cent; at this size the record is another material, unit or
   // speed.
-  if (fit.scatter > 0.25)
+  if (misfit > 25.0)
     result.reasons.push_back("the fitted curve misses the readings by " +
-                             std::to_string(std::lround(100.0 * fit.scatter)) +
+                             std::to_string(std::lround(misfit)) +
                              " % (root mean square): check units, speed and what was given as known");
+  // A stray reading is an outlier; a twentieth of a long record is a part that the model does not describe.
+  if (readings.size() >= 50 && left_out > 0.05 * n)
+    result.reasons.push_back(
+        std::to_string(std::lround(100.0 * left_out / n)) +
+        " % of the readings are off the fitted curve and were left out: the material does not "
+        "behave as the model, or what was given as known is not right");
 }
 
 }  // namespace fitting

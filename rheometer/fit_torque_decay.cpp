@@ -186,6 +186,38 @@ bool fill_jacobian(const DecayModel& model, const Layout& layout, const DecayPar
   return true;
 }
 
+/// What the model gave before. A fit asks for the same parameters twice or more (residuals, Jacobian, next
+/// pass), and for the Jacobian at parameters that hardly differ.
+struct Memory {
+  DecayParameters at{}, jacobian_at{};
+  std::vector<double> torque, jacobian;
+};
+
+/// Torque and, where it is asked for, the Jacobian; that of parameters within 0.5 % serves as well, as it
+/// differs by as much: the iterations still end where the residuals say, and the intervals move by less than
+/// 1 %.
+bool recall(const DecayModel& model, const Layout& layout, const DecayParameters& p, Memory& memory,
+            std::span<double> fitted, std::span<double> jacobian) {
+  if (memory.torque.empty() || p != memory.at) {
+    memory.torque.clear();
+    if (!evaluate(model, p, fitted)) return false;
+    memory.at = p;
+    memory.torque.assign(fitted.begin(), fitted.end());
+  }
+  std::copy(memory.torque.begin(), memory.torque.end(), fitted.begin());
+  if (jacobian.empty()) return true;
+  const bool near = std::equal(p.begin(), p.end(), memory.jacobian_at.begin(),
+                               [](double a, double b) { return std::abs(a - b) <= 5e-3 * std::abs(b); });
+  if (!near || memory.jacobian.empty()) {
+    memory.jacobian.clear();
+    if (!fill_jacobian(model, layout, p, fitted, jacobian)) return false;
+    memory.jacobian_at = p;
+    memory.jacobian.assign(jacobian.begin(), jacobian.end());
+  }
+  std::copy(memory.jacobian.begin(), memory.jacobian.end(), jacobian.begin());
+  return true;
+}
+
 LeastSquaresFit least_squares(const DecayModel& model, const Readings& r, const Layout& layout) {
   const DecayParameters lower{1e-6, 1e-6, 0.0, 0.0}, upper{1e6, 1e6, 1e4, 1e3};
   LeastSquaresProblem problem;
@@ -196,10 +228,9 @@ LeastSquaresFit least_squares(const DecayModel& model, const Readings& r, const 
     problem.lower.push_back(lower[index]);
     problem.upper.push_back(upper[index]);
   }
+  Memory memory;
   problem.model = [&](std::span<const double> p, std::span<double> fitted, std::span<double> jacobian) {
-    const DecayParameters all = layout.with(p);
-    return evaluate(model, all, fitted) &&
-           (jacobian.empty() || fill_jacobian(model, layout, all, fitted, jacobian));
+    return recall(model, layout, layout.with(p), memory, fitted, jacobian);
   };
   return fit_least_squares(
       problem, {.readings_in_time_order = true, .parameter_tolerance = 1e-5, .max_iterations = 60});
@@ -321,7 +352,7 @@ FitResult fit_torque_decay(const TorqueRecord& record, const FitInput& in) {
   Layout layout = first_guess(r, in);
   // so many rows tell more than the usual grid's error of 1e-4 of the torque
   const DecayModel model(in, r.x, record.torque.size() > 20000 ? 200 : 100);
-  search_alpha(model, r, in, layout);
+  search_alpha(DecayModel(in, r.x, 40), r, in, layout);  // it only has to tell the valley
   const LeastSquaresFit fit = least_squares(model, r, layout);
   const Teller told{layout, fit, layout.with(fit.parameters)};
   report(r, fit, result);

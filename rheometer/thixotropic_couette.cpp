@@ -18,7 +18,7 @@ namespace {
 /// [Pa].
 struct Gap {
   double tau_0 = 0.0, mu = 0.0, alpha = 0.0, build_rate = 0.0, gamma_c = 0.0, dx = 0.0;
-  bool gated = true;
+  bool gated = true, find_gate = true;
   std::vector<double> x, stress_share;  ///< ln(r/R_i) and (R_i/r)^2 of the nodes
   std::vector<char> flowing;            ///< the gate's side, gated alone
   std::function<double(double)> omega;
@@ -30,8 +30,13 @@ struct Gap {
     return (y[nodes()] * stress_share[i] - (1.0 + y[i]) * tau_0) / mu;
   }
 
+  bool breaks(std::size_t i, double e) const {
+    if (!gated) return true;
+    return find_gate ? flowing[i] != 0 : e >= gamma_c;
+  }
+
   double kinetics(std::size_t i, double lambda, double e) const {
-    if (gated && !flowing[i]) return build_rate;
+    if (!breaks(i, e)) return build_rate;
     return (gated ? 0.0 : build_rate) - alpha * lambda * std::max(0.0, e);
   }
 };
@@ -141,7 +146,7 @@ int solve_arrow(SUNLinearSolver solver, SUNMatrix, N_Vector x_vector, N_Vector b
   double pivot = speed_by_stress(gap, d_excess), right = b[n];
   for (std::size_t i = 0; i < n; ++i) {
     const double e = gap.excess(i, y);
-    if ((!gap.gated || gap.flowing[i]) && e > 0.0) {
+    if (e > 0.0 && gap.breaks(i, e)) {
       diagonal[i] += gap.alpha * (e - y[i] * gap.tau_0 / gap.mu);
       column[i] = gap.alpha * y[i] * gap.stress_share[i] / gap.mu;
     }
@@ -186,7 +191,7 @@ void check(const CouetteFlow& flow) {
     throw std::invalid_argument("A_thix, alpha, the critical shear rate and lambda must not be negative");
 }
 
-Gap make_gap(const CouetteFlow& flow, double width, int intervals) {
+Gap make_gap(const CouetteFlow& flow, double width, const CouetteOptions& options) {
   const Thixotropy& t = flow.thixotropy;
   Gap gap;
   gap.tau_0 = flow.bingham.tau_0;
@@ -195,8 +200,9 @@ Gap make_gap(const CouetteFlow& flow, double width, int intervals) {
   gap.build_rate = t.A_thix / flow.bingham.tau_0;
   gap.gamma_c = t.gamma_c;
   gap.gated = t.kinetics == Kinetics::gated;
-  gap.dx = width / intervals;
-  for (int i = 0; i <= intervals; ++i) {
+  gap.find_gate = options.find_gate;
+  gap.dx = width / options.intervals;
+  for (int i = 0; i <= options.intervals; ++i) {
     gap.x.push_back(i * gap.dx);
     gap.stress_share.push_back(std::exp(-2.0 * gap.x.back()));
   }
@@ -229,7 +235,7 @@ class Integrator {
     sundials_ok(IDASetErrHandlerFn(
                     m, [](int, const char*, const char*, char*, void*) {}, nullptr),
                 "IDASetErrHandlerFn");
-    if (gap_.gated) {
+    if (gap_.gated && gap_.find_gate) {
       sundials_ok(IDARootInit(m, static_cast<int>(gap_.nodes()), gate), "IDARootInit");
       sundials_ok(IDASetNoInactiveRootWarn(m), "IDASetNoInactiveRootWarn");
     }
@@ -319,8 +325,7 @@ double sheared_width(const CouetteFlow& flow, const Instrument& in) {
 std::optional<CouetteDecay> solve(const CouetteFlow& flow, std::span<const double> times,
                                   const Instrument& in, const CouetteOptions& options, double width,
                                   bool whole) {
-  Integrator integrator(make_gap(flow, width, options.intervals), flow.thixotropy.initial_flocculation,
-                        options);
+  Integrator integrator(make_gap(flow, width, options), flow.thixotropy.initial_flocculation, options);
   CouetteDecay result;
   for (const double x : integrator.gap().x) result.radius.push_back(in.vane_radius * std::exp(x));
   for (const double t : times) {

@@ -38,6 +38,9 @@ struct CouetteOptions {
   bool keep_profiles = false;
   /// false: the nodes are spent on the radii that can be sheared, with a margin; the far plug is left out.
   bool whole_gap = true;
+  /// true: a node that passes the gate is found as a root, and the integration starts anew behind it. false:
+  /// the error control steps over the kink.
+  bool find_gate = true;
 };
 
 /// The gap (or the part of it that is resolved) at one time; one entry a node, from the vane outwards.

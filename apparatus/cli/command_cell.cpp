@@ -60,8 +60,9 @@ std::vector<std::string> write(const cell::Scene& scene, scene::Outcome outcome,
 int run(const Options& options) {
   const Stopwatch watch;
   const cell::Scene scene = cell::read(options.scene, options.overrides);
-  report::RunFolder folder(options.out.empty() ? "runs/" + scene.name : options.out, options.force);
   const CellResult result = cell::run(scene);
+  const HeldInterrupts held;  // outlives the folder
+  report::RunFolder folder(options.out.empty() ? "runs/" + scene.name : options.out, options.force);
   scene::Outcome outcome = cell::outcome(scene, result);
   watch.stop(outcome.cost);
   const std::vector<std::string> notes = write(scene, outcome, folder.staging());

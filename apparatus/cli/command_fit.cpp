@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -182,7 +183,10 @@ void print_result(const FitResult& r) {
   if (r.plug) fmt::print("{:<22} {}\n", "plug", *r.plug ? "yes" : "no");
   fmt::print("{:<22} {} used, {} dropped, scatter {:.2g} %\n", "readings", r.readings, r.dropped_count,
              100.0 * r.scatter);
-  for (const DroppedPoint& p : r.dropped) fmt::print("{:<22} line {}: {}\n", "dropped", p.line, p.reason);
+  constexpr std::size_t most = 10;
+  for (std::size_t i = 0; i < std::min(most, r.dropped.size()); ++i)
+    fmt::print("{:<22} line {}: {}\n", "dropped", r.dropped[i].line, r.dropped[i].reason);
+  if (r.dropped.size() > most) fmt::print("{:<22} and more, named in summary.json\n", "dropped");
   for (const auto& note : r.notes) fmt::print("{:<22} {}\n", "note", note);
 }
 
@@ -191,6 +195,7 @@ int run(const Options& options) {
   const FitInput in = input_of(options);
   const FitResult result = read_and_fit(options, in);
   const std::string name = std::filesystem::path(options.data).stem().string();
+  const HeldInterrupts held;  // outlives the folder
   report::RunFolder folder(options.out.empty() ? "runs/" + name : options.out, options.force);
   scene::Outcome outcome;
   outcome.apparatus = "fit";

@@ -7,12 +7,14 @@
 #include <atomic>
 #include <ctime>
 #include <memory>
+#include <sstream>
 
 #include "apparatus/cli/commands.hpp"
 #include "apparatus/cli/progress.hpp"
 #include "apparatus/cli/set_option.hpp"
 #include "apparatus/report/result_files.hpp"
 #include "apparatus/report/run_folder.hpp"
+#include "apparatus/scene/error_estimate.hpp"
 #include "apparatus/scene/scene.hpp"
 
 namespace tremie::cli {
@@ -22,7 +24,8 @@ struct Options {
   std::string scene, out;
   std::vector<std::string> overrides;
   int threads = 1;
-  bool quiet = false, force = false;
+  bool quiet = false, force = false, with_error = false;
+  std::string accuracy;  ///< "1 %"; empty: the scene's own cells
 };
 
 std::atomic<bool> stop_requested{false};
@@ -61,6 +64,7 @@ int exit_code_of(const scene::Outcome& outcome) {
 
 void print_outcome(const scene::Outcome& outcome) {
   for (const auto& line : outcome.lines) fmt::print("{}\n", line);
+  for (const auto& line : scene::error_lines(outcome)) fmt::print("error           {}\n", line);
   const Checks& c = outcome.checks;
   fmt::print("checks          volume {:+.3g} %, mass {:.1e}, {} unconverged steps, {} points lost\n",
              100.0 * c.volume_change, c.mass_error, c.unconverged_steps, c.points_lost);
@@ -74,6 +78,47 @@ void print_reasons(const scene::Outcome& outcome) {
   for (const auto& reason : outcome.checks.reasons) fmt::print(stderr, "not to be trusted: {}\n", reason);
 }
 
+/// The relative accuracy that was asked for: "1 %".
+double accuracy_of(const std::string& text) {
+  std::istringstream in(text);
+  double percent = 0.0;
+  std::string unit;
+  const bool understood = (in >> percent >> unit) && unit == "%" && in.eof();
+  if (!understood || !(percent >= 0.01 && percent <= 50.0))
+    throw scene::InputError(fmt::format(
+        "--accuracy: \"{}\" is not understood; it takes a percentage of 0.01 % to 50 %: \"1 %\"", text));
+  return 0.01 * percent;
+}
+
+/// The scene with the cells that the accuracy wants; says the price first.
+scene::Scene with_cells_for(const scene::Scene& scene, const Options& options) {
+  scene::Observer observer;
+  observer.interrupted = &stop_requested;
+  const auto choice = scene::choose_cells(scene, accuracy_of(options.accuracy), observer);
+  auto overrides = options.overrides;
+  overrides.push_back(scene::cells_override(scene, choice.factor));
+  if (!options.quiet)
+    fmt::print("accuracy        {} wants {}, about {:.1f} s of CPU\n", options.accuracy, overrides.back(),
+               choice.cpu);
+  std::fflush(stdout);
+  return scene::read(options.scene, overrides);
+}
+
+/// An accuracy that was not reached is said.
+void note_accuracy(const Options& options, scene::Outcome& outcome) {
+  if (options.accuracy.empty() || outcome.status != Status::completed) return;
+  const auto& error = *outcome.error;
+  if (error.bars.empty()) {
+    outcome.checks.reasons.push_back("the accuracy cannot be judged: " + error.basis);
+    return;
+  }
+  const auto* value = std::get_if<double>(scene::find_result(outcome, error.bars.front().name));
+  const double reached = error.bars.front().error / std::abs(*value);
+  if (reached > accuracy_of(options.accuracy))
+    outcome.checks.reasons.push_back(fmt::format("the accuracy of {} was not reached: {} is good to {:.2g} %",
+                                                 options.accuracy, error.bars.front().name, 100.0 * reached));
+}
+
 scene::Outcome run_and_write(const scene::Scene& scene, const Options& options,
                              const report::RunFolder& folder, std::vector<std::string>& notes) {
   report::ResultFiles files(folder.staging(), scene.resolved);
@@ -85,16 +130,21 @@ scene::Outcome run_and_write(const scene::Scene& scene, const Options& options,
     ProgressLine line;
     if (!options.quiet) observer.on_progress = [&](const scene::Progress& progress) { line.show(progress); };
     outcome = scene::run(scene, observer);
+    if (options.with_error || !options.accuracy.empty())
+      outcome.error = scene::estimate_error(scene, outcome, observer);
   }
+  note_accuracy(options, outcome);
   notes = files.finish(outcome);
   return outcome;
 }
 
 int run(const Options& options) {
   auto scene = scene::read(options.scene, options.overrides);
-  scene::set_threads(scene, options.threads);
+  if (!options.accuracy.empty()) accuracy_of(options.accuracy);
   report::RunFolder folder(options.out.empty() ? "runs/" + scene.name : options.out, options.force);
   stop_on_interrupt();
+  if (!options.accuracy.empty()) scene = with_cells_for(scene, options);
+  scene::set_threads(scene, options.threads);
   std::vector<std::string> notes;
   const auto outcome = run_and_write(scene, options, folder, notes);
   folder.publish();
@@ -118,6 +168,11 @@ void add_command_run(CLI::App& app, int& exit_code) {
   command->add_option("--threads", options->threads, "Threads")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
+  command->add_flag("--with-error", options->with_error,
+                    "Also run coarser cells, and state the discretisation error of the result");
+  command->add_option(
+      "--accuracy", options->accuracy,
+      "Choose the cells for this accuracy, \"1 %\"; says the price first, implies --with-error");
   command->add_flag("--quiet", options->quiet, "Print nothing but errors");
   command->add_flag("--force", options->force, "Replace an earlier result in the folder");
   command->callback([options, &exit_code] { exit_code = run(*options); });

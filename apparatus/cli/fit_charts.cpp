@@ -30,7 +30,8 @@ const char* const line = "with lines linewidth 2 linecolor rgb '#0b5394'";
 std::string residual_chart(const FitResult& r, const char* x) {
   return head("residuals.svg", x, "residual in % of the fitted torque") +
          fmt::format(
-             "unset key\nplot 'fit.csv' every ::1 using 1:4 with points {}, 0 with lines linecolor rgb "
+             "unset key\nset xrange [0:*]\nplot 'fit.csv' every ::1 using 1:4 with points {}, 0 with lines "
+             "linecolor rgb "
              "'#0b5394'\n",
              readings_style(r));
 }
@@ -59,8 +60,26 @@ std::string flow_curve_chart(const FitResult& r, const Instrument& in) {
              line, r.tau_0->value, r.mu->value, readings_style(r));
 }
 
-std::string torque_speed_chart(const FitResult& r) {
-  std::string text = head("torque.svg", "speed in rev/s", "torque in N.m");
+/// Speed and fitted torque at many speeds from just above 0 on, as a gnuplot block; the readings' own where a
+/// parameter is not told.
+std::string fitted_curve(const FitResult& r, const Instrument& in) {
+  std::string data = "$fit << EOD\n";
+  const auto add = [&](double omega, double torque) {
+    data += fmt::format("{},{}\n", omega / two_pi, torque);
+  };
+  constexpr int pieces = 100;
+  if (r.tau_0 && r.mu && r.mu->value > 0.0 && !r.curve.x.empty())
+    for (int i = 0; i <= pieces; ++i) {
+      const double omega = r.curve.x.back() * (i + 0.01) / pieces;
+      add(omega, reiner_riwlin({r.tau_0->value, r.mu->value}, omega, in).torque);
+    }
+  else
+    for (std::size_t i = 0; i < r.curve.x.size(); ++i) add(r.curve.x[i], r.curve.fitted[i]);
+  return data + "EOD\n";
+}
+
+std::string torque_speed_chart(const FitResult& r, const Instrument& in) {
+  std::string text = head("torque.svg", "speed in rev/s", "torque in N.m") + fitted_curve(r, in);
   text += "set key top left\nset xrange [0:*]\n";
   if (r.plug_below) {
     const double edge = *r.plug_below / two_pi;
@@ -69,11 +88,10 @@ std::string torque_speed_chart(const FitResult& r) {
         "fillstyle solid noborder behind\nset label 1 'plug below {0:.3g} rev/s' at graph 0.02, graph 0.06\n",
         edge);
   }
-  return text +
-         fmt::format(
-             "plot 'fit.csv' every ::1 using 1:2 with points {} title 'readings', '' every ::1 using 1:3 {} "
-             "title 'Reiner-Riwlin'\n",
-             readings_style(r), line);
+  return text + fmt::format(
+                    "plot 'fit.csv' every ::1 using 1:2 with points {} title 'readings', $fit using 1:2 {} "
+                    "title 'Reiner-Riwlin'\n",
+                    readings_style(r), line);
 }
 
 std::string decay_charts(const FitResult& r) {
@@ -120,7 +138,7 @@ std::string fit_csv(const FitResult& r, const Instrument&) {
 
 std::string fit_charts(const FitResult& r, const Instrument& in) {
   if (r.kind == RecordKind::torque_decay) return decay_charts(r);
-  return torque_speed_chart(r) + flow_curve_chart(r, in) + residual_chart(r, "speed in rev/s");
+  return torque_speed_chart(r, in) + flow_curve_chart(r, in) + residual_chart(r, "speed in rev/s");
 }
 
 }  // namespace tremie::cli

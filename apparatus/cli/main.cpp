@@ -22,6 +22,7 @@ int run(int argc, char** argv) {
   tremie::cli::add_command_new(app, exit_code);
   tremie::cli::add_command_cell(app, exit_code);
   tremie::cli::add_command_fit(app, exit_code);
+  tremie::cli::add_command_verify(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

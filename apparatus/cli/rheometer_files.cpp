@@ -48,6 +48,15 @@ void Stopwatch::stop(Cost& cost) const {
   cost.peak_rss_bytes = std::int64_t{usage.ru_maxrss} * 1024;
 }
 
+HeldInterrupts::HeldInterrupts() {
+  sigset_t held;
+  sigemptyset(&held);
+  for (const int number : {SIGINT, SIGTERM}) sigaddset(&held, number);
+  sigprocmask(SIG_BLOCK, &held, &before_);
+}
+
+HeldInterrupts::~HeldInterrupts() { sigprocmask(SIG_SETMASK, &before_, nullptr); }
+
 std::string draw(const std::filesystem::path& folder, const std::string& script) {
   const auto gnuplot = report::find_program("gnuplot");
   if (gnuplot.empty()) return "gnuplot is not installed: no charts";

@@ -2,6 +2,8 @@
 
 // What the commands of the rheometer write beside what a run writes.
 
+#include <signal.h>
+
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -22,6 +24,19 @@ class Stopwatch {
 
  private:
   double cpu_, wall_;
+};
+
+/// While it lives, an interrupt waits: files are written to their end, or their folder taken away, in less
+/// than a second or two. It ends the program where the hold ends.
+class HeldInterrupts {
+ public:
+  HeldInterrupts();
+  ~HeldInterrupts();
+  HeldInterrupts(const HeldInterrupts&) = delete;
+  HeldInterrupts& operator=(const HeldInterrupts&) = delete;
+
+ private:
+  sigset_t before_;
 };
 
 /// Runs a gnuplot script in the folder. A note for a person where it could not.

@@ -11,7 +11,7 @@
 namespace tremie::icar_vane {
 namespace {
 
-constexpr double alpha_window = 5.0;  // [s]
+constexpr double alpha_window = 5.0;  // at most, where the record is as long [s]
 constexpr double end_average =
     0.5;  // over which the torques at the end are averaged: blades jitter as they cross cells [s]
 constexpr double agreement = 0.01;  // of the three torques, once steady
@@ -92,9 +92,9 @@ void read_decay(Outcome& outcome) {
   r.flocculation_apparent_start = lambda.front();
   const double start = time.front();
   for (double& t : time) t -= start;
-  const auto coefficient = exponential_coefficient(time, lambda, alpha_window);
+  r.alpha_window = std::min(alpha_window, time.back());
+  const auto coefficient = exponential_coefficient(time, lambda, r.alpha_window);
   if (coefficient) r.alpha_apparent = *coefficient / r.shear_rate_nominal;
-  r.alpha_window = alpha_window;
 }
 
 }  // namespace

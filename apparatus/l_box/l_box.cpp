@@ -7,6 +7,8 @@ namespace tremie::l_box {
 namespace {
 
 constexpr double reading_length = 0.02;  // over which the depths are averaged [m]
+constexpr double drops = 0.005;          // share of the points that may fall off the column's walls
+constexpr double share_of_time = 0.01;   // largest step, in the time since the start of the lift
 
 /// Coordinates: x from the back of the column, y from the floor; the gate stands at x = column_length.
 Body<PlaneStrain> filled_column(const Scene& scene) {
@@ -52,22 +54,20 @@ std::vector<BoundaryPoint<2>> front_wall(const Scene& scene, double time) {
   return points;
 }
 
-/// Depth of the concrete over [low, high], rows of height `row` counted from the floor up to the first that
-/// is less than half full: what clings to a wall higher up is no depth.
+/// Depth of the concrete over [low, high], as a ruler meets its surface: rows of height `row` are counted
+/// from the floor up to the first that is less than half full. What clings to a wall or falls higher up is no
+/// depth, and below the surface a row is full, however the points are spread in it.
 double depth(const Points<2>& points, double low, double high, double row) {
-  std::vector<double> fill;
+  std::vector<double> fill(2, 0.0);
   for (std::size_t p = 0; p < points.size(); ++p) {
     if (points.x[p][0] < low || points.x[p][0] >= high) continue;
     const std::size_t j = static_cast<std::size_t>(std::max(0.0, points.x[p][1]) / row);
-    if (j >= fill.size()) fill.resize(j + 1, 0.0);
+    if (j + 2 > fill.size()) fill.resize(j + 2, 0.0);
     fill[j] += points.volume(p) / ((high - low) * row);
   }
-  double sum = 0.0;
-  for (double share : fill) {
-    sum += share * row;
-    if (share < 0.5) break;
-  }
-  return sum;
+  std::size_t top = 0;
+  while (fill[top + 1] >= 0.5) ++top;
+  return row * (static_cast<double>(top) + std::min(1.0, fill[top]) + fill[top + 1]);
 }
 
 /// Distance of the front from the gate: of the outermost point that has company (three others less than half
@@ -135,6 +135,8 @@ template <class Law>
 Outcome run_plane(const Scene& scene, const Law& law, const Observer& observer) {
   Body<PlaneStrain> body = filled_column(scene);
   StepSettings settings = engine::step_settings(scene.model);
+  if (!scene.model.time_step) settings.strays = drops;
+  settings.alternating_viscosity = scene.alternating_viscosity;
   if (scene.model.space == SpaceKind::plane_with_side_walls) settings.side_wall_distance = scene.box.width;
   const double start_mass = engine::total_mass(body.points);
 
@@ -145,10 +147,13 @@ Outcome run_plane(const Scene& scene, const Law& law, const Observer& observer) 
   bool stopped = false;
   double next_frame = scene.frame_interval;
   while (!stopped && body.time < scene.duration * (1.0 - 1e-12)) {
-    settings.dt_max = std::min(StepSettings{}.dt_max, scene.duration - body.time);
+    // The films on the column's walls drain ever more slowly: so may the steps go.
+    settings.dt_max =
+        std::min(std::max(StepSettings{}.dt_max, share_of_time * body.time), scene.duration - body.time);
     body.boundary = front_wall(scene, body.time);
     const StepReport step = implicit_step(body, law, settings);
     engine::count_step(body, step, outcome.checks, outcome.cost);
+    engine::watch_fixed_step(body, scene.model, step, outcome.checks);
     if (engine::gave_up(step, outcome.status, outcome.checks, body.time)) break;
     outcome.series.push_back(read(body, scene, step));
     if (observer.on_step) observer.on_step(outcome.series.back());

@@ -32,6 +32,9 @@ struct Scene {
   Model model;
   double frame_interval = 0.5;  ///< simulated time between frames [s]
   int threads = 1;
+  /// Against velocities that alternate from node to node (libmpm/step/yield_problem.hpp), in plastic
+  /// viscosities; no scene key, for studies.
+  double alternating_viscosity = 100.0;
 };
 
 /// One line of timeseries.csv.

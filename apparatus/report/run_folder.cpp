@@ -13,7 +13,8 @@ namespace fs = std::filesystem;
 
 bool is_earlier_result(const fs::path& folder) {
   std::error_code error;
-  // a run leaves its scene, a fit its readings
+  // a run leaves its scene, a fit its readings, a verification its document
+  if (fs::exists(folder / "VERIFICATION.md", error)) return true;
   return fs::exists(folder / "summary.json", error) &&
          (fs::exists(folder / "scene.toml", error) || fs::exists(folder / "fit.csv", error));
 }

@@ -51,6 +51,14 @@ Json cost_json(const Cost& cost) {
           {"simulated_s", cost.simulated}};
 }
 
+Json error_json(const scene::ErrorEstimate& error) {
+  Json json = Json::object();
+  for (const auto& bar : error.bars) json[bar.name] = bar.error;
+  json["basis"] = error.basis;
+  json["cpu_s"] = error.cpu;
+  return json;
+}
+
 }  // namespace
 
 const char* status_name(Status status) {
@@ -74,6 +82,7 @@ std::string summary_json(const scene::Outcome& outcome) {
   json["results"] = to_json(outcome.results);
   json["checks"] = checks_json(outcome.checks);
   json["cost"] = cost_json(outcome.cost);
+  if (outcome.error) json["error"] = error_json(*outcome.error);
   return json.dump(2) + "\n";
 }
 

@@ -96,7 +96,7 @@ ApparatusKeys l_box_keys() {
   keys.schema.push_back(box_section());
   keys.schema.push_back(test_section());
   keys.schema.push_back(model_section({"plane", "plane_with_side_walls", "half", "full"},
-                                      {.cell = "10 mm", .points_per_cell = "4"}));
+                                      {.cell = "10 mm", .points_per_cell = "[16, 4]"}));
   keys.schema.push_back(output_section());
   return keys;
 }

@@ -58,6 +58,17 @@ struct ResultTable {
   std::vector<Column> columns;
 };
 
+/// Discretisation error of a result: half the width of a bar about it, in the unit of its name.
+struct ErrorBar {
+  std::string name;
+  double error = 0.0;
+};
+struct ErrorEstimate {
+  std::vector<ErrorBar> bars;
+  std::string basis;  ///< how they were found, or why there are none
+  double cpu = 0.0;   ///< that they cost [s]
+};
+
 struct Outcome {
   std::string apparatus;
   Status status = Status::completed;
@@ -70,6 +81,7 @@ struct Outcome {
   bool axisymmetric = false;       ///< points lie in the plane (r, 0, z) of a body of revolution
   bool pictured = true;            ///< tremie-picture has a way to draw it
   std::vector<ResultTable> tables = {};
+  std::optional<ErrorEstimate> error = {};  ///< where it was asked for
 };
 
 /// The value of a result by its name; nullptr where there is none.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "apparatus/engine.hpp"
 #include "apparatus/slump_flow/cone.hpp"
@@ -99,6 +100,15 @@ inline void read_results(const engine::RestWatch& watch, bool stopped, Outcome& 
   read_t500(outcome);
 }
 
+/// A body that is thinner than its cells has a spread that they do not resolve.
+inline void judge_depth(const Scene& scene, Outcome& outcome) {
+  const double R = 0.5 * outcome.results.spread, depth = volume(scene.cone) / (std::numbers::pi * R * R);
+  if (depth < 0.5 * scene.model.cell[1])
+    outcome.checks.reasons.push_back("the concrete is thinner than half a cell, " +
+                                     std::to_string(1e3 * depth).substr(0, 4) +
+                                     " mm on average: a smaller model.cell upwards");
+}
+
 inline void lifted_wall(const Scene& scene, double reach, RigidWall<2>& wall) {
   wall = lifted_wall(scene, reach);
 }
@@ -127,6 +137,7 @@ Outcome run_in(const Scene& scene, const Law& law, const Observer& observer) {
         scene.lift_speed && rim_height(scene, body.time) > outcome.series.back().height + 0.02;
     const StepReport step = implicit_step(body, law, settings, cone_gone ? RigidWall<Space::dim>{} : wall);
     engine::count_step(body, step, outcome.checks, outcome.cost);
+    engine::watch_fixed_step(body, scene.model, step, outcome.checks);
     if (engine::gave_up(step, outcome.status, outcome.checks, body.time)) break;
     outcome.series.push_back(read(scene, body, step));
     if (observer.on_step) observer.on_step(outcome.series.back());
@@ -144,6 +155,7 @@ Outcome run_in(const Scene& scene, const Law& law, const Observer& observer) {
   }
   read_results(watch, stopped, outcome);
   engine::judge(body, start_mass, outcome.checks, outcome.cost);
+  judge_depth(scene, outcome);
   outcome.final_frame = engine::frame_of(body);
   if (observer.on_frame) observer.on_frame(outcome.final_frame);
   return outcome;

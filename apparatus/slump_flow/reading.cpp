@@ -48,10 +48,15 @@ double outermost_radius(const Points<D>& points) {
 
 /// How far out the concrete reaches: the outermost value that has company, plus half the size of its point.
 double reach_of(std::vector<Weighted>& out, double cell) {
-  std::sort(out.begin(), out.end(), [](const Weighted& a, const Weighted& b) { return a.value > b.value; });
-  std::size_t i = 0;
-  while (i + company < out.size() && out[i].value - out[i + company].value > 0.5 * cell) ++i;
-  return out.empty() ? 0.0 : out[i].value + 0.5 * out[i].size;
+  // Few are strays, so that a look at the outermost is nearly always enough.
+  for (std::size_t n = std::min<std::size_t>(out.size(), 32); n > 0; n = out.size()) {
+    std::partial_sort(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(n), out.end(),
+                      [](const Weighted& a, const Weighted& b) { return a.value > b.value; });
+    std::size_t i = 0;
+    while (i + company < n && out[i].value - out[i + company].value > 0.5 * cell) ++i;
+    if (i + company < n || n == out.size()) return out[i].value + 0.5 * out[i].size;
+  }
+  return 0.0;
 }
 
 /// Numbers of the points that may lie on the outline: strays aside, within a few cells of the outermost.

@@ -15,10 +15,11 @@ namespace tremie {
 inline constexpr double friction_rounding = 1e-5;
 
 /// ADMM's penalties: half the shear stiffness of the concrete next to each node, `viscosity` V_i / h^2, as
-/// the yield part's is `viscosity`. V: volume of the concrete around each node [m^3].
-template <int D>
+/// the yield part's is `viscosity`. V: volume of the concrete around each node [m^3]; `system`: what has
+/// add_diagonal(node, component, value).
+template <int D, class System>
 void add_friction_stiffness_admm(const ActiveGrid<D>& grid, const std::vector<double>& V, double viscosity,
-                                 std::vector<FrictionNode<D>>& friction, BlockSystem<D>& system) {
+                                 std::vector<FrictionNode<D>>& friction, System& system) {
   for (FrictionNode<D>& f : friction) {
     // A node that side walls hold brings their own length, the distance over which its drag acts.
     const double h = f.normal_axis >= 0 ? grid.axes[f.normal_axis].h : f.reach;

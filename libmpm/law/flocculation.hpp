@@ -31,17 +31,53 @@ inline double flocculation_after_rest(double lambda, const Thixotropy& t, double
   return lambda + t.A_thix * rest / tau_0;
 }
 
-/// (1 - e^-k) / k, equal to 1 at k = 0.
-inline double mean_decay(double k) { return k < 1e-8 ? 1.0 - 0.5 * k : -std::expm1(-k) / k; }
-
 namespace detail {
 
-/// Equation (3) over dt with the mean rate of a shear rate that is linear in time: exact at constant rate,
-/// second order otherwise, positive and bounded for every dt.
-inline double build_and_break(double lambda, double build_rate, double alpha, double gamma_0, double gamma_1,
-                              double dt) {
-  const double k = 0.5 * alpha * dt * (gamma_0 + gamma_1);
-  return lambda * std::exp(-k) + build_rate * dt * mean_decay(k);
+/// What equation (3) needs of a step in which the rate breaks lambda down by e^-k. With u the share of the
+/// step that is left and < > the mean weighted by e^-ku:
+struct Decay {
+  double end;        ///< e^-k
+  double mean;       ///< int_0^1 e^-ku du = (1 - e^-k)/k
+  double asymmetry;  ///< <u(1 - u)> = (k coth(k/2) - 2)/k^2
+  double curvature;  ///< <u(1 - u)(1 - 2u)> = (1 - 6 asymmetry)/k
+};
+
+/// All four to rounding, k >= 0. Below 1/2 by e^-k = (P - kQ)/(P + kQ), the Pade approximant of order 12
+/// (error 2e-17), in which the differences that cancel are taken by hand.
+inline Decay decay(double k) {
+  if (k < 0.5) {
+    const double x = k * k;
+    const double P = 1.0 + x * (5.0 / 44.0 + x * (1.0 / 792.0 + x * (1.0 / 665280.0)));
+    const double Q = 0.5 + x * (1.0 / 66.0 + x * (1.0 / 15840.0));
+    const double share = 1.0 / (P + k * Q);
+    return {(P - k * Q) * share, 2.0 * Q * share, (1.0 / 12.0 + x * (1.0 / 880.0 + x * (1.0 / 665280.0))) / Q,
+            k * (1.0 / 120.0 + x * (1.0 / 18480.0)) / Q};
+  }
+  const double end = std::exp(-k), asymmetry = (k * (1.0 + end) / (1.0 - end) - 2.0) / (k * k);
+  return {end, (1.0 - end) / k, asymmetry, (1.0 - 6.0 * asymmetry) / k};
+}
+
+/// e^-z; where z is small, as it is in a step that resolves the history, by a Pade approximant (error 1e-13).
+inline double exp_of_small(double z) {
+  if (std::abs(z) > 0.01) return std::exp(-z);
+  const double even = 1.0 + z * z / 12.0;
+  return (even - 0.5 * z) / (even + 0.5 * z);
+}
+
+/// lambda after a step of equation (3): what is left of it, and what was built up meanwhile and is left,
+/// A dt int_0^1 exp(-ku - z(u)) du with the mean <z> in place of z(u): an error of second order in z alone.
+/// The integral is at most 1 because no rate is negative.
+inline double build_and_break(double lambda, double build_rate, const Decay& d, double z, double dt) {
+  return lambda * d.end + build_rate * dt * std::min(1.0, d.mean * exp_of_small(z));
+}
+
+/// Equation (3) over dt with a shear rate that is linear in time: exact at constant rate, fourth order at a
+/// linear rate, second order where the rate is curved; positive and bounded for every dt.
+inline double roussel_step(double lambda, double build_rate, double alpha, double gamma_0, double gamma_1,
+                           double dt) {
+  const double half = 0.5 * alpha * dt;
+  const Decay d = decay(half * (gamma_0 + gamma_1));
+  return build_and_break(lambda, build_rate, d, half * (gamma_1 - gamma_0) * d.asymmetry, dt);
 }
 
 /// The gated kinetics over a step whose shear rate is linear in time, split where it crosses gamma_c.
@@ -49,7 +85,7 @@ inline double gated_step(double lambda, double build_rate, const Thixotropy& t, 
                          double gamma_1, double dt) {
   const bool rest_0 = gamma_0 < t.gamma_c, rest_1 = gamma_1 < t.gamma_c;
   const auto piece = [&](double value, bool rest, double g0, double g1, double duration) {
-    return rest ? value + build_rate * duration : value * std::exp(-0.5 * t.alpha * duration * (g0 + g1));
+    return rest ? value + build_rate * duration : value * decay(0.5 * t.alpha * duration * (g0 + g1)).end;
   };
   if (rest_0 == rest_1) return piece(lambda, rest_0, gamma_0, gamma_1, dt);
   const double theta = std::clamp((t.gamma_c - gamma_0) / (gamma_1 - gamma_0), 0.0, 1.0);
@@ -64,7 +100,7 @@ inline double flocculation_step(double lambda, const Thixotropy& t, double tau_0
                                 double gamma_1, double dt) {
   const double build_rate = t.A_thix / tau_0;
   return t.kinetics == Kinetics::roussel
-             ? detail::build_and_break(lambda, build_rate, t.alpha, gamma_0, gamma_1, dt)
+             ? detail::roussel_step(lambda, build_rate, t.alpha, gamma_0, gamma_1, dt)
              : detail::gated_step(lambda, build_rate, t, gamma_0, gamma_1, dt);
 }
 

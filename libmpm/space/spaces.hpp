@@ -50,6 +50,9 @@ struct PlaneStrain {
     return B;
   }
   static Vec<2> divergence_row(double, const Vec<2>& g, const Vec<2>&) { return g; }
+  /// The divergence is in q too: divergence_part().q.
+  static Vec<3> divergence_part() { return {0.0, std::numbers::sqrt3, 0.0}; }
+  static double divergence_of(const Vec<3>& q) { return std::numbers::sqrt3 * q[1]; }
 };
 
 /// Rotation in circles about an axis: the coordinate r and the one velocity v_theta(r); volumes per metre of

@@ -23,6 +23,11 @@ struct AdmmSettings {
   int max_iterations = 1000;
   double over_relaxation = 1.6;  ///< rho
   double penalty = 3.0;          ///< r / mu
+  // Where the linear systems are solved by iteration, in space:
+  double penalty_by_iteration = 1.0;  ///< r / mu: softer, for the systems are then better conditioned
+  double solve_reduction = 0.3;       ///< of the residual in one solve, in the energy norm
+  double solve_share = 0.5;           ///< of the tolerated mismatch (squared) that a solve may leave
+  int direct_below = 3000;            ///< unknowns; smaller systems are factorised
 };
 
 namespace detail {
@@ -79,12 +84,12 @@ std::vector<double> volumes_around_nodes(const YieldProblem<Space>& problem) {
 /// smaller one would hardly move the stresses in an iteration, and the mismatch r (q - d) would look
 /// converged from the start.
 template <class Space>
-double penalty(const YieldProblem<Space>& problem, const AdmmSettings& settings) {
+double penalty(const YieldProblem<Space>& problem, double viscosities) {
   double mass = 0.0, volume = 0.0;
   for (double m : problem.nodes.mass) mass += m;
   for (double V : problem.quadrature.V_cell) volume += V;
   const double h = problem.grid.cell_size_min();
-  return std::max(settings.penalty * problem.mu, mass / volume * h * h / problem.dt);
+  return std::max(viscosities * problem.mu, mass / volume * h * h / problem.dt);
 }
 
 }  // namespace detail
@@ -95,7 +100,7 @@ SolveReport solve_admm(YieldProblem<Space>& problem, const Law& law, const AdmmS
                        BlockSystem<Space::dim>& system, std::vector<Vec<Space::dim>>& v,
                        Duals<Space>& duals) {
   constexpr int D = Space::dim;
-  const double r = detail::penalty(problem, settings);
+  const double r = detail::penalty(problem, settings.penalty);
   const auto stiffness = [&](int, int) { return problem.mu + r; };
   const auto stress = [&](int c, int k, const Vec<Space::n_strain>& q) -> Vec<Space::n_strain> {
     return problem.mu * q + duals.stress[c][k] + r * (q - duals.rate[c][k]);

@@ -165,7 +165,7 @@ class BlockSystem {
   bool analysed_ = false, banded_ = false;
   std::vector<int> band_dof_;  ///< of each unknown
   int bandwidth_ = 0;
-  BandCholesky band_;
+  BandCholesky<double> band_;
   Eigen::SparseMatrix<double> matrix_;
   using Solver = Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::AMDOrdering<int>>;
   std::unique_ptr<Solver> solver_ = std::make_unique<Solver>();

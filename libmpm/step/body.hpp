@@ -8,10 +8,10 @@
 
 #include "libmpm/contact/boundary_points.hpp"
 #include "libmpm/law/mix.hpp"
-#include "libmpm/step/admm.hpp"
+#include "libmpm/step/admm_space.hpp"
 #include "libmpm/step/newton.hpp"
 #include "libmpm/transfer/apic.hpp"
-#include "libmpm/transfer/even_out.hpp"
+#include "libmpm/transfer/even_out_space.hpp"
 
 namespace tremie {
 
@@ -27,9 +27,11 @@ struct StepSettings {
   double dt_max = 0.1;             ///< [s]
   double cfl = 0.6;                ///< largest move in a step, in cells
   double growth = 1.3;             ///< largest ratio of successive steps
+  double strays = 0.0;             ///< share of the points that may be drops in the air (strays.hpp)
   double friction_coefficient = 0.0;
   bool keep_forces = false;            ///< fill Body::wall_force and Body::dissipation
   double boundary_stiffness = 1000.0;  ///< of walls inside the grid, in m/dt
+  double alternating_viscosity = 0.0;  ///< zeta of yield_problem.hpp, in mu; plane strain alone
   double side_wall_distance = 0.0;     ///< of a width-averaged section [m]; 0: plane strain, no side walls
   double wall_gap = 0.0;               ///< how near a point may come to a rigid wall [m]
   double wall_penalty = 100.0;         ///< stiffness of a rigid wall, in m/dt
@@ -43,6 +45,8 @@ struct WallVelocities {
     for (auto& axis : v) axis.fill(Vec<D>::Zero());
   }
 };
+
+struct Nothing {};
 
 /// A body of one mix on its grid: everything that a step reads and writes.
 template <class Space>
@@ -65,6 +69,7 @@ struct Body {
   double dissipation = 0.0;          ///< power of the stresses in the last step [W], if asked for
   std::vector<Vec<D>> wall_force;    ///< of the flat walls on each node in the last step [N], if asked for
   BlockSystem<D> system;
+  std::conditional_t<D == 3, SpaceSystem, Nothing> space_system;  ///< for large bodies in space
 };
 
 struct StepReport {

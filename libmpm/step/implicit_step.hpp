@@ -6,6 +6,7 @@
 
 #include "libmpm/step/step_parts.hpp"
 #include "libmpm/step/step_size.hpp"
+#include "libmpm/step/strays.hpp"
 
 namespace tremie {
 
@@ -24,7 +25,6 @@ StepReport implicit_step(Body<Space>& body, const Law& law, const StepSettings& 
   point_to_grid(body.grid, body.points, body.nodes);
   detail::carry_duals<Space>(old_cells, body.grid, body.duals);
   lay_out_quadrature<Space>(body.grid, body.points, body.mix.tau_0, body.mix.K, body.quadrature);
-  body.system.set_pattern(body.grid);
   body.v = body.nodes.v;
 
   // The step's convex problem and its solution, the velocities at the end of the step. One that does not
@@ -40,7 +40,7 @@ StepReport implicit_step(Body<Space>& body, const Law& law, const StepSettings& 
     solve = detail::solve_step(*posed, law, settings, body);
   }
   const YieldProblem<Space>& problem = *posed;
-  if (detail::runs_away(body, dt)) {
+  if (detail::runs_away(body, settings.strays, dt)) {
     body.v = v_old;
     return {.dt = dt, .converged = false, .failed = true, .iterations = solve.iterations};
   }
@@ -51,10 +51,13 @@ StepReport implicit_step(Body<Space>& body, const Law& law, const StepSettings& 
   // Grid to points: state first, where the points were, then the move.
   if (body.points.thixotropic()) detail::update_flocculation(body, dt, body.points);
   detail::update_volumes(problem, body.v, body.points);
+  std::vector<double> gamma_dot;
+  const double shear_rate_mean = detail::shear_rates(problem, settings, body, gamma_dot);
   const bool even = Space::advects && settings.even_out.on;
   const std::vector<Vec<D>> u =
-      even ? even_out(problem, body.points, body.v, settings.even_out, body.system) : std::vector<Vec<D>>{};
+      even ? detail::evening_shift(problem, settings, gamma_dot, body) : std::vector<Vec<D>>{};
   grid_to_point(body.grid, body.v, v_old, settings.transfer, Space::advects ? dt : 0.0, body.points);
+  if (settings.strays > 0.0) hold_strays<D>(body.grid.axes, dt, body.points);
   if (even) shift_points<D>(body.grid, u, body.points);
   body.time += dt;
   body.dt = dt;
@@ -64,8 +67,8 @@ StepReport implicit_step(Body<Space>& body, const Law& law, const StepSettings& 
           .converged = solve.converged,
           .iterations = solve.iterations,
           .max_speed = detail::max_speed(body.points),
-          .bulk_speed = detail::speed_of_most(body.points, detail::strays, speed),
-          .shear_rate_mean = detail::mean_shear_rate(problem, body.v)};
+          .bulk_speed = detail::speed_of_most(body.points, detail::drops, speed),
+          .shear_rate_mean = shear_rate_mean};
 }
 
 }  // namespace tremie

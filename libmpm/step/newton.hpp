@@ -33,9 +33,11 @@ double energy(const YieldProblem<Space>& problem, const Law& law, const std::vec
     const double div = divergence(problem, v, c);
     sum += quad.V_cell[c] * div * (0.5 * problem.K * problem.dt * div - quad.p[c]);
     for (int k = 0; k < power(2, Space::dim); ++k) {
-      const double gamma_dot = strain_rate(problem, v, c, k).norm();
-      sum += quad.V[c][k] *
-             (0.5 * problem.mu * gamma_dot * gamma_dot + law.potential(gamma_dot, quad.tau_y[c][k]));
+      const auto q = strain_rate(problem, v, c, k);
+      const double gamma_dot = q.norm(), excess = excess_divergence<Space>(q, div);
+      sum +=
+          quad.V[c][k] * (0.5 * problem.mu * gamma_dot * gamma_dot +
+                          law.potential(gamma_dot, quad.tau_y[c][k]) + 0.5 * problem.zeta * excess * excess);
     }
   }
   for (std::size_t i = 0; i < problem.drag.size(); ++i) sum += 0.5 * problem.drag[i] * v[i].squaredNorm();
@@ -70,6 +72,19 @@ void step_duals(const YieldProblem<Space>& problem, const Law& law, const std::v
     }
 }
 
+/// Brings the duals that are carried over from the last step inside what this one can carry: beyond it the
+/// tangent is not positive.
+template <class Space>
+void project_duals(YieldProblem<Space>& problem, Duals<Space>& duals) {
+  const auto inside = [](auto& s, double limit) {
+    const double size = s.norm();
+    if (size > limit) s *= limit / size;
+  };
+  for (int c = 0; c < problem.grid.n_cells(); ++c)
+    for (int k = 0; k < power(2, Space::dim); ++k) inside(duals.stress[c][k], problem.quadrature.tau_y[c][k]);
+  for (auto& f : problem.friction) inside(f.force, f.limit);
+}
+
 }  // namespace detail
 
 /// Solves the yield problem by primal-dual Newton from the guesses v and duals, which it overwrites.
@@ -82,6 +97,7 @@ SolveReport solve_newton(YieldProblem<Space>& problem, const Law& law, const New
     return (problem.mu + law.secant(q.norm(), problem.quadrature.tau_y[c][k])) * q;
   };
   SolveReport report;
+  detail::project_duals(problem, duals);
   std::vector<Vec<D>> step(v.size()), trial(v.size());
   for (; report.iterations < settings.max_iterations; ++report.iterations) {
     update_active<D>(problem.contact, problem.grid.cell_nodes, v);

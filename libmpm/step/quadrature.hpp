@@ -16,18 +16,47 @@
 
 namespace tremie {
 
+/// Strain rows of every cell: one entry a cell, or, where they are the same in all cells but for the splines
+/// at walls, one a kind of cell.
+template <class Rows, bool by_kind>
+class CellRows {
+ public:
+  void resize(std::size_t n) {
+    kind_.resize(by_kind ? n : 0);
+    rows_.resize(by_kind ? 64 : n);
+  }
+  const Rows& operator[](std::size_t c) const { return rows_[by_kind ? kind_[c] : c]; }
+  Rows& entry(std::size_t c) { return rows_[c]; }
+  void set_kind(std::size_t c, unsigned char kind) { kind_[c] = kind; }
+
+ private:
+  std::vector<unsigned char> kind_;
+  std::vector<Rows> rows_;
+};
+
+/// Which walls a cell touches, as six bits: its splines follow from that.
+template <int D>
+unsigned char cell_kind(const std::array<Axis, D>& axes, const Index<D>& cell) {
+  unsigned kind = 0;
+  for (int d = 0; d < D; ++d) {
+    if (axes[d].wall_low() && cell[d] == 0) kind |= 1u << (2 * d);
+    if (axes[d].wall_high() && cell[d] == axes[d].n_cells - 1) kind |= 2u << (2 * d);
+  }
+  return static_cast<unsigned char>(kind);
+}
+
 template <class Space>
 struct Quadrature {
   static constexpr int D = Space::dim, n_strain = Space::n_strain;
   static constexpr int n_places = power(2, D), n_local = power(3, D);
   using StrainRows = std::array<Mat<n_strain, D>, n_local>;
 
-  std::vector<std::array<StrainRows, n_places>> B;  ///< strain rows, [1/m]
-  std::vector<std::array<Vec<D>, n_local>> b;       ///< rows of the cell's mean divergence [1/m]
-  std::vector<std::array<double, n_places>> V;      ///< concrete volume of each place [m^3]
-  std::vector<std::array<double, n_places>> tau_y;  ///< yield stress there [Pa]
-  std::vector<double> V_cell;                       ///< sum of V [m^3]
-  std::vector<double> p;                            ///< pressure at the start of the step [Pa]
+  CellRows<std::array<StrainRows, n_places>, D == 3> B;  ///< strain rows, [1/m]
+  std::vector<std::array<Vec<D>, n_local>> b;            ///< rows of the cell's mean divergence [1/m]
+  std::vector<std::array<double, n_places>> V;           ///< concrete volume of each place [m^3]
+  std::vector<std::array<double, n_places>> tau_y;       ///< yield stress there [Pa]
+  std::vector<double> V_cell;                            ///< sum of V [m^3]
+  std::vector<double> p;                                 ///< pressure at the start of the step [Pa]
 
   void resize(std::size_t n) {
     B.resize(n), b.resize(n), V.resize(n), tau_y.resize(n), V_cell.resize(n), p.resize(n);
@@ -111,7 +140,8 @@ void lay_out_rows(const std::array<Stencil<Space::dim>, power(2, Space::dim)>& s
   for (int i = 0; i < n_local; ++i) {
     quadrature.b[c][i].setZero();
     for (int k = 0; k < n; ++k) {
-      quadrature.B[c][k][i] = Space::strain_rows(st[k].N[i], st[k].g[i], x[k]);
+      if constexpr (Space::dim < 3)
+        quadrature.B.entry(c)[k][i] = Space::strain_rows(st[k].N[i], st[k].g[i], x[k]);
       quadrature.b[c][i] += quadrature.V[c][k] / V_cell * Space::divergence_row(st[k].N[i], st[k].g[i], x[k]);
     }
   }
@@ -129,6 +159,22 @@ double mean_pressure(const ActiveGrid<D>& grid, const Points<D>& points, double 
   return sum / volume;
 }
 
+/// Strain rows in space, one set for each kind of cell that there is.
+inline void lay_out_kinds(const ActiveGrid<3>& grid, Quadrature<ThreeD>& quadrature) {
+  std::array<bool, 64> done{};
+  for (int c = 0; c < grid.n_cells(); ++c) {
+    const unsigned char kind = cell_kind<3>(grid.axes, grid.cell_index[c]);
+    quadrature.B.set_kind(c, kind);
+    if (done[kind]) continue;
+    done[kind] = true;
+    for (int k = 0; k < 8; ++k) {
+      const Stencil<3> st = stencil<3>(grid.axes, grid.cell_index[c], gauss_place<3>(k));
+      for (int i = 0; i < 27; ++i)
+        quadrature.B.entry(kind)[k][i] = ThreeD::strain_rows(st.N[i], st.g[i], Vec<3>::Zero());
+    }
+  }
+}
+
 }  // namespace detail
 
 /// Lays out the quadrature of a step: places, volumes, yield stresses tau_y = (1 + lambda) tau_0 and
@@ -138,6 +184,7 @@ void lay_out_quadrature(const ActiveGrid<Space::dim>& grid, const Points<Space::
                         double K, Quadrature<Space>& quadrature) {
   constexpr int D = Space::dim, n = power(2, D);
   quadrature.resize(grid.cell_index.size());
+  if constexpr (D == 3) detail::lay_out_kinds(grid, quadrature);
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < grid.n_cells(); ++c) {
     const Index<D>& cell = grid.cell_index[c];

@@ -12,6 +12,13 @@
 
 namespace tremie::detail {
 
+/// Whether the linear systems of a step are solved by iteration: a body in space that is not tiny.
+template <class Space>
+bool by_iteration(const Body<Space>& body, const StepSettings& settings) {
+  return Space::dim == 3 && settings.method != YieldMethod::newton &&
+         body.grid.n_nodes() * Space::dim >= settings.admm.direct_below;
+}
+
 /// Duals of cells that were active before go on from where they were; new cells start unstressed.
 template <class Space>
 void carry_duals(const IndexMap<Space::dim>& old_map, const ActiveGrid<Space::dim>& grid,
@@ -81,15 +88,35 @@ void update_flocculation(const Body<Space>& body, double dt, Points<Space::dim>&
   points.gamma_dot.swap(gamma_dot);
 }
 
+/// Mean shear rate of every cell over its Gauss places, and the volume mean of all [1/s].
 template <class Space>
-double mean_shear_rate(const YieldProblem<Space>& problem, const std::vector<Vec<Space::dim>>& v) {
+double shear_rates(const YieldProblem<Space>& problem, const StepSettings& settings, const Body<Space>& body,
+                   std::vector<double>& of_cell) {
   double sum = 0.0, volume = 0.0;
+  if constexpr (Space::dim == 3)
+    if (by_iteration(body, settings)) {
+      body.space_system.shear_rates(body.v, of_cell, sum);
+      return sum;
+    }
+  of_cell.assign(body.grid.cell_index.size(), 0.0);
   for (int c = 0; c < problem.grid.n_cells(); ++c)
     for (int k = 0; k < power(2, Space::dim); ++k) {
-      sum += problem.quadrature.V[c][k] * strain_rate(problem, v, c, k).norm();
+      const double gamma_dot = strain_rate(problem, body.v, c, k).norm();
+      of_cell[c] += gamma_dot / power(2, Space::dim);
+      sum += problem.quadrature.V[c][k] * gamma_dot;
       volume += problem.quadrature.V[c][k];
     }
   return volume > 0.0 ? sum / volume : 0.0;
+}
+
+/// Displacements that even out the fill of the cells.
+template <class Space>
+std::vector<Vec<Space::dim>> evening_shift(const YieldProblem<Space>& problem, const StepSettings& settings,
+                                           const std::vector<double>& gamma_dot, Body<Space>& body) {
+  const CellFill cells = cell_fill(problem, body.points, gamma_dot, settings.even_out);
+  if constexpr (Space::dim == 3)
+    if (by_iteration(body, settings)) return even_out_in_space(problem, cells, body.space_system);
+  return even_out(problem, cells, body.system);
 }
 
 /// Weight and inertia that the residual of a Newton step is measured against [N].
@@ -105,7 +132,11 @@ double force_scale(const Body<Space>& body, double dt) {
 template <class Space, class Law>
 SolveReport solve_yield(YieldProblem<Space>& problem, const Law& law, const StepSettings& settings,
                         Body<Space>& body) {
+  if constexpr (Space::dim == 3)
+    if (by_iteration(body, settings))
+      return solve_admm_in_space(problem, law, settings.admm, body.space_system, body.v, body.duals);
   const double scale = force_scale(body, problem.dt);
+  body.system.set_pattern(body.grid);
   if (settings.method == YieldMethod::newton)
     return solve_newton(problem, law, settings.newton, scale, body.system, body.v, body.duals);
   SolveReport report = solve_admm(problem, law, settings.admm, body.system, body.v, body.duals);
@@ -220,6 +251,7 @@ void pose(Body<Space>& body, const StepSettings& settings, const RigidWall<Space
   for (std::size_t i = 0; i < v_old.size(); ++i) body.nodes.v[i] = v_old[i] + dt * body.gravity;
   posed.emplace(YieldProblem<Space>{
       body.grid, body.quadrature, body.nodes, dt, body.mix.mu, body.mix.K, {}, {}, {}, {}, {}});
+  posed->zeta = settings.alternating_viscosity * body.mix.mu;
   apply_flat_walls<D>(body.grid, body.walls, posed->fixed, posed->friction, body.v);
   if (settings.side_wall_distance > 0.0) add_side_walls(settings.side_wall_distance, *posed);
   posed->bound = find_bound_points(body.grid, body.nodes, body.boundary, dt, settings.boundary_stiffness);
@@ -243,18 +275,19 @@ SolveReport solve_step(YieldProblem<Space>& problem, const Law& law, const StepS
   return solve;
 }
 
-/// Whether the step would carry concrete a hundred cells or to nowhere. Nodes with next to no mass do not
-/// count: what they do moves no point.
+/// Whether the step would carry concrete a hundred cells or to nowhere: more of it than the share that may be
+/// drops in the air. Nodes with next to no mass do not count: what they do moves no point.
 template <class Space>
-bool runs_away(const Body<Space>& body, double dt) {
+bool runs_away(const Body<Space>& body, double drops, double dt) {
   const double reach = 100.0 * body.grid.cell_size_min();
-  double heaviest = 0.0;
-  for (double m : body.nodes.mass) heaviest = std::max(heaviest, m);
+  double heaviest = 0.0, total = 0.0, gone = 0.0;
+  for (double m : body.nodes.mass) heaviest = std::max(heaviest, m), total += m;
   for (std::size_t i = 0; i < body.v.size(); ++i) {
     if (!body.v[i].allFinite()) return true;
-    if (Space::advects && body.nodes.mass[i] > 1e-3 * heaviest && body.v[i].norm() * dt > reach) return true;
+    const double m = body.nodes.mass[i];
+    if (Space::advects && m > 1e-3 * heaviest && body.v[i].norm() * dt > reach) gone += m;
   }
-  return false;
+  return gone > drops * total;
 }
 
 }  // namespace tremie::detail

@@ -3,10 +3,13 @@
 // The convex problem of one backward-Euler step: find the nodal velocities v that minimise
 //
 //   1/2 (v - v*)' M (v - v*) / dt  +  sum_q V_q [mu/2 gamma_dot^2 + Phi(gamma_dot)]
-//     +  sum_c V_c [K dt/2 (div v)^2 - p div v]  +  contact,
+//     +  sum_c V_c [K dt/2 (div v)^2 - p div v]  +  sum_q V_q zeta/2 (div_q v - div v)^2  +  contact,
 //
-// Phi the potential of the yield law, gamma_dot = |q| at Gauss place q, one divergence a cell. Its
-// stationarity is the momentum balance; its solvers are in admm.hpp and newton.hpp.
+// Phi the potential of the yield law, gamma_dot = |q| at Gauss place q, one divergence a cell. A velocity
+// that alternates from node to node has none in any cell: nothing but the shear stress resists it, and in a
+// fluid with little yield stress it gathers the points on every second face. zeta, a bulk viscosity of what
+// differs from the cell's mean, does; of a resolved flow it sees next to nothing. Its stationarity is the
+// momentum balance; its solvers are in admm.hpp and newton.hpp.
 
 #include <algorithm>
 #include <vector>
@@ -42,6 +45,7 @@ struct YieldProblem {
   std::vector<FrictionNode<D>> friction;  ///< Coulomb friction on flat walls, yield drag of side walls
   std::vector<BoundPoint<D>> bound;       ///< walls inside the grid
   std::vector<double> drag;               ///< viscous drag of side walls, a node each [kg/s]; empty: none
+  double zeta = 0.0;                      ///< [Pa s], plane strain alone
 };
 
 struct SolveReport {
@@ -68,6 +72,15 @@ double divergence(const YieldProblem<Space>& problem, const std::vector<Vec<Spac
   return div;
 }
 
+/// How far the divergence of the strain rate q is from its cell's mean; 0 where q does not tell it.
+template <class Space>
+double excess_divergence(const Vec<Space::n_strain>& q, double mean) {
+  if constexpr (requires { Space::divergence_of(q); })
+    return Space::divergence_of(q) - mean;
+  else
+    return 0.0;
+}
+
 /// Nodal forces of everything but the yield part at velocities v: inertia, pressure and moving contact; plus
 /// the deviatoric forces of the stresses that `stress(c, k, q)` returns for the strain rate q.
 template <class Space, class Stress>
@@ -79,10 +92,13 @@ Eigen::VectorXd residual(const YieldProblem<Space>& problem, const std::vector<V
   std::vector<std::array<Vec<D>, n_local>> local(grid.cell_index.size());
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < grid.n_cells(); ++c) {
-    const double p = quad.p[c] - problem.K * problem.dt * divergence(problem, v, c);
+    const double div = divergence(problem, v, c), p = quad.p[c] - problem.K * problem.dt * div;
     for (int i = 0; i < n_local; ++i) local[c][i] = quad.V_cell[c] * p * quad.b[c][i];
     for (int k = 0; k < power(2, D); ++k) {
-      const Vec<Space::n_strain> s = quad.V[c][k] * stress(c, k, strain_rate(problem, v, c, k));
+      const Vec<Space::n_strain> q = strain_rate(problem, v, c, k);
+      Vec<Space::n_strain> s = quad.V[c][k] * stress(c, k, q);
+      if constexpr (requires { Space::divergence_of(q); })
+        s += quad.V[c][k] * problem.zeta * excess_divergence<Space>(q, div) * Space::divergence_part();
       for (int i = 0; i < n_local; ++i) local[c][i].noalias() -= quad.B[c][k][i].transpose() * s;
     }
   }
@@ -114,14 +130,19 @@ void assemble(const YieldProblem<Space>& problem, Tangent tangent, BlockSystem<S
   for (int c = 0; c < problem.grid.n_cells(); ++c) {
     Eigen::Matrix<double, ns, n_dof> B;
     Eigen::Matrix<double, n_dof, n_dof> cell = Eigen::Matrix<double, n_dof, n_dof>::Zero();
+    double bulk = problem.K * problem.dt;
+    if constexpr (requires { Space::divergence_part(); }) bulk -= problem.zeta;
     for (int k = 0; k < power(2, D); ++k) {
       for (int i = 0; i < power(3, D); ++i) B.template middleCols<D>(i * D) = quad.B[c][k][i];
-      const Eigen::Matrix<double, ns, n_dof> TB = quad.V[c][k] * tangent(c, k) * B;
+      Eigen::Matrix<double, ns, n_dof> TB = quad.V[c][k] * tangent(c, k) * B;
+      if constexpr (requires { Space::divergence_part(); })
+        TB += (quad.V[c][k] * problem.zeta) * Space::divergence_part() *
+              (Space::divergence_part().transpose() * B);
       cell.noalias() += B.transpose() * TB;
     }
     Vec<n_dof> b;
     for (int i = 0; i < power(3, D); ++i) b.template segment<D>(i * D) = quad.b[c][i];
-    cell.noalias() += (quad.V_cell[c] * problem.K * problem.dt * b) * b.transpose();
+    cell.noalias() += (quad.V_cell[c] * bulk * b) * b.transpose();
     system.add_cell(c, cell);
   }
   // A point on the very edge of a cell gives some of its nodes no mass; a trace of it keeps the matrix

@@ -178,12 +178,20 @@ void shear_rate_at_points(const ActiveGrid<Space::dim>& grid, const std::vector<
     for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
       const int p = grid.order[i];
       const detail::PointStencil<D> st(grid.axes, grid.cell_index[c], xi, points.x[p]);
-      Vec<Space::n_strain> q = Vec<Space::n_strain>::Zero();
-      for (int k = 0; k < power(3, D); ++k) {
-        const Index<D> o = local_offset<D>(k);
-        q += Space::strain_rows(st.N(o), st.gradient(o), points.x[p]) * v[grid.cell_nodes[c][k]];
+      if constexpr (D == 3) {
+        Mat<3, 3> L = Mat<3, 3>::Zero();
+        for (int k = 0; k < 27; ++k)
+          L += v[grid.cell_nodes[c][k]] * st.gradient(local_offset<3>(k)).transpose();
+        const Mat<3, 3> rate = L + L.transpose();  // 2 D
+        gamma_dot[p] = std::sqrt(0.5 * (rate.squaredNorm() - rate.trace() * rate.trace() / 3.0));
+      } else {
+        Vec<Space::n_strain> q = Vec<Space::n_strain>::Zero();
+        for (int k = 0; k < power(3, D); ++k) {
+          const Index<D> o = local_offset<D>(k);
+          q += Space::strain_rows(st.N(o), st.gradient(o), points.x[p]) * v[grid.cell_nodes[c][k]];
+        }
+        gamma_dot[p] = q.norm();
       }
-      gamma_dot[p] = q.norm();
     }
   }
 }

@@ -22,39 +22,73 @@ struct EvenOut {
   double rate = 1.0;  ///< share of a cell's misfill that is mended per unit of shear
 };
 
-/// Nodal displacements [m] that even out the fill of the cells over a step with nodal velocities v.
+/// What the minimum has of each cell: kappa V_c (0: the cell is left alone) and e_c.
+struct CellFill {
+  std::vector<double> stiffness, misfill;
+};
+
+/// `gamma_dot`: mean shear rate of every cell [1/s].
 template <class Space>
-std::vector<Vec<Space::dim>> even_out(const YieldProblem<Space>& problem, const Points<Space::dim>& points,
-                                      const std::vector<Vec<Space::dim>>& v, const EvenOut& settings,
-                                      BlockSystem<Space::dim>& system) {
-  constexpr int D = Space::dim, n_local = power(3, D), n_dof = n_local * D;
+CellFill cell_fill(const YieldProblem<Space>& problem, const Points<Space::dim>& points,
+                   const std::vector<double>& gamma_dot, const EvenOut& settings) {
+  constexpr int D = Space::dim;
   const auto& grid = problem.grid;
-  const auto& quad = problem.quadrature;
-  double part = 1.0, stiffness = 100.0;
-  double reach2 = 0.0;
+  constexpr double stiffness = 100.0;
+  double part = 1.0, reach2 = 0.0;
   for (const Axis& a : grid.axes) part *= 0.5 * a.h, reach2 = std::max(reach2, a.h * a.h);
-  Eigen::VectorXd R = Eigen::VectorXd::Zero(grid.n_nodes() * D);
-  system.set_zero();
+  CellFill cells{std::vector<double>(gamma_dot.size(), 0.0), std::vector<double>(gamma_dot.size(), 0.0)};
+#pragma omp parallel for schedule(static)
   for (int c = 0; c < grid.n_cells(); ++c) {
-    double full = 0.0, mass = 0.0, volume = 0.0, gamma_dot = 0.0;
-    for (int k = 0; k < power(2, D); ++k) {
+    double full = 0.0, mass = 0.0, volume = 0.0;
+    for (int k = 0; k < power(2, D); ++k)
       full += part * Space::measure(cell_place<D>(grid.axes, grid.cell_index[c], gauss_place<D>(k)));
-      gamma_dot += strain_rate(problem, v, c, k).norm() / power(2, D);
-    }
     for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
       mass += points.mass[grid.order[i]];
       volume += points.volume(grid.order[i]);
     }
-    double misfill = volume / full - 1.0;
-    const bool inside = is_inside<D>(grid, grid.cell_index[c]);
-    if (!inside && misfill <= 0.0) continue;
-    misfill *= -std::expm1(-settings.rate * gamma_dot * problem.dt);
-    const double kappa = stiffness * reach2 * mass / volume;  // density times area
+    const double misfill = volume / full - 1.0;
+    if (misfill <= 0.0 && !is_inside<D>(grid, grid.cell_index[c])) continue;
+    cells.misfill[c] = misfill * -std::expm1(-settings.rate * gamma_dot[c] * problem.dt);
+    cells.stiffness[c] = stiffness * reach2 * mass / volume * full;  // kappa: density times area
+  }
+  return cells;
+}
+
+/// Forces of the misfill on the nodes, and the components that walls prescribe.
+template <class Space>
+Eigen::VectorXd fill_forces(const YieldProblem<Space>& problem, const CellFill& cells,
+                            std::vector<char>& fixed) {
+  constexpr int D = Space::dim;
+  const auto& grid = problem.grid;
+  Eigen::VectorXd R = Eigen::VectorXd::Zero(grid.n_nodes() * D);
+  for (int c = 0; c < grid.n_cells(); ++c)
+    for (int i = 0; i < power(3, D); ++i)
+      R.segment<D>(grid.cell_nodes[c][i] * D) +=
+          cells.stiffness[c] * cells.misfill[c] * problem.quadrature.b[c][i];
+  fixed.assign(R.size(), 0);
+  for (int i = 0; i < grid.n_nodes(); ++i)
+    for (int d = 0; d < D; ++d)
+      fixed[i * D + d] =
+          grid.axes[d].on_low_wall(grid.node_index[i][d]) || grid.axes[d].on_high_wall(grid.node_index[i][d]);
+  mask(fixed, R);
+  return R;
+}
+
+/// Nodal displacements [m] that even out the fill of the cells over a step.
+template <class Space>
+std::vector<Vec<Space::dim>> even_out(const YieldProblem<Space>& problem, const CellFill& cells,
+                                      BlockSystem<Space::dim>& system) {
+  constexpr int D = Space::dim, n_local = power(3, D), n_dof = n_local * D;
+  const auto& grid = problem.grid;
+  std::vector<char> fixed;
+  const Eigen::VectorXd R = fill_forces(problem, cells, fixed);
+  system.set_pattern(grid);
+  system.set_zero();
+  for (int c = 0; c < grid.n_cells(); ++c) {
+    if (cells.stiffness[c] == 0.0) continue;
     Vec<n_dof> b;
-    for (int i = 0; i < n_local; ++i) b.template segment<D>(i * D) = quad.b[c][i];
-    system.add_cell(c, kappa * full * b * b.transpose());
-    for (int i = 0; i < n_local; ++i)
-      R.segment<D>(grid.cell_nodes[c][i] * D) += kappa * full * misfill * quad.b[c][i];
+    for (int i = 0; i < n_local; ++i) b.template segment<D>(i * D) = problem.quadrature.b[c][i];
+    system.add_cell(c, cells.stiffness[c] * b * b.transpose());
   }
   for (int i = 0; i < grid.n_nodes(); ++i)
     for (int d = 0; d < D; ++d) system.add_diagonal(i, d, problem.nodes.mass[i]);
@@ -62,12 +96,6 @@ std::vector<Vec<Space::dim>> even_out(const YieldProblem<Space>& problem, const 
   std::vector<BoundPoint<D>> bound = problem.bound;
   for (BoundPoint<D>& b : bound) b.stiffness *= problem.dt;
   add_bound_stiffness<D>(bound, system);
-  std::vector<char> fixed(R.size(), 0);
-  for (int i = 0; i < grid.n_nodes(); ++i)
-    for (int d = 0; d < D; ++d)
-      fixed[i * D + d] =
-          grid.axes[d].on_low_wall(grid.node_index[i][d]) || grid.axes[d].on_high_wall(grid.node_index[i][d]);
-  mask(fixed, R);
   system.fix(fixed);
   std::vector<Vec<D>> u(grid.node_index.size(), Vec<D>::Zero());
   if (!system.factorise()) return u;

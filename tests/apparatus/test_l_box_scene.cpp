@@ -28,7 +28,7 @@ TEST(LBoxScene, DefaultsAreTheStandards) {
   EXPECT_EQ(s.bars, 0);
   EXPECT_EQ(s.model.space, SpaceKind::plane);
   EXPECT_EQ(s.model.cell, (std::array{0.01, 0.01}));
-  EXPECT_EQ(s.model.points_per_cell, (std::array{4, 4}));
+  EXPECT_EQ(s.model.points_per_cell, (std::array{16, 4}));
 }
 
 TEST(LBoxScene, WhatASceneSays) {

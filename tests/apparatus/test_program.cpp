@@ -128,6 +128,35 @@ TEST_F(Program, NewMakesASceneThatChecks) {
   EXPECT_EQ(tremie("new slump_flow > mine.toml && '" + tremie_program + "' check mine.toml").code, 0);
 }
 
+TEST_F(Program, VerifyWritesItsDocument) {
+  EXPECT_EQ(tremie("verify law --out v").code, 0);
+  EXPECT_NE(test::read_file(folder_ / "v/VERIFICATION.md").find("Every bound is kept."), std::string::npos);
+  EXPECT_EQ(tremie("verify law --out v").code, 2) << "an earlier result";
+  EXPECT_EQ(tremie("verify 1 --out v --force").code, 0);
+  const Result unknown = tremie("verify lav --out w");
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_NE(unknown.text.find("law (1)"), std::string::npos) << unknown.text;
+}
+
+TEST_F(Program, RunStatesItsError) {
+  const Result result = tremie("run quick.toml --with-error --out a");
+  EXPECT_EQ(result.code, 0) << result.text;
+  EXPECT_NE(result.text.find("spread "), std::string::npos);
+  EXPECT_NE(result.text.find(" ± "), std::string::npos) << result.text;
+  const auto summary = nlohmann::json::parse(test::read_file(folder_ / "a/summary.json"));
+  EXPECT_GT(summary["error"]["spread_mm"], 0.0);
+  EXPECT_TRUE(summary["error"]["basis"].is_string());
+}
+
+TEST_F(Program, AccuracyChoosesTheCells) {
+  const Result result = tremie("run quick.toml --accuracy '5 %' --out a");
+  EXPECT_NE(result.text.find("accuracy        5 % wants model.cell="), std::string::npos) << result.text;
+  const Result bad = tremie("run quick.toml --accuracy 5 --out b");
+  EXPECT_EQ(bad.code, 2);
+  EXPECT_NE(bad.text.find("\"1 %\""), std::string::npos) << bad.text;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "b"));
+}
+
 TEST_F(Program, AnInterruptKeepsWhatThereIs) {
   // The run is far too long to end by itself. `timeout` signals the program and then its group: two
   // interrupts at once are one.

@@ -239,5 +239,44 @@ TEST(Periodic, UniformFlowWraps) {
   }
 }
 
+// A Newtonian layer on a floor, half a cell short of whole cells: what is left of its motion after a second
+// alternates from node to node for the most part. Its own viscosity takes that down, to less than half here:
+// the surface cells, which are not full, still sag.
+TEST(Rest, VelocitiesThatAlternateAreResisted) {
+  double speed[2];
+  for (bool resisted : {false, true}) {
+    Body<PlaneStrain> body;
+    body.mix = concrete(0.0, 30.0);
+    body.gravity = {0.0, -9.81};
+    body.grid.axes[0] = {.h = 0.01, .low = FaceKind::free_slip, .high = FaceKind::free_slip, .n_cells = 6};
+    body.grid.axes[1] = {.h = 0.01, .low = FaceKind::no_slip};
+    fill_box(body, {0.0, 0.0}, {0.06, 0.065}, 4,
+             [](const auto& x) { return 2400.0 * 9.81 * (0.065 - x[1]); });
+    StepSettings settings;
+    settings.alternating_viscosity = resisted ? 100.0 : 0.0;
+    StepReport step;
+    while (body.time < 1.0) step = implicit_step(body, ExactBingham{}, settings);
+    speed[resisted] = step.max_speed;
+  }
+  std::printf("a layer at rest: %.2e m/s, resisted %.2e m/s\n", speed[0], speed[1]);
+  EXPECT_LE(speed[1], 0.5 * speed[0]);
+}
+
+// A drop that would fall ten cells in a step falls one and is slowed to it; who moves less is left alone.
+TEST(Motion, StraysAreHeld) {
+  Points<2> points;
+  seed_box<PlaneStrain>(
+      {0.0, 0.0}, {0.02, 0.01}, {2, 1}, 2400.0, 1e6, [](const auto&) { return true; },
+      [](const auto&) { return 0.0; }, points);
+  points.v = {{0.0, -1.0}, {0.03, -0.05}};
+  const auto before = points.x;
+  for (std::size_t p = 0; p < 2; ++p) points.x[p] += 0.1 * points.v[p];
+  const auto moved = points.x;
+  hold_strays<2>({Axis{.h = 0.01}, Axis{.h = 0.01}}, 0.1, points);
+  EXPECT_NEAR(points.x[0][1], before[0][1] - 0.01, 1e-15);
+  EXPECT_NEAR(points.v[0][1], -0.1, 1e-15);
+  EXPECT_EQ(points.x[1], moved[1]);
+}
+
 }  // namespace
 }  // namespace tremie

@@ -186,6 +186,21 @@ TEST(FitTorqueDecay, SaysWhenTheCurveMissesTheReadings) {
   EXPECT_FALSE(f.alpha.has_value());
 }
 
+// A torque in mN m under a header of N m fits as well as the right one; the stress of 200 kPa gives it away.
+// So does a speed in rpm under a header of rev/s.
+TEST(Fit, SaysWhenTheSizesAreThoseOfAWrongUnit) {
+  TorqueRecord torque = flow_curve(7), small = torque, fast = torque;
+  for (double& t : torque.torque) t *= 1000.0;
+  for (double& t : small.torque) t *= 0.001;
+  for (double& w : fast.omega) w *= 60.0;
+  for (const TorqueRecord& record : {torque, small, fast}) {
+    const FitResult f = fit(record, {});
+    ASSERT_FALSE(f.reasons.empty());
+    EXPECT_NE(f.reasons.back().find("unit"), std::string::npos);
+  }
+  EXPECT_TRUE(fit(flow_curve(7), {}).reasons.empty());
+}
+
 // A flat torque has nothing that breaks down: no alpha can be read from it, and none is reported.
 TEST(FitTorqueDecay, AFlatTorqueTellsNoAlpha) {
   TorqueRecord record;

@@ -1,136 +1,32 @@
-// Rung 4: a Bingham film down an inclined plane and plane Poiseuille flow, at exact yield and with
-// Papanastasiou's m = 100 s. Both are steady flows v(y) along x whose shear stress is known: tau = rho g_x
-// (surface - y), from the free surface of the film or the middle of the channel. Exact yield: gamma_dot =
-// max(0, tau - tau_0)/mu and v a parabola up to the plug. Regularised: tau(gamma_dot) = mu gamma_dot + tau_0
-// (1 - e^(-m gamma_dot)) solved for gamma_dot and summed.
+// Rung 4: a Bingham film down an inclined plane and plane Poiseuille flow (tests/verification/film.hpp), at
+// exact yield and with Papanastasiou's m = 100 s.
+
+#include "tests/verification/film.hpp"
 
 #include <gtest/gtest.h>
-#include <omp.h>
 
-#include <vector>
-
-#include "tests/libmpm/bodies.hpp"
+#include "tests/verification/ladder/rung.hpp"
 
 namespace tremie {
 namespace {
 
-using namespace test;
+using namespace verification;
+using namespace verification::film;
 
-constexpr double tau_0 = 54.0, mu = 35.8, rho = 2400.0, height = 0.1;
-
-/// One of the two flows: where the shear stress vanishes and what drives it. Both have 144 Pa on the floor.
-struct Flow {
-  bool film = true;
-  double surface() const { return film ? height : 0.5 * height; }
-  double g_x() const { return film ? 0.6 : 1.2; }
-  double shear_stress(double y) const { return rho * g_x() * (surface() - y); }
-  double plug_from() const { return surface() - tau_0 / (rho * g_x()); }
-  double mirrored(double y) const { return film ? y : std::min(y, height - y); }
-};
-
-double exact_velocity(const Flow& flow, double y) {
-  const double z = std::min(flow.mirrored(y), flow.plug_from()), top = flow.plug_from();
-  return rho * flow.g_x() / (2.0 * mu) * z * (2.0 * top - z);
+/// Relative error against resolutions that double: the observed order.
+double order_of(const std::vector<double>& errors) {
+  Series series;
+  for (std::size_t i = 0; i < errors.size(); ++i)
+    series.runs.push_back({.label = "", .h = std::pow(0.5, static_cast<double>(i)), .error = errors[i]});
+  return verification::observed_order(series);
 }
 
-/// The regularised profile: gamma_dot(y) by bisection, its integral by Gauss' rule on 4000 intervals.
-class RegularisedProfile {
- public:
-  RegularisedProfile(const Flow& flow, double m) : flow_(flow), m_(m), sum_(n_ + 1, 0.0) {
-    for (int i = 0; i < n_; ++i) sum_[i + 1] = sum_[i] + integral(i * step(), (i + 1) * step());
-  }
-  double operator()(double y) const {
-    const double z = flow_.mirrored(y);
-    const int i = std::min(n_ - 1, static_cast<int>(z / step()));
-    return sum_[i] + integral(i * step(), z);
-  }
-
- private:
-  double step() const { return flow_.surface() / n_; }
-  double rate(double y) const {
-    const double tau = flow_.shear_stress(y);
-    double low = 0.0, high = tau / mu;
-    for (int i = 0; i < 60; ++i) {
-      const double middle = 0.5 * (low + high);
-      (mu * middle - tau_0 * std::expm1(-m_ * middle) < tau ? low : high) = middle;
-    }
-    return 0.5 * (low + high);
-  }
-  double integral(double a, double b) const {
-    const double c = 0.5 * (a + b), w = 0.5 * (b - a), place = w * std::sqrt(0.6);
-    return w / 9.0 * (5.0 * rate(c - place) + 8.0 * rate(c) + 5.0 * rate(c + place));
-  }
-  static constexpr int n_ = 4000;
-  Flow flow_;
-  double m_;
-  std::vector<double> sum_;
-};
-
-/// A place of the steady solution.
-struct Place {
-  double y, v, gamma_dot, weight;
-};
-
-/// Runs to the steady state, `cells` over the height, and samples the velocity at three Gauss places a cell.
-/// Steps of 0.1 s for 6 s: the slowest decay is exp(-3.7 t/s), so 1e-8 of the start is left.
 template <class Law>
-std::vector<Place> steady_state(const Flow& flow, const Law& law, YieldMethod method, int cells) {
-  omp_set_num_threads(1);
-  Body<PlaneStrain> body;
-  body.mix = concrete(tau_0, mu);
-  body.gravity = {flow.g_x(), flow.film ? -9.79 : 0.0};
-  const double h = height / cells;
-  body.grid.axes[0] = {.h = 0.02, .periodic = true, .n_cells = 2};
-  body.grid.axes[1] = {.h = h, .low = FaceKind::no_slip};
-  if (!flow.film) body.grid.axes[1].high = FaceKind::no_slip, body.grid.axes[1].n_cells = cells;
-  fill_box(body, {0.0, 0.0}, {0.04, height}, 2,
-           [&](const auto& x) { return -rho * body.gravity[1] * (height - x[1]); });
-  StepSettings settings;
-  settings.method = method;
-  settings.fixed_dt = 0.1;
-  settings.admm.tolerance = 1e-6;  // far below the smallest discretisation error looked for
-  settings.admm.max_iterations = 20000;
-  settings.newton.tolerance = 1e-8;
-  StepReport last;
-  for (int i = 0; i < 60; ++i) last = implicit_step(body, law, settings);
-  EXPECT_TRUE(last.converged);  // the start is of no interest
-
-  std::vector<Place> places;
-  for (int c = 0; c < body.grid.n_cells(); ++c)
-    for (int k = 0; k < 3; ++k) {
-      const Vec<2> s(0.31, 0.5 + (k - 1) * 0.5 * std::sqrt(0.6));
-      const Stencil<2> st = stencil<2>(body.grid.axes, body.grid.cell_index[c], s);
-      Place place{cell_place<2>(body.grid.axes, body.grid.cell_index[c], s)[1], 0.0, 0.0,
-                  k == 1 ? 8.0 / 18.0 : 5.0 / 18.0};
-      for (int i = 0; i < 9; ++i) {
-        place.v += st.N[i] * body.v[body.grid.cell_nodes[c][i]][0];
-        place.gamma_dot += st.g[i][1] * body.v[body.grid.cell_nodes[c][i]][0];
-      }
-      if (place.y < height) places.push_back(place);
-    }
+std::vector<Place> steady(const Flow& flow, const Law& law, YieldMethod method, int cells) {
+  bool converged = false;
+  auto places = steady_state(flow, law, method, cells, converged);
+  EXPECT_TRUE(converged);
   return places;
-}
-
-/// L2 error of the profile, relative to the L2 norm of the profile itself.
-template <class Profile>
-double relative_error(const std::vector<Place>& places, Profile profile) {
-  double error = 0.0, norm = 0.0;
-  for (const Place& p : places) {
-    error += p.weight * std::pow(p.v - profile(p.y), 2);
-    norm += p.weight * std::pow(profile(p.y), 2);
-  }
-  return std::sqrt(error / norm);
-}
-
-/// Least-squares slope of log error against log cell size over resolutions that double.
-double observed_order(const std::vector<double>& errors) {
-  const auto n = static_cast<double>(errors.size());
-  double sx = 0, sy = 0, sxx = 0, sxy = 0;
-  for (std::size_t i = 0; i < errors.size(); ++i) {
-    const double x = -static_cast<double>(i), y = std::log2(errors[i]);
-    sx += x, sy += y, sxx += x * x, sxy += x * y;
-  }
-  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
 const std::vector<int> resolutions{8, 16, 32, 64};
@@ -145,8 +41,8 @@ TEST_P(ExactYield, ProfilePlugAndOrder) {
   const Flow flow{GetParam()};
   std::vector<double> errors;
   for (int cells : resolutions) {
-    const auto admm = steady_state(flow, ExactBingham{}, YieldMethod::admm, cells);
-    const auto newton = steady_state(flow, ExactBingham{}, YieldMethod::newton, cells);
+    const auto admm = steady(flow, ExactBingham{}, YieldMethod::admm, cells);
+    const auto newton = steady(flow, ExactBingham{}, YieldMethod::newton, cells);
     errors.push_back(relative_error(admm, [&](double y) { return exact_velocity(flow, y); }));
     double edge = 0.0, apart = 0.0;
     const double wall_rate = (flow.shear_stress(0.0) - tau_0) / mu;
@@ -162,7 +58,7 @@ TEST_P(ExactYield, ProfilePlugAndOrder) {
     EXPECT_NEAR(edge, flow.plug_from(), 0.5 * height / cells);
     EXPECT_LE(apart, 1e-4);
   }
-  const double order = observed_order(errors);
+  const double order = order_of(errors);
   std::printf("%s exact: order %.2f\n", flow.film ? "film" : "channel", order);
   EXPECT_GE(order, 1.5);
   EXPECT_LE(errors.back(), 1e-3);
@@ -175,8 +71,8 @@ TEST_P(Regularised, ProfileAndOrder) {
   const RegularisedProfile profile(flow, 100.0);
   std::vector<double> errors;
   for (int cells : resolutions) {
-    const auto newton = steady_state(flow, Papanastasiou{100.0}, YieldMethod::newton, cells);
-    const auto admm = steady_state(flow, Papanastasiou{100.0}, YieldMethod::admm, cells);
+    const auto newton = steady(flow, Papanastasiou{100.0}, YieldMethod::newton, cells);
+    const auto admm = steady(flow, Papanastasiou{100.0}, YieldMethod::admm, cells);
     errors.push_back(relative_error(newton, profile));
     double apart = 0.0;
     for (std::size_t i = 0; i < admm.size(); ++i)
@@ -186,7 +82,7 @@ TEST_P(Regularised, ProfileAndOrder) {
                 cells, errors.back(), apart);
     EXPECT_LE(apart, 1e-4);
   }
-  const double order = observed_order(errors);
+  const double order = order_of(errors);
   std::printf("%s m = 100: order %.2f\n", flow.film ? "film" : "channel", order);
   EXPECT_GE(order, 1.8);
   EXPECT_LE(errors.back(), 1e-3);

@@ -53,8 +53,12 @@ inline std::vector<Coverage> decay_coverage(bool tau_0_given, double noise, int 
                           {"static_yield_stress", 366.0},
                           {"structuration_rate", 1.3}};
   if (!tau_0_given) c.push_back({"yield_stress", 54.0});
-  for (int seed = 1; seed <= seeds; ++seed) {
-    const FitResult f = fit(synthetic::torque_decay(exact, noise, static_cast<std::uint64_t>(seed)), input);
+  std::vector<FitResult> fits(static_cast<std::size_t>(seeds));
+#pragma omp parallel for schedule(dynamic)
+  for (int i = 0; i < seeds; ++i)
+    fits[static_cast<std::size_t>(i)] =
+        fit(synthetic::torque_decay(exact, noise, static_cast<std::uint64_t>(i + 1)), input);
+  for (const FitResult& f : fits) {
     const std::optional<Estimate>* found[] = {&f.lambda_0, &f.alpha, &f.static_yield_stress, &f.A_thix,
                                               &f.tau_0};
     for (std::size_t k = 0; k < c.size(); ++k) c[k].add(*found[k]);

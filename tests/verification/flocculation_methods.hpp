@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "libmpm/law/flocculation.hpp"
+#include "libmpm/law/flocculation_along.hpp"
 #include "rheometer/flocculation_ode.hpp"
 
 namespace tremie::study {
@@ -25,26 +25,39 @@ struct Case {
   double largest_dt = 1.0;
 };
 
-inline double one_step(const Thixotropy& t, double lambda, double g0, double g1, double dt) {
-  return flocculation_step(lambda, t, tau_0, g0, g1, dt);
+/// What a step of any of the methods is given: the rate at its ends, and the history itself.
+struct Step {
+  const ShearPiece& piece;
+  double start, g0, g1, dt;  ///< start: since the start of the piece
+};
+
+/// The material points' update, which knows the ends of a step.
+inline double one_step(const Thixotropy& t, double lambda, const Step& s) {
+  return flocculation_step(lambda, t, tau_0, s.g0, s.g1, s.dt);
+}
+
+/// The update of a history whose rate is known inside the step.
+inline double one_step_along(const Thixotropy& t, double lambda, const Step& s) {
+  return flocculation_step_along(lambda, t, tau_0, s.piece.rate, s.start, s.g0, s.g1, s.dt);
 }
 
 /// The whole step on the side of the gate that its mean rate is on.
-inline double one_step_without_split(const Thixotropy& t, double lambda, double g0, double g1, double dt) {
-  const double mean = 0.5 * (g0 + g1);
-  return mean < t.gamma_c ? lambda + t.A_thix / tau_0 * dt : lambda * std::exp(-t.alpha * mean * dt);
+inline double one_step_without_split(const Thixotropy& t, double lambda, const Step& s) {
+  const double mean = 0.5 * (s.g0 + s.g1);
+  return mean < t.gamma_c ? lambda + t.A_thix / tau_0 * s.dt : lambda * std::exp(-t.alpha * mean * s.dt);
 }
 
-inline double one_step_of_euler(const Thixotropy& t, double lambda, double g0, double, double dt) {
-  const bool builds = t.kinetics == Kinetics::roussel || g0 < t.gamma_c;
-  const bool breaks = t.kinetics == Kinetics::roussel || g0 >= t.gamma_c;
-  return lambda + dt * ((builds ? t.A_thix / tau_0 : 0.0) - (breaks ? t.alpha * lambda * g0 : 0.0));
+inline double one_step_of_euler(const Thixotropy& t, double lambda, const Step& s) {
+  const bool builds = t.kinetics == Kinetics::roussel || s.g0 < t.gamma_c;
+  const bool breaks = t.kinetics == Kinetics::roussel || s.g0 >= t.gamma_c;
+  return lambda + s.dt * ((builds ? t.A_thix / tau_0 : 0.0) - (breaks ? t.alpha * lambda * s.g0 : 0.0));
 }
 
 /// lambda at the case's times, in equal steps of about dt between them. Times and pieces end together.
-template <class Step>
-std::vector<double> march(const Case& c, double dt, Step step) {
+template <class Method>
+std::vector<double> march(const Case& c, double dt, Method method) {
   std::vector<double> result;
+  result.reserve(c.times.size());
   double lambda = c.lambda_0, piece_start = 0.0, now = 0.0;
   std::size_t piece = 0;
   for (const double end : c.times) {
@@ -55,8 +68,8 @@ std::vector<double> march(const Case& c, double dt, Step step) {
     const ShearPiece& p = c.history[piece];
     double g0 = p.rate(now - piece_start);
     for (int i = 1; i <= n; ++i) {
-      const double g1 = p.rate(now - piece_start + i * h);
-      lambda = step(c.thixotropy, lambda, g0, g1, h);
+      const double start = now - piece_start + (i - 1) * h, g1 = p.rate(start + h);
+      lambda = method(c.thixotropy, lambda, Step{p, start, g0, g1, h});
       g0 = g1;
     }
     now = end;

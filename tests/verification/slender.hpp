@@ -3,7 +3,6 @@
 // The slender case: tau_0 = 10 Pa, mu = 35.8 Pa s, the Abrams cone gone at once, against the lubrication
 // equation, which takes over from the shape that the body has at 2 s (R/h above 10).
 
-#include <gtest/gtest.h>
 #include <omp.h>
 
 #include "apparatus/slump_flow/engine.hpp"
@@ -34,38 +33,42 @@ inline Layer layer_of(const Points<2>& points, double dr, double across) {
   return layer;
 }
 
-// 3 % at every time from 3 to 120 s, against the equation from the same state and against the published
-// diameters.
-inline void expect_slender_flow_follows_the_lubrication_equation(double across, double up) {
+/// The spread at a time, by the material points and by the equation [m], and as published [mm].
+struct SlenderSample {
+  int time, published;
+  double spread, lubrication;
+};
+struct SlenderFlow {
+  std::vector<SlenderSample> samples;
+  double layer_volume = 0.0;  ///< that the equation starts with [m^3]
+  int unconverged = 0;
+};
+
+inline SlenderFlow slender_flow(double across, double up) {
   slump_flow::Scene scene;
   scene.mix = test::concrete(10.0, 35.8);
   scene.lift_speed.reset();
   scene.model.cell = {across, up};
   omp_set_num_threads(1);
-  auto body = slump_flow::filled_cone(scene);
+  auto body = slump_flow::filled_cone<Axisymmetric>(scene);
   StepSettings settings = slump_flow::step_settings(scene);
+  SlenderFlow flow;
   const auto march = [&](double until) {
     while (body.time < until - 1e-9) {
       settings.dt_max = std::min(StepSettings{}.dt_max, until - body.time);
-      EXPECT_TRUE(implicit_step(body, ExactBingham{}, settings).converged);
+      flow.unconverged += !implicit_step(body, ExactBingham{}, settings).converged;
     }
   };
   march(2.0);
   Layer layer = layer_of(body.points, 1e-3, 2.0 * across / scene.model.points_per_cell[0]);
-  EXPECT_NEAR(layer.volume() / cone_volume(), 1.0, 5e-3);
+  flow.layer_volume = layer.volume();
   const Fluid fluid{2400.0, 9.81, 10.0, 35.8};
   for (const auto& [t, mm] : published_slender) {
     spread_layer(fluid, t - body.time, layer);
     march(t);
-    const double spread = slump_flow::spread(body.points, across), reference = 2.0 * layer.front();
-    std::printf(
-        "slender, %g x %g mm, %3d s: %.1f mm, lubrication from 2 s %.1f (%+.2f %%), published %d (%+.2f "
-        "%%)\n",
-        1e3 * across, 1e3 * up, t, 1e3 * spread, 1e3 * reference, 100 * (spread / reference - 1), mm,
-        100 * (1e3 * spread / mm - 1));
-    EXPECT_NEAR(spread / reference, 1.0, 0.03);
-    EXPECT_NEAR(1e3 * spread / mm, 1.0, 0.03);
+    flow.samples.push_back({t, mm, slump_flow::spread(body.points, across), 2.0 * layer.front()});
   }
+  return flow;
 }
 
 }  // namespace tremie::verification

@@ -1,7 +1,9 @@
-// Rung 6, the long runs: the slender case on fine cells and Mix A to its rest.
+// The long runs: the slender case on fine cells, Mix A to its rest, a fluid that levels in the L-box.
 
+#include "apparatus/l_box/l_box.hpp"
 #include "apparatus/slump_flow/slump_flow.hpp"
-#include "tests/verification/slender.hpp"
+#include "tests/verification/lbox_reference.hpp"
+#include "tests/verification/slender_expectations.hpp"
 
 namespace tremie {
 namespace {
@@ -25,6 +27,39 @@ TEST(Slow, MixAComesToRest) {
   EXPECT_EQ(outcome.checks.unconverged_steps, 0);
   EXPECT_TRUE(outcome.results.stopped_at.has_value());
   EXPECT_NEAR(1e3 * outcome.results.spread / 557.5, 1.0, 0.015);
+}
+
+// The L-box at rest on cells of 10 mm: the closed form within 3 % over any 100 mm, in both modes.
+TEST(Slow, TheLBoxRestsOnItsClosedForm) {
+  for (bool side_walls : {false, true})
+    for (double tau_0 : {15.0, 50.0}) {
+      l_box::Scene scene;
+      scene.mix.tau_0 = tau_0;
+      scene.mix.mu = 30.0;
+      scene.duration = 180.0;
+      scene.model.space = side_walls ? SpaceKind::plane_with_side_walls : SpaceKind::plane;
+      scene.model.cell = {0.01, 0.01};
+      scene.model.points_per_cell = {16, 4};
+      const l_box::Outcome outcome = l_box::run(scene);
+      const auto& profile = outcome.results.profile;
+      const auto form = lbox_reference::at_the_volume_of(profile, tau_0, side_walls ? 0.2 : 0.0, 0.7);
+      const auto error = lbox_reference::error_of(profile, form);
+      std::printf("%g Pa%s: error %.1f %% rms, worst of 100 mm %.1f %%\n", tau_0,
+                  side_walls ? ", side walls" : "", 100 * error.rms, 100 * error.worst);
+      EXPECT_LE(error.worst, 0.03);
+    }
+}
+
+// Without yield stress the box fills level: a ratio of 1 within 1 %.
+TEST(Slow, AFluidLevelsInTheLBox) {
+  l_box::Scene scene;
+  scene.mix.tau_0 = 0.0;
+  scene.mix.mu = 30.0;
+  scene.model.cell = {0.01, 0.01};
+  scene.model.points_per_cell = {16, 4};
+  const l_box::Outcome outcome = l_box::run(scene);
+  EXPECT_EQ(outcome.checks.unconverged_steps, 0);
+  EXPECT_NEAR(outcome.results.passing_ratio.value_or(0.0), 1.0, 0.01);
 }
 
 }  // namespace

@@ -1,0 +1,260 @@
+#pragma once
+
+// The linear system of a step in space, by preconditioned conjugate gradients without a matrix.
+
+#include <vector>
+
+#include "libmpm/contact/friction.hpp"
+#include "libmpm/step/conjugate_gradients.hpp"
+#include "libmpm/step/pressure_preconditioner.hpp"
+#include "libmpm/step/yield_problem.hpp"
+
+namespace tremie {
+
+/// Adds what walls inside the grid do to the field x.
+inline void add_bound_products(const std::vector<BoundPoint<3>>& bound,
+                               const std::vector<std::array<int, 27>>& cell_nodes, const Eigen::VectorXd& x,
+                               Eigen::VectorXd& out) {
+  for (const BoundPoint<3>& b : bound) {
+    Vec<3> u = Vec<3>::Zero();
+    for (int k = 0; k < 27; ++k) u += b.N[k] * x.segment<3>(3 * cell_nodes[b.cell][k]);
+    u = b.stiffness * u;
+    for (int k = 0; k < 27; ++k) out.segment<3>(3 * cell_nodes[b.cell][k]) += b.N[k] * u;
+  }
+}
+
+inline void add_bound_blocks(const std::vector<BoundPoint<3>>& bound,
+                             const std::vector<std::array<int, 27>>& cell_nodes,
+                             std::vector<Mat<3, 3>>& blocks) {
+  for (const BoundPoint<3>& b : bound)
+    for (int k = 0; k < 27; ++k) blocks[cell_nodes[b.cell][k]] += b.N[k] * b.N[k] * b.stiffness;
+}
+
+/// Inverts node blocks in place; what a wall prescribes becomes zero.
+inline void invert_blocks(const std::vector<char>& fixed, std::vector<Mat<3, 3>>& G) {
+#pragma omp parallel for schedule(static)
+  for (std::size_t i = 0; i < G.size(); ++i) {
+    for (std::size_t d = 0; d < 3; ++d)
+      if (fixed[3 * i + d]) {
+        const auto e = static_cast<Eigen::Index>(d);
+        G[i].row(e).setZero(), G[i].col(e).setZero(), G[i](e, e) = 1.0;
+      }
+    G[i] = G[i].inverse().eval();
+    for (std::size_t d = 0; d < 3; ++d)
+      if (fixed[3 * i + d]) G[i](static_cast<Eigen::Index>(d), static_cast<Eigen::Index>(d)) = 0.0;
+  }
+}
+
+/// Strain rate q at place k as ThreeD has it, and the divergence.
+inline void strain_at(const PlaceTensors& G, int k, Lanes (&q)[5], Lanes& div) {
+  const Lanes &xx = G.g[0][0][k], &yy = G.g[1][1][k], &zz = G.g[2][2][k];
+  const Lanes plane = xx + yy;
+  q[0] = xx - yy;
+  q[1] = (plane - 2.0 * zz) * inv_sqrt3;
+  q[2] = G.g[0][1][k] + G.g[1][0][k];
+  q[3] = G.g[1][2][k] + G.g[2][1][k];
+  q[4] = G.g[0][2][k] + G.g[2][0][k];
+  div = plane + zz;
+}
+
+inline Lanes norm(const Lanes (&q)[5]) {
+  return (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] + q[4] * q[4]).sqrt();
+}
+
+/// The tensor whose adjoint is that of the deviatoric stress s, with a pull p in all directions: T = s + p I.
+inline void stress_at(const Lanes (&s)[5], const Lanes& p, int k, PlaceTensors& T) {
+  const Lanes half = s[1] * inv_sqrt3;
+  T.g[0][0][k] = p + half + s[0];
+  T.g[1][1][k] = p + half - s[0];
+  T.g[2][2][k] = p - 2.0 * half;
+  T.g[0][1][k] = T.g[1][0][k] = s[2];
+  T.g[1][2][k] = T.g[2][1][k] = s[3];
+  T.g[0][2][k] = T.g[2][0][k] = s[4];
+}
+
+/// Volumes of a batch of cells, lane by lane; 0 where a lane has no cell.
+struct BatchVolumes {
+  Lanes V[8], inverse_cell;
+};
+
+class SpaceSystem {
+ public:
+  /// Lays out the cells; `eta` is the viscosity of the system's deviatoric part [Pa s].
+  void set_up(YieldProblem<ThreeD>& problem);
+  /// Everything that does not change within a step, and the preconditioner. False where it is not definite.
+  bool prepare(YieldProblem<ThreeD>& problem, double eta);
+
+  /// A x. Prescribed components of x are zero, and those of the result too.
+  void multiply(const YieldProblem<ThreeD>& problem, const Eigen::VectorXd& x, Eigen::VectorXd& out);
+  /// x = A^-1 R as conjugate_gradients() does it, (r, P^-1 r) in watts.
+  double solve(const YieldProblem<ThreeD>& problem, Eigen::VectorXd& R, const SolveGoal& goal,
+               Eigen::VectorXd& x);
+  /// Mean shear rate of every cell over its places, and the volume mean of all [1/s].
+  void shear_rates(const std::vector<Vec<3>>& v, std::vector<double>& of_cell, double& mean) const;
+
+  CellBatches batches;
+  std::vector<BatchVolumes> volumes;
+  long long products = 0;
+
+ private:
+  /// What add_friction_stiffness_admm() adds to.
+  struct Diagonal {
+    Eigen::VectorXd& value;
+    void add_diagonal(int node, int d, double x) { value[3 * node + d] += x; }
+  };
+  std::vector<Mat<3, 3>> node_blocks(const YieldProblem<ThreeD>& problem) const;
+
+  double eta_ = 0.0;
+  Eigen::VectorXd diagonal_;  ///< inertia, drag and friction
+  PressurePreconditioner preconditioner_;
+};
+
+inline void SpaceSystem::set_up(YieldProblem<ThreeD>& problem) {
+  const auto& quad = problem.quadrature;
+  batches.lay_out(problem.grid);
+  volumes.resize(batches.n_batches());
+#pragma omp parallel for schedule(static)
+  for (int b = 0; b < batches.n_batches(); ++b)
+    for (int l = 0; l < n_lanes; ++l) {
+      const int c = b * n_lanes + l;
+      const bool there = c < batches.n_cells();
+      for (int k = 0; k < 8; ++k) volumes[b].V[k][l] = there ? quad.V[c][k] : 0.0;
+      volumes[b].inverse_cell[l] = there && quad.V_cell[c] > 0.0 ? 1.0 / quad.V_cell[c] : 0.0;
+    }
+}
+
+inline bool SpaceSystem::prepare(YieldProblem<ThreeD>& problem, double eta) {
+  eta_ = eta;
+  const int n = problem.grid.n_nodes();
+  double trace = 0.0;
+  for (double m : problem.nodes.mass) trace = std::max(trace, 1e-12 * m);
+  diagonal_.resize(3 * n);
+  for (int i = 0; i < n; ++i)
+    diagonal_.segment<3>(3 * i).setConstant(std::max(trace, problem.nodes.mass[i]) / problem.dt +
+                                            (problem.drag.empty() ? 0.0 : problem.drag[i]));
+  if (!problem.friction.empty()) {
+    std::vector<double> V(n, 0.0);
+    for (int c = 0; c < problem.grid.n_cells(); ++c)
+      for (int i : problem.grid.cell_nodes[c]) V[i] += problem.quadrature.V_cell[c] / 27;
+    Diagonal diagonal{diagonal_};
+    add_friction_stiffness_admm<3>(problem.grid, V, eta, problem.friction, diagonal);
+  }
+  std::vector<double> stiffness(problem.grid.n_cells());
+  for (int c = 0; c < problem.grid.n_cells(); ++c)
+    stiffness[c] = problem.quadrature.V_cell[c] * problem.K * problem.dt;
+  return preconditioner_.build(problem.grid, batches, problem.quadrature.b, node_blocks(problem), stiffness);
+}
+
+/// Inverse blocks of D at the nodes. A node's own viscous block is V eta (|g|^2 I + g g'/3) with its gradient
+/// g.
+inline std::vector<Mat<3, 3>> SpaceSystem::node_blocks(const YieldProblem<ThreeD>& problem) const {
+  const auto& grid = problem.grid;
+  std::array<std::array<std::array<Mat<3, 3>, 27>, 8>, 64> viscous;
+  std::array<bool, 64> done{};
+  std::vector<unsigned char> kind(grid.n_cells());
+  for (int c = 0; c < grid.n_cells(); ++c) {
+    kind[c] = cell_kind<3>(grid.axes, grid.cell_index[c]);
+    if (done[kind[c]]) continue;
+    done[kind[c]] = true;
+    for (int k = 0; k < 8; ++k) {
+      const Stencil<3> st = stencil<3>(grid.axes, grid.cell_index[c], gauss_place<3>(k));
+      for (int i = 0; i < 27; ++i)
+        viscous[kind[c]][k][i] =
+            eta_ * (st.g[i].squaredNorm() * Mat<3, 3>::Identity() + st.g[i] * st.g[i].transpose() / 3.0);
+    }
+  }
+  std::vector<Mat<3, 3>> G(grid.n_nodes());
+#pragma omp parallel for schedule(static)
+  for (int i = 0; i < grid.n_nodes(); ++i) {
+    G[i] = diagonal_.segment<3>(3 * i).asDiagonal();
+    for (const int* e = batches.entries_begin(i); e != batches.entries_end(i); ++e)
+      for (int k = 0; k < 8; ++k)
+        G[i] += problem.quadrature.V[*e / 27][k] * viscous[kind[*e / 27]][k][*e % 27];
+  }
+  for (const ContactPoint<3>& c : problem.contact)
+    for (int k = 0; k < 27 && c.active; ++k)
+      G[grid.cell_nodes[c.cell][k]] += c.stiffness * c.N[k] * c.N[k] * c.normal * c.normal.transpose();
+  add_bound_blocks(problem.bound, grid.cell_nodes, G);
+  invert_blocks(problem.fixed, G);
+  return G;
+}
+
+inline void SpaceSystem::multiply(const YieldProblem<ThreeD>& problem, const Eigen::VectorXd& x,
+                                  Eigen::VectorXd& out) {
+  const double bulk = problem.K * problem.dt;
+  const int n_nodes = problem.grid.n_nodes();
+  ++products;
+  out.resize(x.size());
+#pragma omp parallel
+  {
+#pragma omp for schedule(static)
+    for (int b = 0; b < batches.n_batches(); ++b) {
+      PlaceTensors G;
+      batches.gradients(b, x.data(), G);
+      const BatchVolumes& v = volumes[b];
+      Lanes mean = Lanes::Zero();
+      for (int k = 0; k < 8; ++k) mean += v.V[k] * (G.g[0][0][k] + G.g[1][1][k] + G.g[2][2][k]);
+      mean *= bulk * v.inverse_cell;
+      for (int k = 0; k < 8; ++k) {
+        Lanes q[5], div;
+        strain_at(G, k, q, div);
+        const Lanes w = eta_ * v.V[k];
+        for (Lanes& s : q) s *= w;
+        stress_at(q, v.V[k] * mean, k, G);
+      }
+      batches.scatter(b, G);
+    }
+#pragma omp for schedule(static)
+    for (int i = 0; i < n_nodes; ++i)
+      out.segment<3>(3 * i) =
+          diagonal_.segment<3>(3 * i).cwiseProduct(x.segment<3>(3 * i)) + batches.gathered(i);
+  }
+  const auto& cell_nodes = problem.grid.cell_nodes;
+  for (const ContactPoint<3>& c : problem.contact) {
+    if (!c.active) continue;
+    double u = 0.0;
+    for (int k = 0; k < 27; ++k) u += c.N[k] * c.normal.dot(x.segment<3>(3 * cell_nodes[c.cell][k]));
+    for (int k = 0; k < 27; ++k)
+      out.segment<3>(3 * cell_nodes[c.cell][k]) += c.stiffness * u * c.N[k] * c.normal;
+  }
+  add_bound_products(problem.bound, cell_nodes, x, out);
+  mask(problem.fixed, out);
+}
+
+inline double SpaceSystem::solve(const YieldProblem<ThreeD>& problem, Eigen::VectorXd& R,
+                                 const SolveGoal& goal, Eigen::VectorXd& x) {
+  return conjugate_gradients([&](const Eigen::VectorXd& p, Eigen::VectorXd& Ap) { multiply(problem, p, Ap); },
+                             [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
+                               preconditioner_.apply(batches, problem.grid, r, z);
+                             },
+                             goal, R, x);
+}
+
+inline void SpaceSystem::shear_rates(const std::vector<Vec<3>>& v, std::vector<double>& of_cell,
+                                     double& mean) const {
+  of_cell.resize(batches.n_cells());
+  std::vector<double> sum(batches.n_batches()), volume(batches.n_batches());
+#pragma omp parallel for schedule(static)
+  for (int b = 0; b < batches.n_batches(); ++b) {
+    PlaceTensors G;
+    batches.gradients(b, v.data()->data(), G);
+    Lanes total = Lanes::Zero(), weighted = total, V = total;
+    for (int k = 0; k < 8; ++k) {
+      Lanes q[5], div;
+      strain_at(G, k, q, div);
+      const Lanes rate = norm(q);
+      total += rate;
+      weighted += volumes[b].V[k] * rate;
+      V += volumes[b].V[k];
+    }
+    for (int c = b * n_lanes; c < std::min((b + 1) * n_lanes, batches.n_cells()); ++c)
+      of_cell[c] = total[c % n_lanes] / 8.0;
+    sum[b] = weighted.sum();
+    volume[b] = V.sum();
+  }
+  double all = 0.0, V = 0.0;
+  for (int b = 0; b < batches.n_batches(); ++b) all += sum[b], V += volume[b];
+  mean = V > 0.0 ? all / V : 0.0;
+}
+
+}  // namespace tremie

@@ -1,0 +1,57 @@
+#pragma once
+
+// even_out.hpp's displacements in space. The mass is diagonal there, so that the preconditioner M + B' C B of
+// pressure_preconditioner.hpp is the matrix itself, but for walls inside the grid and its single precision:
+// one or two iterations.
+
+#include "libmpm/step/space_system.hpp"
+#include "libmpm/transfer/even_out.hpp"
+
+namespace tremie {
+
+inline std::vector<Vec<3>> even_out_in_space(const YieldProblem<ThreeD>& problem, const CellFill& cells,
+                                             SpaceSystem& system) {
+  const auto& grid = problem.grid;
+  const auto& b = problem.quadrature.b;
+  std::vector<Vec<3>> u(grid.node_index.size(), Vec<3>::Zero());
+  std::vector<char> fixed;
+  Eigen::VectorXd R = fill_forces(problem, cells, fixed);
+  double trace = 0.0;
+  for (double m : problem.nodes.mass) trace = std::max(trace, 1e-12 * m);
+  std::vector<Mat<3, 3>> G(u.size());
+  for (int i = 0; i < grid.n_nodes(); ++i)
+    G[i] = std::max(trace, problem.nodes.mass[i]) * Mat<3, 3>::Identity();
+  std::vector<BoundPoint<3>> bound = problem.bound;
+  for (BoundPoint<3>& wall : bound) wall.stiffness *= problem.dt;
+  const auto multiply = [&](const Eigen::VectorXd& x, Eigen::VectorXd& out) {
+    std::vector<double> pull(cells.stiffness.size());
+#pragma omp parallel for schedule(static)
+    for (int c = 0; c < grid.n_cells(); ++c) {
+      double div = 0.0;
+      for (int k = 0; k < 27; ++k) div += b[c][k].dot(x.segment<3>(3 * grid.cell_nodes[c][k]));
+      pull[c] = cells.stiffness[c] * div;
+    }
+#pragma omp parallel for schedule(static)
+    for (int i = 0; i < grid.n_nodes(); ++i) {
+      Vec<3> sum = std::max(trace, problem.nodes.mass[i]) * x.segment<3>(3 * i);
+      for (const int* e = system.batches.entries_begin(i); e != system.batches.entries_end(i); ++e)
+        sum += pull[*e / 27] * b[*e / 27][*e % 27];
+      out.segment<3>(3 * i) = sum;
+    }
+    add_bound_products(bound, grid.cell_nodes, x, out);
+    mask(fixed, out);
+  };
+  add_bound_blocks(bound, grid.cell_nodes, G);
+  invert_blocks(fixed, G);
+  PressurePreconditioner preconditioner;
+  if (!preconditioner.build(grid, system.batches, b, std::move(G), cells.stiffness)) return u;
+  const auto precondition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
+    preconditioner.apply(system.batches, grid, r, z);
+  };
+  Eigen::VectorXd x;
+  conjugate_gradients(multiply, precondition, {.reduction = 1e-6, .most = 50}, R, x);
+  for (int i = 0; i < grid.n_nodes(); ++i) u[i] = x.segment<3>(3 * i);
+  return u;
+}
+
+}  // namespace tremie

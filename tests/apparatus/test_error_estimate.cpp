@@ -1,0 +1,83 @@
+// The error bar of a result from three grids.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "apparatus/scene/error_estimate.hpp"
+
+namespace tremie::scene {
+namespace {
+
+// f(h) = 100 + c h^p is what Richardson assumes: the order comes back, and the bar is 1.25 times the true
+// error c h^p of the finest grid, for orders up to the second.
+TEST(Extrapolation, FindsTheOrderAndTheErrorOfAPowerLaw) {
+  for (const double p : {0.6, 1.0, 1.5, 2.0})
+    for (const double c : {3.0, -0.7}) {
+      const auto f = [&](double h) { return 100.0 + c * std::pow(h, p); };
+      const Extrapolation e = extrapolate(f(1.0), f(1.5), f(2.0));
+      EXPECT_TRUE(e.richardson);
+      EXPECT_NEAR(e.order, p, 1e-6);
+      EXPECT_NEAR(e.error, 1.25 * std::abs(c), 1e-6 * std::abs(c));
+    }
+}
+
+// An order above the second is not trusted: the bar is that of the second order, wider than the error.
+TEST(Extrapolation, TrustsNoOrderAboveTheSecond) {
+  const auto f = [](double h) { return 100.0 + std::pow(h, 3.5); };
+  const Extrapolation e = extrapolate(f(1.0), f(1.5), f(2.0));
+  EXPECT_TRUE(e.richardson);
+  EXPECT_NEAR(e.error, 1.25 * (f(1.5) - f(1.0)) / 1.25, 1e-12);
+  EXPECT_GT(e.error, 1.0);
+}
+
+// Grids that scatter show no order: 1.25 times their spread.
+TEST(Extrapolation, TakesTheSpreadWhereNoOrderIsSeen) {
+  const Extrapolation e = extrapolate(553.0, 550.0, 556.0);
+  EXPECT_FALSE(e.richardson);
+  EXPECT_DOUBLE_EQ(e.error, 1.25 * 6.0);
+}
+
+// Three equal readings are no proof of an exact one: a thousandth stays.
+TEST(Extrapolation, IsNeverNothing) { EXPECT_DOUBLE_EQ(extrapolate(500.0, 500.0, 500.0).error, 0.5); }
+
+Scene coarse_slump() {
+  return read_text(
+      "apparatus = \"slump_flow\"\nmix = \"mix_c\"\n[test]\nduration = \"0.2 s\"\nlift_speed = \"instant\"\n"
+      "[model]\ncell = [\"20 mm\", \"10 mm\"]\npoints_per_cell = 2\n",
+      "coarse");
+}
+
+TEST(ErrorEstimate, CoarsensCellsAndFixedSteps) {
+  Scene scene = coarse_slump();
+  std::get<slump_flow::Scene>(scene.test).model.time_step = 1e-3;
+  const Scene coarser = coarsened(scene, 1.5);
+  const Model& model = std::get<slump_flow::Scene>(coarser.test).model;
+  EXPECT_DOUBLE_EQ(model.cell[0], 0.03);
+  EXPECT_DOUBLE_EQ(model.cell[1], 0.015);
+  EXPECT_DOUBLE_EQ(model.time_step.value(), 1.5e-3);
+  EXPECT_EQ(cells_override(scene, 0.5), "model.cell=[\"10 mm\", \"5 mm\"]");
+}
+
+// Every headline number that the three runs have gets a bar; t500 is never reached here and gets none.
+TEST(ErrorEstimate, GivesEveryHeadlineItsBar) {
+  const Scene scene = coarse_slump();
+  const Outcome outcome = run(scene);
+  const ErrorEstimate estimate = estimate_error(scene, outcome);
+  ASSERT_EQ(estimate.bars.size(), 2u) << estimate.basis;
+  EXPECT_EQ(estimate.bars[0].name, "spread_mm");
+  EXPECT_EQ(estimate.bars[1].name, "height_mm");
+  EXPECT_GT(estimate.bars[0].error, 0.0);
+  EXPECT_FALSE(estimate.basis.empty());
+}
+
+TEST(ErrorEstimate, SaysWhyThereIsNone) {
+  Outcome outcome;
+  outcome.status = Status::interrupted;
+  const ErrorEstimate estimate = estimate_error(coarse_slump(), outcome);
+  EXPECT_TRUE(estimate.bars.empty());
+  EXPECT_TRUE(estimate.basis.starts_with("none: "));
+}
+
+}  // namespace
+}  // namespace tremie::scene

@@ -1,0 +1,155 @@
+// The step in space without a matrix: the same solution as the factorised system, and what must hold of it.
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include "tests/libmpm/bodies.hpp"
+
+namespace tremie {
+namespace {
+
+using namespace test;
+
+StepSettings by_iteration(double tolerance) {
+  StepSettings settings;
+  settings.admm.direct_below = 0;
+  settings.admm.tolerance = tolerance;
+  return settings;
+}
+
+/// A block of concrete on the floor between two planes of symmetry, free to slump.
+Body<ThreeD> block(double K) {
+  Body<ThreeD> body;
+  body.mix = concrete(54.0, 35.8, K);
+  body.gravity[2] = -9.81;
+  for (int d = 0; d < 2; ++d) body.grid.axes[d] = {.h = 0.02, .low = FaceKind::free_slip};
+  body.grid.axes[2] = {.h = 0.015, .low = FaceKind::no_slip};
+  fill_box(body, Vec<3>(Vec<3>::Zero()), Vec<3>(0.06, 0.08, 0.09), 2);
+  return body;
+}
+
+double difference(const Points<3>& a, const Points<3>& b) {
+  double worst = 0.0;
+  for (std::size_t p = 0; p < a.size(); ++p) worst = std::max(worst, (a.v[p] - b.v[p]).norm());
+  return worst;
+}
+
+// Both solve the same convex problem: with a tight tolerance the velocities agree to it, for a soft and a
+// stiff bulk modulus. The body slumps at about 0.3 m/s.
+TEST(SpaceSolver, AgreesWithTheFactorisedSystem) {
+  omp_set_num_threads(1);
+  for (double K : {33e3, 1e6}) {
+    Body<ThreeD> direct = block(K), iterated = block(K);
+    StepSettings exact = by_iteration(1e-6), tight = exact;
+    exact.admm.direct_below = 1'000'000;
+    exact.fixed_dt = tight.fixed_dt = 0.01;
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_TRUE(implicit_step(direct, ExactBingham{}, exact).converged);
+      EXPECT_TRUE(implicit_step(iterated, ExactBingham{}, tight).converged);
+    }
+    EXPECT_LE(difference(direct.points, iterated.points), 5e-5);
+  }
+}
+
+// The same bits with one thread and with two.
+TEST(SpaceSolver, BitsDoNotDependOnTheThreads) {
+  Body<ThreeD> one = block(1e6), two = block(1e6);
+  for (int i = 0; i < 2; ++i) {
+    omp_set_num_threads(1);
+    implicit_step(one, ExactBingham{}, by_iteration(1e-3));
+    omp_set_num_threads(2);
+    implicit_step(two, ExactBingham{}, by_iteration(1e-3));
+  }
+  omp_set_num_threads(1);
+  for (std::size_t p = 0; p < one.points.size(); ++p) {
+    EXPECT_EQ(one.points.x[p], two.points.x[p]);
+    EXPECT_EQ(one.points.v[p], two.points.v[p]);
+    EXPECT_EQ(one.points.ln_J[p], two.points.ln_J[p]);
+  }
+}
+
+// The preconditioner keeps B' C B whole: thirty times the bulk modulus must not take twice the products.
+TEST(SpaceSolver, StiffBulkCostsNoMore) {
+  omp_set_num_threads(1);
+  long long products[2];
+  for (int i = 0; i < 2; ++i) {
+    Body<ThreeD> body = block(i == 0 ? 33e3 : 1e6);
+    StepSettings settings = by_iteration(1e-3);
+    settings.even_out.on = true;
+    for (int step = 0; step < 5; ++step) EXPECT_TRUE(implicit_step(body, ExactBingham{}, settings).converged);
+    products[i] = body.space_system.products;
+  }
+  std::printf("matrix products in five steps: K = 33 kPa %lld, 1 MPa %lld\n", products[0], products[1]);
+  EXPECT_LE(products[1], 2 * products[0]);
+}
+
+// The products of one spline a direction against the strain rows: gradients and their adjoint at walls and
+// away.
+TEST(SpaceSolver, GradientsAndTheirAdjoint) {
+  omp_set_num_threads(1);
+  Body<ThreeD> body = block(1e6);
+  activate(body.grid, body.points);
+  CellBatches batches;
+  batches.lay_out(body.grid);
+  const int n = body.grid.n_nodes();
+  Eigen::VectorXd v(3 * n), sum = Eigen::VectorXd::Zero(3 * n);
+  for (int i = 0; i < 3 * n; ++i) v[i] = std::sin(1.7 * i);
+  double worst = 0.0, work_on_gradients = 0.0;
+  for (int b = 0; b < batches.n_batches(); ++b) {
+    PlaceTensors G;
+    batches.gradients(b, v.data(), G);
+    batches.scatter(b, G);
+    for (int c = b * n_lanes; c < std::min((b + 1) * n_lanes, body.grid.n_cells()); ++c)
+      for (int k = 0; k < 8; ++k) {
+        const Stencil<3> st = stencil<3>(body.grid.axes, body.grid.cell_index[c], gauss_place<3>(k));
+        Mat<3, 3> L = Mat<3, 3>::Zero();
+        for (int i = 0; i < 27; ++i) L += v.segment<3>(3 * body.grid.cell_nodes[c][i]) * st.g[i].transpose();
+        for (int d = 0; d < 3; ++d)
+          for (int e = 0; e < 3; ++e) worst = std::max(worst, std::abs(G.g[d][e][k][c % n_lanes] - L(d, e)));
+        work_on_gradients += L.squaredNorm();
+      }
+  }
+  for (int i = 0; i < n; ++i) sum.segment<3>(3 * i) = batches.gathered(i);
+  EXPECT_LE(worst, 1e-11 * 100.0);  // gradients are of the order 1/h = 100 1/s
+  EXPECT_NEAR(sum.dot(v) / work_on_gradients, 1.0, 1e-12);
+}
+
+// A ball of Newtonian fluid that collapses on a slippery floor: its four quadrants stay mirror images to 1e-9
+// of its radius, and its mass is kept to the bit.
+TEST(SpaceSolver, BallCollapsesSymmetrically) {
+  omp_set_num_threads(2);
+  const double R = 0.06;
+  Body<ThreeD> body;
+  body.mix = concrete(0.0, 20.0);
+  body.gravity[2] = -9.81;
+  for (int d = 0; d < 2; ++d) body.grid.axes[d].h = 0.02;
+  body.grid.axes[2] = {.h = 0.02, .low = FaceKind::free_slip};
+  seed_box<ThreeD>(
+      Vec<3>(-R, -R, 0.0), Vec<3>(R, R, 2 * R), {12, 12, 12}, body.mix.density, body.mix.K,
+      [R](const Vec<3>& x) { return (x - Vec<3>(0, 0, R)).norm() < R; }, [](const auto&) { return 0.0; },
+      body.points);
+  const Points<3> start = body.points;
+  StepSettings settings = by_iteration(1e-8);
+  settings.even_out.on = true;
+  while (body.time < 0.1) ASSERT_TRUE(implicit_step(body, ExactBingham{}, settings).converged);
+  const auto& x = body.points.x;
+  double worst = 0.0, top = 0.0, top_before = 0.0;
+  for (std::size_t p = 0; p < x.size(); ++p) {
+    top = std::max(top, x[p][2]), top_before = std::max(top_before, start.x[p][2]);
+    for (std::size_t q = 0; q < x.size(); ++q)
+      for (int mirror = 1; mirror < 4; ++mirror) {
+        const Vec<3> m(mirror & 1 ? -1.0 : 1.0, mirror & 2 ? -1.0 : 1.0, 1.0);
+        if ((start.x[p] - m.cwiseProduct(start.x[q])).norm() < 1e-9)
+          worst = std::max(worst, (x[p] - m.cwiseProduct(x[q])).norm() / R);
+      }
+  }
+  std::printf("ball: top from %.1f to %.1f mm, quadrants differ by %.1e of the radius\n", 1e3 * top_before,
+              1e3 * top, worst);
+  EXPECT_LE(top, 0.9 * top_before);
+  EXPECT_LE(worst, 1e-9);
+  EXPECT_EQ(total_mass(body.points), total_mass(start));
+  omp_set_num_threads(1);
+}
+
+}  // namespace
+}  // namespace tremie

@@ -1,0 +1,114 @@
+// Rung 5: the Couette line of the vane apparatus against Reiner-Riwlin and against the radial reference by
+// IDA.
+
+#include <fmt/format.h>
+
+#include "apparatus/icar_vane/icar_vane.hpp"
+#include "rheometer/reiner_riwlin.hpp"
+#include "rheometer/thixotropic_couette.hpp"
+#include "tests/verification/ladder/ladder.hpp"
+
+namespace tremie::verification {
+namespace {
+
+icar_vane::Scene scene_of(const Bingham& bingham, double speed, double cell_mm) {
+  icar_vane::Scene scene;
+  scene.mix.tau_0 = bingham.tau_0;
+  scene.mix.mu = bingham.mu;
+  scene.speed = speed;
+  scene.model.space = SpaceKind::couette;
+  scene.model.cell = {1e-3 * cell_mm, 1e-3 * cell_mm};
+  return scene;
+}
+
+Run torque_error(const Bingham& bingham, double speed, double cell_mm) {
+  const double start = cpu_seconds();
+  icar_vane::Scene scene = scene_of(bingham, speed, cell_mm);
+  scene.duration = 10.0;
+  const auto outcome = icar_vane::run(scene);
+  const double exact = reiner_riwlin(bingham, angular_speed(speed)).torque;
+  return {fmt::format("{:g} mm", cell_mm), cell_mm, std::abs(outcome.results.torque_end / exact - 1.0),
+          cpu_seconds() - start,
+          outcome.checks.unconverged_steps ? fmt::format("{} unconverged", outcome.checks.unconverged_steps)
+                                           : ""};
+}
+
+Case steady(Depth depth) {
+  Case one{.name = "couette",
+           .title = "Steady torque",
+           .equation = "(1/r²) d(r² τ)/dr = 0 between r = 63.5 and 143 mm, exact Bingham",
+           .reference = "Reiner-Riwlin, the plug's radius solved for",
+           .norm = "relative error of the torque",
+           .series = {},
+           .bounds = {}};
+  struct Flow {
+    const char* name;
+    Bingham bingham;
+    double speed;
+  };
+  for (const Flow& flow : {Flow{"Mix A, 0.25 rev/s (plug)", {54, 35.8}, 0.25},
+                           {"Mix B, 0.25 rev/s", {61, 29}, 0.25},
+                           {"Mix C, 0.25 rev/s", {130, 30.2}, 0.25},
+                           {"Mix A, 0.5 rev/s (no plug)", {54, 35.8}, 0.5},
+                           {"366 Pa, 0.25 rev/s", {366, 35.8}, 0.25}}) {
+    Series series{flow.name, {}};
+    for (double cell : {8.0, 4.0, 2.0, 1.0}) {
+      if (cell == 1.0 && depth == Depth::quick) break;
+      series.runs.push_back(torque_error(flow.bingham, flow.speed, cell));
+    }
+    one.bounds.push_back(
+        {.what = series.scheme + ": error at 2 mm", .value = series.runs[2].error, .limit = 5e-3});
+    one.series.push_back(std::move(series));
+  }
+  return one;
+}
+
+/// Worst relative error of the torque from 0.5 to 20 s.
+Run decay_error(double cell_mm, const CouetteDecay& reference) {
+  const double start = cpu_seconds();
+  icar_vane::Scene scene = scene_of({54.0, 35.8}, 0.25, cell_mm);
+  scene.mix.thixotropy = Thixotropy{.A_thix = 1.3, .alpha = 0.0358};
+  scene.rest = 240.0;
+  scene.duration = 20.0;
+  const auto outcome = icar_vane::run(scene);
+  const auto& s = outcome.series;
+  double worst = 0.0;
+  for (std::size_t k = 0, i = 1; k < reference.time.size(); ++k) {
+    while (i + 1 < s.size() && s[i].time < reference.time[k]) ++i;
+    const double share = (reference.time[k] - s[i - 1].time) / (s[i].time - s[i - 1].time);
+    const double torque = s[i - 1].torque + share * (s[i].torque - s[i - 1].torque);
+    if (reference.time[k] >= 0.5) worst = std::max(worst, std::abs(torque / reference.torque[k] - 1.0));
+  }
+  return {fmt::format("{:g} mm", cell_mm), cell_mm, worst, cpu_seconds() - start};
+}
+
+Case decay(Depth depth) {
+  Case one{.name = "couette_decay",
+           .title = "Torque decay after 240 s of rest",
+           .equation = "μγ̇ + (1+λ)τ0 = T/(2πr²h), dλ/dt = −αλγ̇, gated; Mix A, α = 0.0358, 0.25 rev/s",
+           .reference = "the radial equations by SUNDIALS IDA, 800 intervals, tolerance 1e-8",
+           .norm = "largest relative error of the torque from 0.5 to 20 s",
+           .series = {{"MPM", {}}},
+           .bounds = {}};
+  std::vector<double> times;
+  for (int i = 0; i <= 40; ++i) times.push_back(0.5 * i);
+  CouetteOptions options;
+  options.intervals = 800;
+  options.relative_tolerance = 1e-8;
+  const double lambda = flocculation_after_rest(0.0, {.A_thix = 1.3}, 54.0, 240.0);
+  const CouetteFlow flow{{54.0, 35.8}, {1.3, 0.0358, Kinetics::gated, 0.1, lambda}, angular_speed(0.25), {}};
+  const CouetteDecay reference = thixotropic_couette(flow, times, {}, options);
+  for (double cell : {8.0, 4.0, 2.0, 1.0}) {
+    if (cell == 1.0 && depth == Depth::quick) break;
+    one.series[0].runs.push_back(decay_error(cell, reference));
+  }
+  one.bounds = {
+      {.what = "error at the finest cells", .value = one.series[0].runs.back().error, .limit = 0.01}};
+  return one;
+}
+
+}  // namespace
+
+Rung couette_rung(Depth depth) { return {5, "Couette flow", {steady(depth), decay(depth)}}; }
+
+}  // namespace tremie::verification

@@ -1,0 +1,56 @@
+// Rung 7: the L-box at rest, against the thin-layer closed form.
+
+#include <fmt/format.h>
+
+#include "apparatus/l_box/l_box.hpp"
+#include "tests/verification/ladder/ladder.hpp"
+#include "tests/verification/lbox_reference.hpp"
+
+namespace tremie::verification {
+namespace {
+
+Run at_rest(double cell, bool side_walls) {
+  constexpr double tau_0 = 50.0;
+  l_box::Scene scene;
+  scene.mix.tau_0 = tau_0;
+  scene.mix.mu = 30.0;
+  scene.duration = 180.0;
+  scene.model.space = side_walls ? SpaceKind::plane_with_side_walls : SpaceKind::plane;
+  scene.model.cell = {cell, cell};
+  scene.model.points_per_cell = {16, 4};
+  const double start = cpu_seconds();
+  const l_box::Outcome outcome = l_box::run(scene);
+  const auto& profile = outcome.results.profile;
+  const auto form = lbox_reference::at_the_volume_of(profile, tau_0, side_walls ? 0.2 : 0.0, 0.7);
+  return {fmt::format("{:g} mm", 1e3 * cell), cell, lbox_reference::error_of(profile, form).worst,
+          cpu_seconds() - start,
+          outcome.checks.unconverged_steps
+              ? fmt::format("{} unconverged steps", outcome.checks.unconverged_steps)
+              : ""};
+}
+
+}  // namespace
+
+Rung l_box_rung(Depth depth) {
+  Case one{.name = "l_box_at_rest",
+           .title = "The profile of the L-box at rest",
+           .equation = "50 Pa, 30 Pa·s, gate at 30 cm/s, 180 s",
+           .reference =
+               "F(h) − F(h2) = (τ0/ρg)(L − x) at the volume in the channel; F = h²/2, or with side "
+               "walls (W/2)[h − (W/2) ln(1 + 2h/W)]",
+           .norm = "largest mean of h / h_exact − 1 over 100 mm",
+           .series = {{"plane", {}}, {"plane with side walls", {}}},
+           .bounds = {},
+           .notes = {"The error does not fall with the cell: the films on the column's walls still feed the "
+                     "channel, and the thin-layer form leaves out the normal stress of the plug, 1 %."}};
+  for (Series& series : one.series) {
+    const bool side_walls = &series != &one.series.front();
+    series.runs.push_back(at_rest(0.02, side_walls));
+    if (depth == Depth::full) series.runs.push_back(at_rest(0.01, side_walls));
+    one.bounds.push_back(
+        {.what = series.scheme + ": error", .value = series.runs.back().error, .limit = 0.04});
+  }
+  return {7, "The L-box at rest", {one}};
+}
+
+}  // namespace tremie::verification

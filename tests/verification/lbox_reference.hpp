@@ -1,0 +1,86 @@
+#pragma once
+
+// What the L-box is held against: the closed form of its profile at rest and the films on its column's walls.
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace tremie::lbox_reference {
+
+inline constexpr double rho_g = 2400.0 * 9.81;
+
+/// Thin-layer profile at rest against an end wall: F(h) - F(h2) = (tau_0 / rho g)(L - x), F = h^2/2 without
+/// side walls (width = 0) and (W/2)[h - (W/2) ln(1 + 2h/W)] with them.
+struct Profile {
+  double tau_0, width, end, h2;
+
+  double F(double h) const {
+    return width > 0.0 ? 0.5 * width * (h - 0.5 * width * std::log1p(2.0 * h / width)) : 0.5 * h * h;
+  }
+  double depth(double x) const {
+    const double target = F(h2) + tau_0 / rho_g * (end - x);
+    double low = 0.0, high = 1.0;
+    for (int i = 0; i < 60; ++i) {
+      const double h = 0.5 * (low + high);
+      (F(h) < target ? low : high) = h;
+    }
+    return 0.5 * (low + high);
+  }
+};
+
+/// The closed form at the volume of a measured profile (distance from the gate, depth; even steps).
+inline Profile at_the_volume_of(const std::vector<std::array<double, 2>>& measured, double tau_0,
+                                double width, double end) {
+  double sum = 0.0;
+  for (const auto& [x, h] : measured) sum += h;
+  double low = 0.0, high = 0.5;
+  for (int i = 0; i < 50; ++i) {
+    const Profile profile{tau_0, width, end, 0.5 * (low + high)};
+    double of_form = 0.0;
+    for (const auto& [x, h] : measured) of_form += profile.depth(x);
+    (of_form < sum ? low : high) = profile.h2;
+  }
+  return {tau_0, width, end, 0.5 * (low + high)};
+}
+
+/// Relative errors of a measured profile: root mean square of its stations, and the worst of their means over
+/// 100 mm (a station is two cells, and a drop on it a few millimetres).
+struct ProfileError {
+  double rms = 0.0, worst = 0.0;
+};
+
+inline ProfileError error_of(const std::vector<std::array<double, 2>>& measured, const Profile& profile) {
+  constexpr double part = 0.1;
+  std::vector<double> sum(static_cast<std::size_t>(std::lround(profile.end / part)), 0.0);
+  std::vector<int> count(sum.size(), 0);
+  ProfileError error;
+  for (const auto& [x, h] : measured) {
+    const double e = h / profile.depth(x) - 1.0;
+    error.rms += e * e / static_cast<double>(measured.size());
+    const auto k = std::min(sum.size() - 1, static_cast<std::size_t>(x / part));
+    sum[k] += e;
+    ++count[k];
+  }
+  error.rms = std::sqrt(error.rms);
+  for (std::size_t k = 0; k < sum.size(); ++k)
+    if (count[k] > 0) error.worst = std::max(error.worst, std::abs(sum[k] / count[k]));
+  return error;
+}
+
+/// Volume a metre of width of a Bingham film that drains down a wall from its top to `length` below [m^2],
+/// long after it was left there: the kinematic wave z / t = (rho g / mu) s (s + tau_0 / rho g), s the depth
+/// of its sheared part, on which the plug of tau_0 / rho g rides.
+inline double film_volume(double tau_0, double mu, double length, double time) {
+  constexpr int n = 1000;
+  const double plug = tau_0 / rho_g;
+  double volume = 0.0;
+  for (int i = 0; i < n; ++i) {
+    const double z = (i + 0.5) / n * length;
+    const double s = 0.5 * (std::sqrt(plug * plug + 4.0 * mu * z / (rho_g * time)) - plug);
+    volume += (s + plug) * length / n;
+  }
+  return volume;
+}
+
+}  // namespace tremie::lbox_reference
