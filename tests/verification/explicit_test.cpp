@@ -64,8 +64,8 @@ TEST_P(ShearWave, DecaysAtItsRate) {
   for (const int cells : {4, 8, 16}) errors.push_back(wave_error(cells, kind, stress));
   const double order = std::log2(errors[0] / errors[2]) / 2.0;
   std::printf("shear wave, %s, stress %s: errors %.2e %.2e %.2e, order %.2f\n",
-              kind == ShapeFunctions::gimp ? "GIMP" : "splines", stress == StressUpdate::last ? "last" : "first",
-              errors[0], errors[1], errors[2], order);
+              kind == ShapeFunctions::gimp ? "GIMP" : "splines",
+              stress == StressUpdate::last ? "last" : "first", errors[0], errors[1], errors[2], order);
   EXPECT_LE(errors.back(), 0.01);
   EXPECT_GE(order, 1.7);
 }
@@ -115,7 +115,8 @@ TEST(Poiseuille, RegularisedProfile) {
     errors.push_back(std::sqrt(error / norm));
   }
   const double order = std::log2(errors[0] / errors[2]) / 2.0;
-  std::printf("Poiseuille, m = 5 s: errors %.2e %.2e %.2e, order %.2f\n", errors[0], errors[1], errors[2], order);
+  std::printf("Poiseuille, m = 5 s: errors %.2e %.2e %.2e, order %.2f\n", errors[0], errors[1], errors[2],
+              order);
   EXPECT_LE(errors.back(), 0.01);
   EXPECT_GE(order, 1.7);
 }
