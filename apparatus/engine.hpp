@@ -135,6 +135,8 @@ std::array<double, 3> in_space(const Vec<Space::dim>& x) {
     return {x[0], 0.0, 0.0};
   else if constexpr (std::is_same_v<Space, Axisymmetric>)
     return {x[0], 0.0, x[1]};
+  else if constexpr (std::is_same_v<Space, Polar>)
+    return {x[0] * std::cos(x[1]), x[0] * std::sin(x[1]), 0.0};
   else
     return {x[0], x[1], 0.0};
 }
@@ -146,12 +148,14 @@ std::vector<double> shear_rates_now(const Body<Space>& body) {
   constexpr int D = Space::dim;
   ActiveGrid<D> grid;
   grid.axes = body.grid.axes;
+  grid.blocks = body.grid.blocks;
   activate(grid, body.points);
   NodalState<D> nodes;
   point_to_grid(grid, body.points, nodes);
   std::vector<char> fixed;
   std::vector<FrictionNode<D>> friction;
   detail::apply_flat_walls<D>(grid, body.walls, fixed, friction, nodes.v);
+  detail::apply_blocks<D>(grid, fixed, nodes.v);
   std::vector<double> gamma_dot;
   shear_rate_at_points<Space>(grid, nodes.v, body.points, gamma_dot);
   return gamma_dot;
@@ -167,6 +171,11 @@ Frame frame_of(const Body<Space>& body) {
     frame.position.push_back(in_space<Space>(points.x[p]));
     frame.velocity.push_back(in_space<Space>(points.v[p]));
     if constexpr (Space::dim == 1) frame.velocity.back() = {0.0, points.v[p][0], 0.0};
+    if constexpr (std::is_same_v<Space, Polar>) {
+      const double c = std::cos(points.x[p][1]), s = std::sin(points.x[p][1]);
+      const Vec<2>& v = points.v[p];
+      frame.velocity.back() = {c * v[0] - s * v[1], s * v[0] + c * v[1], 0.0};
+    }
     frame.volume.push_back(points.volume(p));
     frame.pressure.push_back(pressure(points.ln_J[p], body.mix.K));
   }
@@ -202,7 +211,8 @@ void watch_fixed_step(const Body<Space>& body, const Model& model, const StepRep
   if (!model.time_step) return;
   for (int d = 0; d < Space::dim; ++d) {
     double v = 0.0;
-    for (const auto& vp : body.points.v) v = std::max(v, std::abs(vp[d]));
+    for (std::size_t p = 0; p < body.points.size(); ++p)
+      v = std::max(v, std::abs(body.motion.rate(body.points.x[p], body.points.v[p])[d]));
     checks.cells_in_a_step = std::max(checks.cells_in_a_step, v * step.dt / body.grid.axes[d].h);
   }
 }

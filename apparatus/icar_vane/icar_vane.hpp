@@ -22,6 +22,7 @@ struct Vane {
   double container_radius = 0.143;
   int blades = 4;                  ///< plane sections alone; a Couette section is a solid cylinder
   double blade_thickness = 0.003;  ///< plane sections alone [m]
+  double shaft_radius = 0.01;      ///< about which the blades stand; plane sections alone [m]
 };
 
 /// A checked scene, SI units; speeds in revolutions a second.
@@ -35,7 +36,7 @@ struct Scene {
   double pre_shear_speed = 0.5, pre_shear_time = 20.0;  ///< before a flow curve [rev/s], [s]
   double hold_time = 5.0;                               ///< of each speed of a flow curve [s]
   double average_time = 2.0;    ///< the last part of each hold, over which the torque is averaged [s]
-  double orientation = 0.0;     ///< of the blades against the grid, plane sections alone [rad]
+  double orientation = 0.0;     ///< of the blades against the points, plane sections alone [rad]
   Model model;                  ///< space couette or plane
   double frame_interval = 0.5;  ///< [s]
   int threads = 1;

@@ -12,10 +12,9 @@ namespace tremie::icar_vane {
 namespace {
 
 constexpr double alpha_window = 5.0;  // at most, where the record is as long [s]
-constexpr double end_average =
-    0.5;  // over which the torques at the end are averaged: blades jitter as they cross cells [s]
-constexpr double agreement = 0.01;  // of the three torques, once steady
-constexpr double settled = 1.0;     // after the start-up, before which the torques are not compared [s]
+constexpr double end_average = 0.5;   // over which the torques at the end are averaged [s]
+constexpr double agreement = 0.01;    // of the three torques, once steady
+constexpr double settled = 1.0;       // after the start-up, before which the torques are not compared [s]
 
 Instrument instrument_of(const Vane& vane) {
   Instrument instrument;
@@ -137,7 +136,7 @@ void check_torques_agree(Outcome& outcome) {
   if (scale > 0.0 && std::max(wall, power) > agreement * scale)
     outcome.checks.reasons.push_back("the torques on the blades, on the wall and from the power differ by " +
                                      std::to_string(100.0 * std::max(wall, power) / scale) +
-                                     " %: the cells are too coarse");
+                                     " %: not steady, or cells too large");
 }
 
 }  // namespace tremie::icar_vane

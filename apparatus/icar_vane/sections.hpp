@@ -14,7 +14,10 @@ namespace tremie::icar_vane {
 struct Torques {
   double blades = 0.0, wall = 0.0;  ///< [N m/m]
   double angular_momentum = 0.0;    ///< of the concrete [kg m^2/s per m]
+  double power = 0.0;               ///< dissipated by the stresses [W/m]
 };
+
+inline constexpr double thinnest = 0.125;  ///< of a cell: a thinner blade is a sheet
 
 /// Concrete circling between a cylinder and the container: a radial line of cells.
 struct CouetteSection {
@@ -37,9 +40,7 @@ struct CouetteSection {
         body.points);
     return body;
   }
-  void turn(Body<Space>& body, double omega, double) const {
-    body.walls.v[0][0] = Vec<1>(omega * vane.radius);
-  }
+  void turn(Body<Space>& body, double omega) const { body.walls.v[0][0] = Vec<1>(omega * vane.radius); }
 
   Torques torques(const Body<Space>& body) const {
     Torques t;
@@ -50,83 +51,110 @@ struct CouetteSection {
     }
     for (std::size_t p = 0; p < body.points.size(); ++p)
       t.angular_momentum += body.points.mass[p] * body.points.x[p][0] * body.points.v[p][0];
+    t.power = body.dissipation;
     return t;
   }
   double radius(const Vec<1>& x) const { return x[0]; }
   double speed(const Vec<1>&, const Vec<1>& v) const { return v[0]; }
+  Frame whole(const Frame& line, double) const { return line; }
 };
 
-/// A horizontal section through the blades, the vane turning in a container at rest; blades and container are
-/// boundary points half a cell apart.
+/// A horizontal section through the blades, in polar coordinates that turn with the vane. One blade and its
+/// share of the container repeat all around. Container, shaft and blade lie on faces of the grid: the
+/// container and the shaft are the ends of the radial axis, the blade is a block of cells from the shaft to
+/// its tip, as thick as the real one at its tip and thinner inwards, where the concrete turns with it.
 struct PlaneSection {
-  using Space = PlaneStrain;
+  using Space = Polar;
   const Vane& vane;
-  double spacing, orientation;  ///< of the boundary points [m]; of the first blade at time 0 [rad]
-  std::vector<BoundaryPoint<2>> container{};
+  double sector;               ///< one blade's share [rad]
+  double shaft;                ///< a whole number of cells inside the tips [m]
+  std::array<double, 2> cell;  ///< [m], [rad]
+  int n_blade, n_radial;       ///< cells from the shaft to the tips and to the container
+  int n_thick, n_around;       ///< cells across the blade and around
 
-  PlaneSection(const Scene& scene)
-      : vane(scene.vane), spacing(0.5 * scene.model.cell[0]), orientation(scene.orientation) {
-    const int n = static_cast<int>(std::ceil(2.0 * std::numbers::pi * vane.container_radius / spacing));
-    for (int k = 0; k < n; ++k) {
-      const double a = 2.0 * std::numbers::pi * k / n;
-      container.push_back({vane.container_radius * Vec<2>(std::cos(a), std::sin(a))});
-    }
-  }
-  /// Whether a place lies inside a blade, in the frame of the vane at the angle `turned`.
-  bool in_blade(const Vec<2>& x, double turned) const {
-    for (int b = 0; b < vane.blades; ++b) {
-      const double a = turned + 2.0 * std::numbers::pi * b / vane.blades;
-      const double along = x[0] * std::cos(a) + x[1] * std::sin(a),
-                   across = -x[0] * std::sin(a) + x[1] * std::cos(a);
-      if (along >= 0.0 && along <= vane.radius && std::abs(across) <= 0.5 * vane.blade_thickness) return true;
-    }
-    return false;
+  explicit PlaneSection(const Scene& scene)
+      : vane(scene.vane), sector(2.0 * std::numbers::pi / scene.vane.blades) {
+    const double gap = vane.container_radius - vane.radius, arc = sector * vane.radius;
+    const auto cells = [](double length, double size, int least) {
+      return std::max(least, static_cast<int>(std::lround(length / size)));
+    };
+    const int n_gap = cells(gap, scene.model.cell[0], 2);
+    n_blade = cells(vane.radius - vane.shaft_radius, gap / n_gap, 2);
+    n_radial = n_gap + n_blade;
+    const bool sheet = vane.blade_thickness < thinnest * scene.model.cell[1];
+    n_thick = sheet ? 0 : cells(vane.blade_thickness, scene.model.cell[1], 1);
+    n_around =
+        n_thick > 0 ? n_thick * cells(arc, vane.blade_thickness, 2) : cells(arc, scene.model.cell[1], 4);
+    cell = {gap / n_gap, sector / n_around};
+    shaft = vane.radius - n_blade * cell[0];
   }
   Body<Space> body_at_rest(const Scene& scene) const {
     Body<Space> body;
     body.mix = scene.mix;
-    for (int d = 0; d < 2; ++d) body.grid.axes[d] = {.h = scene.model.cell[0]};
-    const double R = vane.container_radius;
-    const int n =
-        static_cast<int>(std::lround(2.0 * R / scene.model.cell[0] * scene.model.points_per_cell[0]));
+    const int first = (n_around - n_thick) / 2;
+    body.grid.axes[0] = {.h = cell[0],
+                         .origin = shaft,
+                         .low = FaceKind::no_slip,
+                         .high = FaceKind::no_slip,
+                         .n_cells = n_radial,
+                         .creases = {n_blade}};
+    body.grid.axes[1] = {.h = cell[1], .periodic = true, .n_cells = n_around, .creases = {first}};
+    if (n_thick > 0) body.grid.axes[1].creases.push_back(first + n_thick);
+    body.grid.blocks = {{{0, first}, {n_blade, first + n_thick}, {}}};
+    const auto wrapped = [&](const Vec<2>& x) {
+      return Vec<2>(x[0], x[1] - sector * std::floor(x[1] / sector));
+    };
+    const auto in_concrete = [&](const Vec<2>& x) {
+      return !block_of_cell<2>(body.grid, detail::cell_of<2>(body.grid.axes, wrapped(x)));
+    };
     seed_box<Space>(
-        {-R, -R}, {R, R}, {n, n}, scene.mix.density, scene.mix.K,
-        [&](const Vec<2>& x) { return x.norm() < R && !in_blade(x, orientation); },
-        [](const Vec<2>&) { return 0.0; }, body.points);
+        {shaft, scene.orientation}, {vane.container_radius, sector + scene.orientation},
+        {n_radial * scene.model.points_per_cell[0], n_around * scene.model.points_per_cell[1]},
+        scene.mix.density, scene.mix.K, in_concrete, [](const Vec<2>&) { return 0.0; }, body.points);
+    for (Vec<2>& x : body.points.x) x = wrapped(x);
     return body;
   }
-  /// The vane at the angle `turned`, turning at omega: the outlines of its blades.
-  void turn(Body<Space>& body, double omega, double turned) const {
-    body.boundary = container;
-    const double half = 0.5 * vane.blade_thickness;
-    const int n = static_cast<int>(std::ceil(vane.radius / spacing));
-    for (int b = 0; b < vane.blades; ++b) {
-      const double a = orientation + turned + 2.0 * std::numbers::pi * b / vane.blades;
-      const Vec<2> along(std::cos(a), std::sin(a)), across(-std::sin(a), std::cos(a));
-      for (int k = 0; k <= n; ++k)
-        for (double side : {-half, half}) {
-          const Vec<2> x = vane.radius * k / n * along + side * across;
-          body.boundary.push_back({x, omega * Vec<2>(-x[1], x[0])});
-        }
-    }
+  /// The vane turns at omega, and the grid with it.
+  void turn(Body<Space>& body, double omega) const {
+    body.motion.grid_rate = omega;
+    body.walls.v[0][0] = Vec<2>(0.0, omega * shaft);
+    body.grid.blocks[0].velocity = [omega](const Vec<2>& x) { return Vec<2>(0.0, omega * x[0]); };
   }
+  /// The nodal velocity v_theta = r of a turn as a whole strains nothing, so that the moments of the nodal
+  /// forces are in balance to the last digit.
   Torques torques(const Body<Space>& body) const {
     Torques t;
-    for (const BoundPoint<2>& b : body.bound) {
-      const Vec<2> F = wall_force<2>(b, body.grid.cell_nodes, body.v), x = body.boundary[b.source].x;
-      const double moment = x[0] * F[1] - x[1] * F[0];
-      if (b.source < static_cast<int>(container.size()))
+    for (int i = 0; i < body.grid.n_nodes(); ++i) {
+      const double r = body.grid.node_position(i)[0], moment = r * body.wall_force[i][1];
+      if (body.grid.axes[0].on_high_wall(body.grid.node_index[i][0]))
         t.wall -= moment;
       else
-        t.blades += moment;
+        t.blades += moment;  // nothing, where the node is free
+      t.angular_momentum += r * body.nodes.mass[i] * body.v[i][1];
     }
-    const auto& p = body.points;
-    for (std::size_t i = 0; i < p.size(); ++i)
-      t.angular_momentum += p.mass[i] * (p.x[i][0] * p.v[i][1] - p.x[i][1] * p.v[i][0]);
+    for (double* all : {&t.blades, &t.wall, &t.angular_momentum}) *all *= vane.blades;
+    t.power = vane.blades * body.dissipation;
     return t;
   }
-  double radius(const Vec<2>& x) const { return x.norm(); }
-  double speed(const Vec<2>& x, const Vec<2>& v) const { return (x[0] * v[1] - x[1] * v[0]) / x.norm(); }
+  double radius(const Vec<2>& x) const { return x[0]; }
+  double speed(const Vec<2>&, const Vec<2>& v) const { return v[1]; }
+  /// The whole section, as a standing observer sees it after the vane has turned by `turned`; its blades
+  /// stood along the axes at the start.
+  Frame whole(const Frame& part, double turned) const {
+    Frame all;
+    all.time = part.time;
+    for (int b = 0; b < vane.blades; ++b) {
+      const double a = turned + (b - 0.5) * sector, c = std::cos(a), s = std::sin(a);
+      const auto turn_into = [&](const auto& from, auto& to) {
+        for (const auto& x : from) to.push_back({c * x[0] - s * x[1], s * x[0] + c * x[1], 0.0});
+      };
+      turn_into(part.position, all.position);
+      turn_into(part.velocity, all.velocity);
+      for (const auto field : {&Frame::volume, &Frame::pressure, &Frame::shear_rate, &Frame::flocculation})
+        (all.*field).insert((all.*field).end(), (part.*field).begin(), (part.*field).end());
+    }
+    return all;
+  }
 };
 
 }  // namespace tremie::icar_vane

@@ -42,7 +42,11 @@ Section vane_section() {
                 .range = between(2, 12),
                 .fallback = "4",
                 .help = "in the plane; a Couette section has a solid cylinder"},
-               {.name = "blade_thickness", .range = positive, .fallback = "3 mm", .help = "in the plane"}}};
+               {.name = "blade_thickness", .range = positive, .fallback = "3 mm", .help = "in the plane"},
+               {.name = "shaft_radius",
+                .range = positive,
+                .fallback = "10 mm",
+                .help = "in the plane: about which the blades stand; concrete there turns with them"}}};
 }
 
 Section test_section() {
@@ -77,7 +81,7 @@ Section test_section() {
   section.keys.push_back({.name = "orientation",
                           .dimension = Dimension::angle,
                           .fallback = "0 deg",
-                          .help = "of the blades against the grid, in the plane"});
+                          .help = "of the blades against the points, in the plane"});
   return section;
 }
 
@@ -129,6 +133,9 @@ void check_vane(const Values& values) {
     values.fail("vane.container_radius",
                 fmt::format("does not hold the vane; allowed: greater than vane.radius, \"{}\"",
                             write_quantity(radius, Dimension::length)));
+  if (values.number("vane.shaft_radius") >= radius)
+    values.fail("vane.shaft_radius", fmt::format("leaves no blades; allowed: less than vane.radius, \"{}\"",
+                                                 write_quantity(radius, Dimension::length)));
   const double n = values.number("vane.blades");
   const double widest = two_pi * radius / n;
   if (values.number("vane.blade_thickness") >= widest)
@@ -162,7 +169,8 @@ void check_cells(const Values& values, const icar_vane::Scene& scene) {
                             write_quantity(gap, Dimension::length)));
   const auto [n_across, n_up] = scene.model.points_per_cell;
   const double points =
-      couette ? gap / across * n_across : std::numbers::pi * R / across * n_across * R / up * n_up;
+      couette ? gap / across * n_across
+              : R / across * n_across * two_pi * scene.vane.radius / scene.vane.blades / up * n_up;
   if (points > most_points)
     values.fail("model.cell",
                 fmt::format("makes about {:.0e} points; allowed: at most {:.0e}, by larger cells or fewer "
@@ -205,7 +213,8 @@ ApparatusKeys icar_vane_keys() {
   keys.schema.push_back(model_section(
       {"couette", "plane"}, {.cell = "",
                              .points_per_cell = "3",
-                             .cell_help = "1 mm for \"couette\", 5 mm for \"plane\", if left out"}));
+                             .cell_help = "1 mm for \"couette\", 5 mm for \"plane\", if left out; in the "
+                                          "plane [along the radius, around at the tips]"}));
   keys.schema.push_back(output_section());
   return keys;
 }
@@ -213,9 +222,9 @@ ApparatusKeys icar_vane_keys() {
 icar_vane::Scene icar_vane_scene(const Values& values) {
   icar_vane::Scene scene;
   scene.mix = read_mix(values);
-  scene.vane = {values.number("vane.radius"), values.number("vane.height"),
+  scene.vane = {values.number("vane.radius"),           values.number("vane.height"),
                 values.number("vane.container_radius"), static_cast<int>(values.integer("vane.blades")),
-                values.number("vane.blade_thickness")};
+                values.number("vane.blade_thickness"),  values.number("vane.shaft_radius")};
   read_schedule(values, scene);
   scene.orientation = values.number("test.orientation");
   scene.model = read_model(values);

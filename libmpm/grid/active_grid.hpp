@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "libmpm/grid/axis.hpp"
@@ -45,11 +46,20 @@ struct IndexMap {
   int at(const Index<D>& i) const { return contains(i) ? value[offset(i)] : -1; }
 };
 
+/// A rigid wall that fills whole cells, between faces of the grid that are creases or walls; a sheet where a
+/// low face is also the high one. No concrete enters it.
+template <int D>
+struct Block {
+  Index<D> low, high;                               ///< faces: the cells [low, high)
+  std::function<Vec<D>(const Vec<D>& x)> velocity;  ///< of the block at x [m/s]
+};
+
 template <int D>
 struct ActiveGrid {
   static constexpr int n_local = power(3, D);  ///< nodes seen by a cell
 
   std::array<Axis, D> axes;
+  std::vector<Block<D>> blocks;
 
   std::vector<Index<D>> cell_index;                  ///< of each active cell, in lexicographic order
   std::vector<std::array<int, n_local>> cell_nodes;  ///< active node of each local control
@@ -172,14 +182,15 @@ void number_nodes(ActiveGrid<D>& grid) {
   Index<D> low, high;
   for (int d = 0; d < D; ++d) {
     const Axis& a = grid.axes[d];
-    low[d] = a.periodic ? 0 : grid.cell_map.low[d];
-    high[d] = a.periodic ? a.n_cells - 1 : grid.cell_map.low[d] + grid.cell_map.extent[d] + 1;
+    low[d] = a.periodic ? 0 : a.first_control(grid.cell_map.low[d]);
+    high[d] = a.periodic ? a.n_cells + a.n_creases() - 1
+                         : a.first_control(grid.cell_map.low[d] + grid.cell_map.extent[d] - 1) + 2;
   }
   grid.node_map.reset(low, high);
   const auto control = [&](const Index<D>& cell, int k) {
     const Index<D> o = local_offset<D>(k);
     Index<D> j;
-    for (int d = 0; d < D; ++d) j[d] = grid.axes[d].control(cell[d] + o[d]);
+    for (int d = 0; d < D; ++d) j[d] = grid.axes[d].control(grid.axes[d].first_control(cell[d]) + o[d]);
     return j;
   };
   for (const Index<D>& cell : grid.cell_index)
@@ -217,6 +228,30 @@ void activate(ActiveGrid<D>& grid, const Points<D>& points) {
   detail::number_nodes(grid);
 }
 
+/// The block that fills a cell, if any.
+template <int D>
+const Block<D>* block_of_cell(const ActiveGrid<D>& grid, const Index<D>& cell) {
+  for (const Block<D>& b : grid.blocks) {
+    bool in = true;
+    for (int d = 0; d < D; ++d) in = in && cell[d] >= b.low[d] && cell[d] < b.high[d];
+    if (in) return &b;
+  }
+  return nullptr;
+}
+
+/// The block that a node lies in or on, if any.
+template <int D>
+const Block<D>* block_of_node(const ActiveGrid<D>& grid, const Index<D>& node) {
+  for (const Block<D>& b : grid.blocks) {
+    bool in = true;
+    for (int d = 0; d < D; ++d)
+      in = in && node[d] >= grid.axes[d].first_control(b.low[d]) &&
+           node[d] <= grid.axes[d].first_control(b.high[d]);
+    if (in) return &b;
+  }
+  return nullptr;
+}
+
 /// Whether a cell lies inside the body: every neighbour holds concrete or is beyond a wall.
 template <int D>
 bool is_inside(const ActiveGrid<D>& grid, const Index<D>& cell) {
@@ -226,10 +261,10 @@ bool is_inside(const ActiveGrid<D>& grid, const Index<D>& cell) {
     for (int d = 0; d < D; ++d) {
       const Axis& a = grid.axes[d];
       n[d] += cell[d] - 1;
-      if (a.periodic) n[d] = a.control(n[d]);
+      n[d] = a.cell(n[d]);
       beyond_wall = beyond_wall || (a.wall_low() && n[d] < 0) || (a.wall_high() && n[d] >= a.n_cells);
     }
-    if (!beyond_wall && grid.cell_map.at(n) < 0) return false;
+    if (!beyond_wall && grid.cell_map.at(n) < 0 && !block_of_cell<D>(grid, n)) return false;
   }
   return true;
 }

@@ -5,10 +5,12 @@
 // Cell c covers [origin + c h, origin + (c+1) h] and sees the control values c, c+1, c+2. Control j sits at
 // (j - 1/2) h from the origin (its Greville abscissa), except at a wall, where the knot vector is open: there
 // the end spline is interpolatory, its control sits on the wall and fixing it fixes the velocity on the whole
-// wall.
+// wall. A crease is a face inside the grid with the same property: the velocity may bend there, and one
+// control sits on it, one more than without.
 
 #include <array>
 #include <cmath>
+#include <vector>
 
 namespace tremie {
 
@@ -26,7 +28,8 @@ struct Axis {
   FaceKind low = FaceKind::open;
   FaceKind high = FaceKind::open;
   bool periodic = false;
-  int n_cells = 0;  ///< of a periodic axis, or of one with a high wall; otherwise unused
+  int n_cells = 0;                ///< of a periodic axis, or of one with a high wall; otherwise unused
+  std::vector<int> creases = {};  ///< the cells above them, ascending; none at an end of the axis
 
   bool wall_low() const { return low != FaceKind::open; }
   bool wall_high() const { return high != FaceKind::open; }
@@ -38,14 +41,36 @@ struct Axis {
     if (wall_high() && c >= n_cells) c = n_cells - 1;
     return c;
   }
-  /// Control index as stored: wrapped on a periodic axis.
-  int control(int j) const { return periodic ? ((j % n_cells) + n_cells) % n_cells : j; }
+  int n_creases() const { return static_cast<int>(creases.size()); }
+  bool creased(int face) const {
+    for (int f : creases)
+      if (f == face) return true;
+    return false;
+  }
+  /// The first of the three controls that a cell sees; that of the face below it, if that is a wall or a
+  /// crease.
+  int first_control(int cell) const {
+    int j = cell;
+    for (int f : creases) j += f <= cell ? 1 : 0;
+    return j;
+  }
+  /// Cell and control index as stored: wrapped on a periodic axis.
+  int cell(int c) const { return periodic ? ((c % n_cells) + n_cells) % n_cells : c; }
+  int control(int j) const {
+    const int n = n_cells + n_creases();
+    return periodic ? ((j % n) + n) % n : j;
+  }
   bool on_low_wall(int j) const { return wall_low() && j == 0; }
-  bool on_high_wall(int j) const { return wall_high() && j == n_cells + 1; }
+  bool on_high_wall(int j) const { return wall_high() && j == n_cells + 1 + n_creases(); }
   double control_position(int j) const {
     if (on_low_wall(j)) return origin;
     if (on_high_wall(j)) return origin + length();
-    return origin + (j - 0.5) * h;
+    int below = 0;
+    for (int f : creases) {
+      if (j == f + below + 1) return origin + f * h;
+      below += j > f + below + 1 ? 1 : 0;
+    }
+    return origin + (j - below - 0.5) * h;
   }
 };
 
@@ -56,8 +81,8 @@ struct SplineValues {
 
 /// Splines of cell c at the local coordinate s in [0, 1].
 inline SplineValues splines(const Axis& axis, int c, double s) {
-  const bool low = axis.wall_low() && c == 0;
-  const bool high = axis.wall_high() && c == axis.n_cells - 1;
+  const bool low = (axis.wall_low() && c == 0) || axis.creased(c);
+  const bool high = (axis.wall_high() && c == axis.n_cells - 1) || axis.creased(c + 1);
   const double t = 1.0 - s, ih = 1.0 / axis.h;
   SplineValues v;
   v.N[0] = low ? t * t : 0.5 * t * t;
@@ -69,7 +94,7 @@ inline SplineValues splines(const Axis& axis, int c, double s) {
   return v;
 }
 
-/// Integral of control j's spline over the cells that exist [m]: its share of the line.
+/// Integral of control j's spline over the cells that exist [m]: its share of the line. Without creases.
 inline double spline_integral(const Axis& axis, int j) {
   double share = 1.0;
   if (axis.wall_low()) share = j == 0 ? 1.0 / 3.0 : j == 1 ? 2.0 / 3.0 : share;

@@ -107,14 +107,18 @@ class BlockSystem {
   void number_across_the_thin_way(const ActiveGrid<D>& grid) {
     Index<D> way;
     for (int d = 0; d < D; ++d) way[d] = d;
-    std::sort(way.begin(), way.end(),
-              [&](int a, int b) { return grid.node_map.extent[a] > grid.node_map.extent[b]; });
+    // A periodic axis is folded, so that what meets at its seam has near numbers: it counts half as long.
+    const auto length = [&](int d) { return grid.node_map.extent[d] * (grid.axes[d].periodic ? 1 : 2); };
+    std::sort(way.begin(), way.end(), [&](int a, int b) { return length(a) > length(b); });
+    const auto place = [&](int node, int d) {
+      const int i = grid.node_index[node][d], n = grid.node_map.extent[d];
+      return !grid.axes[d].periodic ? i : 2 * i < n ? 2 * i : 2 * (n - 1 - i) + 1;
+    };
     std::vector<int> by_place(n_nodes_);
     for (int i = 0; i < n_nodes_; ++i) by_place[i] = i;
     std::sort(by_place.begin(), by_place.end(), [&](int a, int b) {
       for (int d : way)
-        if (grid.node_index[a][d] != grid.node_index[b][d])
-          return grid.node_index[a][d] < grid.node_index[b][d];
+        if (grid.node_index[a][d] != grid.node_index[b][d]) return place(a, d) < place(b, d);
       return false;
     });
     band_dof_.resize(n_nodes_ * D);

@@ -56,9 +56,10 @@ StepReport implicit_step(Body<Space>& body, const Law& law, const StepSettings& 
   const bool even = Space::advects && settings.even_out.on;
   const std::vector<Vec<D>> u =
       even ? detail::evening_shift(problem, settings, gamma_dot, body) : std::vector<Vec<D>>{};
-  grid_to_point(body.grid, body.v, v_old, settings.transfer, Space::advects ? dt : 0.0, body.points);
+  grid_to_point(body.grid, body.v, v_old, settings.transfer, Space::advects ? dt : 0.0, body.points,
+                body.motion);
   if (settings.strays > 0.0) hold_strays<D>(body.grid.axes, dt, body.points);
-  if (even) shift_points<D>(body.grid, u, body.points);
+  if (even) shift_points<D>(body.grid, u, body.points, body.motion);
   body.time += dt;
   body.dt = dt;
 

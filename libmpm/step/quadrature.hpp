@@ -196,8 +196,11 @@ void lay_out_quadrature(const ActiveGrid<Space::dim>& grid, const Points<Space::
     }
     std::array<double, n> structure;
     detail::add_up_points<Space>(grid, points, c, x, quadrature.V[c], structure);
-    for (int k = 0; k < n; ++k)
-      quadrature.tau_y[c][k] = quadrature.V[c][k] > 0.0 ? tau_0 * structure[k] / quadrature.V[c][k] : tau_0;
+    double all_V = 0.0, all_structure = 0.0;
+    for (int k = 0; k < n; ++k) all_V += quadrature.V[c][k], all_structure += structure[k];
+    for (int k = 0; k < n; ++k)  // where no point is near, as in the rest of the cell
+      quadrature.tau_y[c][k] =
+          tau_0 * (quadrature.V[c][k] > 0.0 ? structure[k] / quadrature.V[c][k] : all_structure / all_V);
     // Inside the body a cell is full: with counted volumes the pressure would push whenever a point crosses
     // into a cell.
     if (is_inside<D>(grid, cell)) quadrature.V[c] = detail::full_volumes<Space>(grid.axes, x);

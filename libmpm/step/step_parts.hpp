@@ -66,6 +66,18 @@ void apply_flat_walls(const ActiveGrid<D>& grid, const WallVelocities<D>& walls,
     }
 }
 
+/// Blocks prescribe the velocities of their nodes.
+template <int D>
+void apply_blocks(const ActiveGrid<D>& grid, std::vector<char>& fixed, std::vector<Vec<D>>& v) {
+  if (grid.blocks.empty()) return;
+  for (int i = 0; i < grid.n_nodes(); ++i) {
+    const Block<D>* block = block_of_node<D>(grid, grid.node_index[i]);
+    if (!block) continue;
+    v[i] = block->velocity(grid.node_position(i));
+    for (int d = 0; d < D; ++d) fixed[i * D + d] = 1;
+  }
+}
+
 /// ln J of the points from the mean divergence of their cells, the same that the step's pressure used.
 template <class Space>
 void update_volumes(const YieldProblem<Space>& problem, const std::vector<Vec<Space::dim>>& v,
@@ -253,6 +265,7 @@ void pose(Body<Space>& body, const StepSettings& settings, const RigidWall<Space
       body.grid, body.quadrature, body.nodes, dt, body.mix.mu, body.mix.K, {}, {}, {}, {}, {}});
   posed->zeta = settings.alternating_viscosity * body.mix.mu;
   apply_flat_walls<D>(body.grid, body.walls, posed->fixed, posed->friction, body.v);
+  apply_blocks<D>(body.grid, posed->fixed, body.v);
   if (settings.side_wall_distance > 0.0) add_side_walls(settings.side_wall_distance, *posed);
   posed->bound = find_bound_points(body.grid, body.nodes, body.boundary, dt, settings.boundary_stiffness);
   carry_friction<Space>(body.friction, old_nodes, body.grid, posed->friction);

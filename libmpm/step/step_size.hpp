@@ -37,8 +37,9 @@ double choose_dt(const Body<Space>& body, const StepSettings& settings) {
   if (settings.fixed_dt) return *settings.fixed_dt;
   double dt = body.dt > 0.0 ? std::min(settings.dt_max, settings.growth * body.dt) : settings.dt_max;
   for (int d = 0; d < Space::dim && Space::advects; ++d) {
-    const double v = speed_of_most(body.points, settings.strays,
-                                   [&](std::size_t p) { return std::abs(body.points.v[p][d]); });
+    const double v = speed_of_most(body.points, settings.strays, [&](std::size_t p) {
+      return std::abs(body.motion.rate(body.points.x[p], body.points.v[p])[d]);
+    });
     const double reach = settings.cfl * body.grid.axes[d].h;
     if (v > 0.0) dt = std::min(dt, reach / v);
     // From rest the speed at the end of the step counts: g dt^2 <= reach.

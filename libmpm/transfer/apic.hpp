@@ -11,6 +11,7 @@
 
 #include "libmpm/grid/active_grid.hpp"
 #include "libmpm/points/points.hpp"
+#include "libmpm/space/motion.hpp"
 
 namespace tremie {
 
@@ -29,7 +30,7 @@ std::array<std::array<double, 3>, D> control_positions(const std::array<Axis, D>
                                                        const Index<D>& cell) {
   std::array<std::array<double, 3>, D> xi;
   for (int d = 0; d < D; ++d)
-    for (int k = 0; k < 3; ++k) xi[d][k] = axes[d].control_position(cell[d] + k);
+    for (int k = 0; k < 3; ++k) xi[d][k] = axes[d].control_position(axes[d].first_control(cell[d]) + k);
   return xi;
 }
 
@@ -90,6 +91,14 @@ void keep_in_domain(const std::array<Axis, D>& axes, Vec<D>& x) {
   }
 }
 
+/// Keeps a point that moved from `from` to x in the domain and out of blocks: one that would enter a block
+/// stays.
+template <int D>
+void keep_in_domain(const ActiveGrid<D>& grid, const Vec<D>& from, Vec<D>& x) {
+  keep_in_domain<D>(grid.axes, x);
+  if (!grid.blocks.empty() && block_of_cell<D>(grid, detail::cell_of<D>(grid.axes, x))) x = from;
+}
+
 /// Adds per-cell contributions to the nodes in the order of the cells: the sum does not depend on the
 /// threads.
 template <int D>
@@ -138,10 +147,10 @@ struct Transfer {
 };
 
 /// Grid to point: velocities and affine velocities from the nodal velocities v at the end of the step (v_old
-/// at its start, for FLIP alone); the points move with the same v over dt.
-template <int D>
+/// at its start, for FLIP alone); the points move with the same v over dt, as their space has it.
+template <int D, class Move = StraightAhead>
 void grid_to_point(const ActiveGrid<D>& grid, const std::vector<Vec<D>>& v, const std::vector<Vec<D>>& v_old,
-                   const Transfer& transfer, double dt, Points<D>& points) {
+                   const Transfer& transfer, double dt, Points<D>& points, const Move& motion = {}) {
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < grid.n_cells(); ++c) {
     const auto xi = detail::control_positions<D>(grid.axes, grid.cell_index[c]);
@@ -160,8 +169,9 @@ void grid_to_point(const ActiveGrid<D>& grid, const std::vector<Vec<D>>& v, cons
       points.C[p] =
           transfer.flip ? Mat<D, D>(Mat<D, D>::Zero()) : Mat<D, D>(moment * st.inverse_inertia.asDiagonal());
       points.v[p] = transfer.flip ? Vec<D>(vp + transfer.flip_blend * (points.v[p] - vp_old)) : vp;
-      points.x[p] += dt * vp;
-      keep_in_domain<D>(grid.axes, points.x[p]);
+      const Vec<D> from = points.x[p];
+      motion.move(points, p, vp, dt);
+      keep_in_domain<D>(grid, from, points.x[p]);
     }
   }
 }

@@ -68,8 +68,9 @@ Eigen::VectorXd fill_forces(const YieldProblem<Space>& problem, const CellFill& 
   fixed.assign(R.size(), 0);
   for (int i = 0; i < grid.n_nodes(); ++i)
     for (int d = 0; d < D; ++d)
-      fixed[i * D + d] =
-          grid.axes[d].on_low_wall(grid.node_index[i][d]) || grid.axes[d].on_high_wall(grid.node_index[i][d]);
+      fixed[i * D + d] = grid.axes[d].on_low_wall(grid.node_index[i][d]) ||
+                         grid.axes[d].on_high_wall(grid.node_index[i][d]) ||
+                         block_of_node<D>(grid, grid.node_index[i]);
   mask(fixed, R);
   return R;
 }
@@ -105,8 +106,9 @@ std::vector<Vec<Space::dim>> even_out(const YieldProblem<Space>& problem, const 
 }
 
 /// Moves the points by the displacements u; their velocities follow the field they move in.
-template <int D>
-void shift_points(const ActiveGrid<D>& grid, const std::vector<Vec<D>>& u, Points<D>& points) {
+template <int D, class Move = StraightAhead>
+void shift_points(const ActiveGrid<D>& grid, const std::vector<Vec<D>>& u, Points<D>& points,
+                  const Move& motion = {}) {
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < grid.n_cells(); ++c) {
     for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
@@ -119,8 +121,9 @@ void shift_points(const ActiveGrid<D>& grid, const std::vector<Vec<D>>& u, Point
       Vec<D> shift = Vec<D>::Zero();
       for (int k = 0; k < power(3, D); ++k) shift += st.N[k] * u[grid.cell_nodes[c][k]];
       points.v[p] += points.C[p] * shift;
-      points.x[p] += shift;
-      keep_in_domain<D>(grid.axes, points.x[p]);
+      const Vec<D> from = points.x[p];
+      motion.shift(points, p, shift);
+      keep_in_domain<D>(grid, from, points.x[p]);
     }
   }
 }

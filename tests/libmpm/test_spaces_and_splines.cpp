@@ -7,7 +7,7 @@
 #include <random>
 
 #include "libmpm/grid/active_grid.hpp"
-#include "libmpm/space/spaces.hpp"
+#include "libmpm/space/polar.hpp"
 #include "libmpm/transfer/apic.hpp"
 
 namespace tremie {
@@ -29,12 +29,16 @@ Eigen::Matrix3d gradient_3d(const Vec<Space::dim>& v, const Mat<Space::dim, Spac
   if constexpr (std::is_same_v<Space, Axisymmetric>) {  // order r, z, theta; the hoop rate is v_r / r
     G(2, 2) = v[0] / x[0];
   }
+  if constexpr (std::is_same_v<Space, Polar>) {  // derivatives along theta are over r, and the basis turns
+    G(0, 1) = (L(0, 1) - v[1]) / x[0];
+    G(1, 1) = (L(1, 1) + v[0]) / x[0];
+  }
   return G;
 }
 
 template <class Space>
 class Spaces : public testing::Test {};
-using AllSpaces = testing::Types<Axisymmetric, PlaneStrain, ThreeD>;
+using AllSpaces = testing::Types<Axisymmetric, PlaneStrain, Polar, ThreeD>;
 TYPED_TEST_SUITE(Spaces, AllSpaces);
 
 // A linear velocity field, sampled at the controls of cells in the open and next to walls, must give the
@@ -88,8 +92,21 @@ std::vector<Axis> axes() {
   return all;
 }
 
+/// The same with creases: one, two next to each other, two apart.
+std::vector<Axis> axes_and_creased() {
+  std::vector<Axis> all = axes();
+  for (Axis a : axes()) {
+    if (a.n_cells < 7) continue;
+    for (const std::vector<int>& creases : {std::vector{1}, {6}, {3, 4}, {2, 5}}) {
+      a.creases = creases;
+      all.push_back(a);
+    }
+  }
+  return all;
+}
+
 TEST(Splines, PartitionOfUnityAndLinearCompleteness) {
-  for (const Axis& a : axes())
+  for (const Axis& a : axes_and_creased())
     for (int c = 0; c < a.n_cells; ++c)
       for (double s = 0.0; s <= 1.0; s += 0.05) {
         const SplineValues v = splines(a, c, s);
@@ -97,7 +114,8 @@ TEST(Splines, PartitionOfUnityAndLinearCompleteness) {
         for (int k = 0; k < 3; ++k) {
           EXPECT_GE(v.N[k], 0.0);
           sum += v.N[k], slope_sum += v.dN[k];
-          place += v.N[k] * a.control_position(c + k), slope += v.dN[k] * a.control_position(c + k);
+          const double control = a.control_position(a.first_control(c) + k);
+          place += v.N[k] * control, slope += v.dN[k] * control;
         }
         EXPECT_NEAR(sum, 1.0, 1e-14);
         EXPECT_NEAR(slope_sum, 0.0, 1e-13);
@@ -134,6 +152,24 @@ TEST(Splines, SmoothAndInterpolatoryOnWalls) {
   }
 }
 
+// A crease belongs to one control, the last of the cell below and the first of the cell above; elsewhere the
+// splines go on smoothly, a control further for every crease.
+TEST(Splines, BendAtCreasesAlone) {
+  for (const Axis& a : axes_and_creased())
+    for (int c = 0; c + 1 < a.n_cells; ++c) {
+      const SplineValues left = splines(a, c, 1.0), right = splines(a, c + 1, 0.0);
+      if (a.creased(c + 1)) {
+        EXPECT_EQ(a.first_control(c) + 2, a.first_control(c + 1));
+        EXPECT_EQ(a.control_position(a.first_control(c + 1)), a.origin + (c + 1) * a.h);
+        EXPECT_EQ(left.N[2], 1.0);
+        EXPECT_EQ(right.N[0], 1.0);
+      } else {
+        EXPECT_EQ(a.first_control(c) + 1, a.first_control(c + 1));
+        for (int k = 0; k < 2; ++k) EXPECT_NEAR(left.dN[k + 1], right.dN[k], 1e-13);
+      }
+    }
+}
+
 // The integral of every spline over the cells that exist, by Simpson's rule, exact on quadratics.
 TEST(Splines, Integrals) {
   for (const Axis& a : axes())
@@ -157,7 +193,8 @@ TEST(Transfer, MomentumOnShortPeriodicAxes) {
   for (int n : {1, 2, 3}) {
     ActiveGrid<2> grid;
     grid.axes[0] = {.h = 0.1, .periodic = true, .n_cells = n};
-    grid.axes[1] = {.h = 0.07, .low = FaceKind::free_slip};
+    grid.axes[1] = {.h = 0.07, .low = FaceKind::free_slip, .creases = {1}};
+    if (n == 3) grid.axes[0].creases = {1, 2};
     Points<2> points;
     double mass = 0.0;
     Vec<2> momentum = Vec<2>::Zero();
