@@ -64,7 +64,7 @@ std::vector<WallPoint<Space::dim>> find_wall_points(const RigidWall<Space::dim>&
     const auto view = wall(x, time);
     if (!view || view->gap > reach) continue;
     if (weighed != g) {
-      std::array<Lanes, D> places;
+      std::array<Octet, D> places;
       for (int d = 0; d < D; ++d) places[d] = state.points.x[d][g];
       weigh<D>(grid.axes, state.shape, tile.at, places, weights);
       weighed = g;

@@ -9,10 +9,10 @@
 
 namespace tremie {
 
-inline Lanes secant(const Papanastasiou& law, const Lanes& gamma_dot, const Lanes& tau_y) {
+inline Octet secant(const Papanastasiou& law, const Octet& gamma_dot, const Octet& tau_y) {
   return law.m * tau_y * mean_decay(law.m * gamma_dot);
 }
-inline Lanes secant(const BiViscous& law, const Lanes& gamma_dot, const Lanes& tau_y) {
+inline Octet secant(const BiViscous& law, const Octet& gamma_dot, const Octet& tau_y) {
   return tau_y / max(gamma_dot, all_lanes(law.gamma_c));
 }
 
@@ -21,22 +21,22 @@ inline double largest_secant(const Papanastasiou& law, double tau_y) { return la
 inline double largest_secant(const BiViscous& law, double tau_y) { return tau_y / law.gamma_c; }
 
 /// flocculation_step of flocculation.hpp.
-inline Lanes flocculation_step(const Lanes& lambda, const Thixotropy& t, double tau_0, const Lanes& gamma_0,
-                               const Lanes& gamma_1, double dt) {
+inline Octet flocculation_step(const Octet& lambda, const Thixotropy& t, double tau_0, const Octet& gamma_0,
+                               const Octet& gamma_1, double dt) {
   const double built = t.A_thix / tau_0 * dt, half = 0.5 * t.alpha * dt;
   if (t.kinetics == Kinetics::roussel) {
-    const Lanes k = half * (gamma_0 + gamma_1), d = mean_decay(k);
+    const Octet k = half * (gamma_0 + gamma_1), d = mean_decay(k);
     return lambda * (1.0 - k * d) + built * d;
   }
   // Gated: before and after the crossing of gamma_c at the share theta of the step.
-  const Lanes none = {}, gate = none + t.gamma_c;
-  const LaneMask rest_0 = gamma_0 < t.gamma_c, rest_1 = gamma_1 < t.gamma_c;
-  const LaneMask crosses = rest_0 ^ rest_1;
-  const Lanes theta = crosses ? (gate - gamma_0) / (crosses ? gamma_1 - gamma_0 : none + 1.0) : none + 1.0;
-  const Lanes before = rest_0 ? built * theta : none;
-  const Lanes after = (crosses & rest_1) ? built * (1.0 - theta) : none;
-  const Lanes flow_0 = rest_0 ? none : half * theta * (gamma_0 + (crosses ? gate : gamma_1));
-  const Lanes flow_1 = (crosses & rest_0) ? half * (1.0 - theta) * (gate + gamma_1) : none;
+  const Octet none = {}, gate = none + t.gamma_c;
+  const OctetMask rest_0 = gamma_0 < t.gamma_c, rest_1 = gamma_1 < t.gamma_c;
+  const OctetMask crosses = rest_0 ^ rest_1;
+  const Octet theta = crosses ? (gate - gamma_0) / (crosses ? gamma_1 - gamma_0 : none + 1.0) : none + 1.0;
+  const Octet before = rest_0 ? built * theta : none;
+  const Octet after = (crosses & rest_1) ? built * (1.0 - theta) : none;
+  const Octet flow_0 = rest_0 ? none : half * theta * (gamma_0 + (crosses ? gate : gamma_1));
+  const Octet flow_1 = (crosses & rest_0) ? half * (1.0 - theta) * (gate + gamma_1) : none;
   return (lambda + before) * exp(-(flow_0 + flow_1)) + after;
 }
 

@@ -17,11 +17,11 @@ namespace tremie {
 /// without mass, whose id is -1.
 template <int D>
 struct LanePoints {
-  std::array<std::vector<Lanes>, D> x, v;             ///< [m], [m/s]
-  std::array<std::vector<Lanes>, D * D> C;            ///< affine velocity, row by row [1/s]; empty with FLIP
-  std::vector<Lanes> mass, V0, ln_J;                  ///< [kg], [m^3], ln(V/V0)
-  std::vector<Lanes> lambda, gamma_dot;               ///< empty without thixotropy
-  std::vector<std::array<std::int32_t, n_lanes>> id;  ///< place in the Points that it came from
+  std::array<std::vector<Octet>, D> x, v;   ///< [m], [m/s]
+  std::array<std::vector<Octet>, D * D> C;  ///< affine velocity, row by row [1/s]; empty with FLIP
+  std::vector<Octet> mass, V0, ln_J;        ///< [kg], [m^3], ln(V/V0)
+  std::vector<Octet> lambda, gamma_dot;     ///< empty without thixotropy
+  std::vector<std::array<std::int32_t, octet_size>> id;  ///< place in the Points that it came from
 
   std::size_t groups() const { return mass.size(); }
   bool thixotropic() const { return !lambda.empty(); }
@@ -31,7 +31,7 @@ struct LanePoints {
 template <int D>
 int filled(const LanePoints<D>& points, std::size_t group) {
   int n = 0;
-  while (n < n_lanes && points.id[group][static_cast<std::size_t>(n)] >= 0) ++n;
+  while (n < octet_size && points.id[group][static_cast<std::size_t>(n)] >= 0) ++n;
   return n;
 }
 
@@ -59,9 +59,9 @@ void for_each_array(LanePoints<D>& lanes, bool affine, bool thixotropic, Visit v
 /// Writes the state of the points back to where they came from.
 template <int D>
 void write_back(LanePoints<D>& lanes, const std::array<Axis, D>& axes, Points<D>& points) {
-  const auto copy = [&](std::vector<Lanes>& from, auto member) {
+  const auto copy = [&](std::vector<Octet>& from, auto member) {
     for (std::size_t g = 0; g < lanes.groups(); ++g)
-      for (int l = 0; l < n_lanes; ++l) {
+      for (int l = 0; l < octet_size; ++l) {
         const std::int32_t id = lanes.id[g][static_cast<std::size_t>(l)];
         if (id >= 0) member(points, static_cast<std::size_t>(id)) = from[g][l];
       }
@@ -100,13 +100,13 @@ std::vector<Tile<D>> sort_into_tiles(const std::array<Axis, D>& axes, double ste
 
   std::vector<Tile<D>> tiles;
   lanes.id.clear();
-  int lane = n_lanes;
+  int lane = octet_size;
   for (const Key& key : keys) {
     if (tiles.empty() || tiles.back().at != key.tile) {
       tiles.push_back({.at = key.tile, .first_group = static_cast<int>(lanes.id.size())});
-      lane = n_lanes;
+      lane = octet_size;
     }
-    if (lane == n_lanes) {
+    if (lane == octet_size) {
       lanes.id.push_back({});
       lanes.id.back().fill(-1);
       lane = 0;
@@ -114,10 +114,10 @@ std::vector<Tile<D>> sort_into_tiles(const std::array<Axis, D>& axes, double ste
     lanes.id.back()[static_cast<std::size_t>(lane++)] = key.id;
     tiles.back().last_group = static_cast<int>(lanes.id.size());
   }
-  const auto copy = [&](std::vector<Lanes>& to, auto member) {
+  const auto copy = [&](std::vector<Octet>& to, auto member) {
     to.resize(lanes.id.size());
     for (std::size_t g = 0; g < lanes.id.size(); ++g)
-      for (int l = 0; l < n_lanes; ++l) {
+      for (int l = 0; l < octet_size; ++l) {
         // What fills up a group stands where its first point does, so that its weights are finite.
         const std::int32_t id = lanes.id[g][static_cast<std::size_t>(l)];
         to[g][l] = member(points, static_cast<std::size_t>(id >= 0 ? id : lanes.id[g][0]));

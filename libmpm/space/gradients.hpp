@@ -1,7 +1,7 @@
 #pragma once
 
 // Velocity gradients to strain rates and stresses to tractions, in each space: the rows of spaces.hpp summed
-// over a stencil, for one number or eight at a time. T: double or Lanes.
+// over a stencil, for one number or eight at a time. T: double or Octet.
 
 #include <type_traits>
 

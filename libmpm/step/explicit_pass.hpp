@@ -39,14 +39,15 @@ struct PassSums {
 /// Grid fields at eight points.
 template <int D>
 struct Fields {
-  Lanes v[4] = {}, dv[4] = {}, L[D][4] = {}, moment[D][4] = {};  ///< L[b][a] = dv_a/dx_b
+  Octet v[4] = {}, dv[4] = {}, L[D][4] = {}, moment[D][4] = {};  ///< L[b][a] = dv_a/dx_b
 };
 
 template <Wanted wanted, int D>
 void gather_group(const std::array<NodeLanes, TileGrid<D>::tile_nodes>& v,
                   const std::array<NodeLanes, TileGrid<D>::tile_nodes>& dv, const Weights<D>& weights, int n,
                   bool change, Fields<D>& fields) {
-  NodeLanes value[n_lanes] = {}, slope[D][n_lanes] = {}, moment[D][n_lanes] = {}, changed[n_lanes] = {};
+  NodeLanes value[octet_size] = {}, slope[D][octet_size] = {}, moment[D][octet_size] = {},
+            changed[octet_size] = {};
   for (int l = 0; l < n; ++l) {
     const auto w = of_lane<D>(weights, l);
     const int base = weights.base[static_cast<std::size_t>(l)];
@@ -79,41 +80,41 @@ void gather_for(const std::array<NodeLanes, TileGrid<D>::tile_nodes>& v,
 /// row a cell, kept apart.
 template <int D>
 struct GroupStress {
-  Lanes sigma[D][D] = {}, hoop = {}, pressure = {};  ///< times volume [Pa m^3]
+  Octet sigma[D][D] = {}, hoop = {}, pressure = {};  ///< times volume [Pa m^3]
 };
 
 /// Updates volume and flocculation of group g over dt and returns its stress.
 template <class Space, class Law>
 GroupStress<Space::dim> update_state(const Mix& mix, const Law& law, bool cell_pressure, double dt,
-                                     const Fields<Space::dim>& fields, const Lanes& cell_divergence,
+                                     const Fields<Space::dim>& fields, const Octet& cell_divergence,
                                      LanePoints<Space::dim>& points, std::size_t g, PassSums& sums) {
   constexpr int D = Space::dim, ns = Space::n_strain;
-  Lanes L[D][D], q[ns], divergence, tau_y = all_lanes(mix.tau_0);
+  Octet L[D][D], q[ns], divergence, tau_y = all_lanes(mix.tau_0);
   for (int a = 0; a < D; ++a)
     for (int b = 0; b < D; ++b) L[a][b] = fields.L[b][a];
-  strain_rate_of<Space, Lanes>(L, fields.v[0], points.x[0][g], q, divergence);
-  Lanes q2 = q[0] * q[0];
+  strain_rate_of<Space, Octet>(L, fields.v[0], points.x[0][g], q, divergence);
+  Octet q2 = q[0] * q[0];
   for (int k = 1; k < ns; ++k) q2 += q[k] * q[k];
-  const Lanes gamma_dot = sqrt(q2);
+  const Octet gamma_dot = sqrt(q2);
   if (points.thixotropic()) {
-    Lanes& lambda = points.lambda[g];
+    Octet& lambda = points.lambda[g];
     if (dt > 0.0)
       lambda = flocculation_step(lambda, *mix.thixotropy, mix.tau_0, points.gamma_dot[g], gamma_dot, dt);
     points.gamma_dot[g] = gamma_dot;
     tau_y = (1.0 + lambda) * mix.tau_0;
     sums.lambda = std::max(sums.lambda, largest(lambda));
   }
-  Lanes& ln_J = points.ln_J[g];
+  Octet& ln_J = points.ln_J[g];
   ln_J += dt * (cell_pressure ? cell_divergence : divergence);
-  const Lanes volume = points.V0[g] * exp(ln_J),
+  const Octet volume = points.V0[g] * exp(ln_J),
               viscosity = volume * (mix.mu + secant(law, gamma_dot, tau_y));
   sums.volume += sum(volume), sums.volume_rate += sum(volume * gamma_dot);
 
   GroupStress<D> stress;
   stress.pressure = volume * (-mix.K * ln_J);
-  for (Lanes& s : q) s *= viscosity;
-  const Lanes in_tensor = cell_pressure ? Lanes{} : stress.pressure;
-  stress_tensor_of<Space, Lanes>(q, in_tensor, stress.sigma, stress.hoop);
+  for (Octet& s : q) s *= viscosity;
+  const Octet in_tensor = cell_pressure ? Octet{} : stress.pressure;
+  stress_tensor_of<Space, Octet>(q, in_tensor, stress.sigma, stress.hoop);
   return stress;
 }
 
@@ -122,17 +123,17 @@ template <int D>
 void move_group(const std::array<Axis, D>& axes, const Transfer& transfer, double dt,
                 const Weights<D>& weights, const Fields<D>& fields, LanePoints<D>& points, std::size_t g,
                 PassSums& sums) {
-  Lanes speed2 = {};
+  Octet speed2 = {};
   for (int d = 0; d < D; ++d) {
-    Lanes &v = points.v[d][g], &x = points.x[d][g];
+    Octet &v = points.v[d][g], &x = points.x[d][g];
     v = transfer.flip ? fields.v[d] + transfer.flip_blend * (v - fields.v[d] + fields.dv[d]) : fields.v[d];
     x += dt * fields.v[d];
     const Axis& a = axes[d];
     if (a.wall_low()) x = max(x, all_lanes(a.origin + 1e-6 * a.h));
     if (a.wall_high()) x = min(x, all_lanes(a.origin + a.length() - 1e-6 * a.h));
     speed2 += v * v;
-    const Lanes cells = (dt / a.h) * (fields.v[d] < 0.0 ? -fields.v[d] : fields.v[d]);
-    for (int l = 0; l < n_lanes; ++l) sums.ran_away = sums.ran_away || !(cells[l] < 0.5);
+    const Octet cells = (dt / a.h) * (fields.v[d] < 0.0 ? -fields.v[d] : fields.v[d]);
+    for (int l = 0; l < octet_size; ++l) sums.ran_away = sums.ran_away || !(cells[l] < 0.5);
     sums.farthest = std::max(sums.farthest, largest(cells));
   }
   sums.speed2 = std::max(sums.speed2, largest(speed2));
@@ -140,7 +141,7 @@ void move_group(const std::array<Axis, D>& axes, const Transfer& transfer, doubl
   for (int b = 0; b < D; ++b) {
     // On a wall one control has all the weight: no slope can be seen there, and none is given.
     const double least = 1e-12 * axes[b].h * axes[b].h;
-    const Lanes inverse = weights.inertia[b] > least ? 1.0 / weights.inertia[b] : Lanes{};
+    const Octet inverse = weights.inertia[b] > least ? 1.0 / weights.inertia[b] : Octet{};
     for (int a = 0; a < D; ++a) points.C[a * D + b][g] = fields.moment[b][a] * inverse;
   }
 }
@@ -153,13 +154,13 @@ void scatter_group(bool momentum, bool flip, bool apart, double impulse_dt,
                    std::array<NodeLanes, TileGrid<Space::dim>::tile_nodes>& sums,
                    std::array<NodeLanes, TileGrid<Space::dim>::tile_nodes>& forces) {
   constexpr int D = Space::dim;
-  NodeLanes value[n_lanes], slope[D][n_lanes], moment[D][n_lanes], pull[n_lanes] = {};
-  Lanes column[4] = {};
+  NodeLanes value[octet_size], slope[D][octet_size], moment[D][octet_size], pull[octet_size] = {};
+  Octet column[4] = {};
   if (momentum) {
     for (int d = 0; d < D; ++d) column[d] = points.mass[g] * points.v[d][g];
     column[D] = points.mass[g];
   }
-  Lanes hoop[4] = {};
+  Octet hoop[4] = {};
   if (std::is_same_v<Space, Axisymmetric>) {
     hoop[0] = -impulse_dt * stress.hoop / points.x[0][g];
     if (!apart) column[0] += hoop[0];
@@ -167,7 +168,7 @@ void scatter_group(bool momentum, bool flip, bool apart, double impulse_dt,
   to_rows(column, value);
   if (apart) to_rows(hoop, pull);
   for (int b = 0; b < D; ++b) {
-    Lanes s[4] = {}, m[4] = {};
+    Octet s[4] = {}, m[4] = {};
     for (int a = 0; a < D; ++a) {
       s[a] = -impulse_dt * stress.sigma[a][b];
       if (momentum && !flip) m[a] = points.mass[g] * points.C[a * D + b][g];
@@ -211,7 +212,7 @@ PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& 
              last = static_cast<std::size_t>(tile.last_group);
   PressureCells<Space> before(grid.axes, state.shape, tile.at), after(grid.axes, state.shape, tile.at);
   PressureCells<Space>& pushed = pass.gather && pass.move ? after : before;
-  static thread_local std::vector<std::array<int, n_lanes>> cells_before;
+  static thread_local std::vector<std::array<int, octet_size>> cells_before;
   if (pass.stress && cells && pass.gather) {
     cells_before.resize(last - first);
     for (std::size_t g = first; g < last; ++g) before.add_group(points, g, cells_before[g - first]);
@@ -223,7 +224,7 @@ PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& 
     const int n = filled<D>(points, g);
     Weights<D> weights;
     const auto place = [&] {
-      std::array<Lanes, D> x;
+      std::array<Octet, D> x;
       for (int d = 0; d < D; ++d) x[d] = points.x[d][g];
       weigh<D>(grid.axes, state.shape, tile.at, x, weights);
     };
@@ -231,9 +232,9 @@ PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& 
     Fields<D> fields;
     if (pass.gather) gather_for<pass, D>(v, dv, weights, n, flip, fields);
     GroupStress<D> stress;
-    std::array<int, n_lanes> cell{};
+    std::array<int, octet_size> cell{};
     if (pass.stress) {
-      Lanes divergence = {};
+      Octet divergence = {};
       if (cells && pass.gather) cell = cells_before[g - first];
       for (int l = 0; l < n && cells && pass.gather; ++l)
         divergence[l] = before.divergence(cell[static_cast<std::size_t>(l)]);

@@ -26,11 +26,11 @@ class PressureCells {
   }
 
   /// Enters the cells of the points of group g, with their places.
-  void add_group(const LanePoints<D>& points, std::size_t g, std::array<int, n_lanes>& cells) {
-    std::array<Lanes, D> x;
+  void add_group(const LanePoints<D>& points, std::size_t g, std::array<int, octet_size>& cells) {
+    std::array<Octet, D> x;
     for (int d = 0; d < D; ++d) x[d] = points.x[d][g];
     find_pressure_cells<D>(axes_, shape_, tile_, x, cells);
-    for (int l = 0; l < n_lanes; ++l) {
+    for (int l = 0; l < octet_size; ++l) {
       const double mass = points.mass[g][l];
       if (mass == 0.0) continue;
       Row& row = row_of(cells[static_cast<std::size_t>(l)]);
@@ -57,7 +57,7 @@ class PressureCells {
   double divergence(int cell) const { return rows_[slot_[cell]].divergence; }
 
   /// Adds the impulses of n points, pressure times volume times step.
-  void push(const std::array<int, n_lanes>& cells, int points, const Lanes& impulse) {
+  void push(const std::array<int, octet_size>& cells, int points, const Octet& impulse) {
     for (int l = 0; l < points; ++l) row_of(cells[static_cast<std::size_t>(l)]).impulse += impulse[l];
   }
 

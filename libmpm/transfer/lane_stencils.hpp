@@ -32,9 +32,9 @@ struct Shape {
 /// where their stencils begin in the tile's cube.
 template <int D>
 struct Weights {
-  std::array<std::array<Lanes, 3>, D> w, dw, wa;
-  std::array<Lanes, D> inertia;  ///< sum of w times arm squared [m^2]
-  std::array<int, n_lanes> base;
+  std::array<std::array<Octet, 3>, D> w, dw, wa;
+  std::array<Octet, D> inertia;  ///< sum of w times arm squared [m^2]
+  std::array<int, octet_size> base;
 };
 
 /// Cells of a tile in each direction that a point may have its pressure in.
@@ -42,12 +42,12 @@ inline constexpr int tile_pressure_cells = tile_cells + 3;
 
 namespace detail {
 
-inline void b_spline_weights(const Axis& axis, const Lanes& cell_index, const Lanes& s, Lanes (&w)[3],
-                             Lanes (&dw)[3], Lanes (&arm)[3]) {
-  const Lanes one = all_lanes(1.0), half = all_lanes(0.5), t = 1.0 - s;
-  const LaneMask low = axis.wall_low() ? cell_index == 0.0 : one < 0.0;
-  const LaneMask high = axis.wall_high() ? cell_index == double(axis.n_cells - 1) : one < 0.0;
-  const Lanes a = low ? one : half, b = high ? one : half;
+inline void b_spline_weights(const Axis& axis, const Octet& cell_index, const Octet& s, Octet (&w)[3],
+                             Octet (&dw)[3], Octet (&arm)[3]) {
+  const Octet one = all_lanes(1.0), half = all_lanes(0.5), t = 1.0 - s;
+  const OctetMask low = axis.wall_low() ? cell_index == 0.0 : one < 0.0;
+  const OctetMask high = axis.wall_high() ? cell_index == double(axis.n_cells - 1) : one < 0.0;
+  const Octet a = low ? one : half, b = high ? one : half;
   const double ih = 1.0 / axis.h;
   w[0] = a * t * t, dw[0] = (-2.0 * ih) * a * t;
   w[2] = b * s * s, dw[2] = (2.0 * ih) * b * s;
@@ -59,14 +59,14 @@ inline void b_spline_weights(const Axis& axis, const Lanes& cell_index, const La
 
 /// u: distance from the nearest corner, in cells. A point whose extent would reach beyond a wall is taken
 /// without extent: linear hats, whose control on the wall sets the velocity of the whole wall.
-inline void gimp_weights(const Axis& axis, double half, const Lanes& corner_index, const Lanes& u,
-                         Lanes (&w)[3], Lanes (&dw)[3], Lanes (&arm)[3]) {
-  const Lanes none = {}, one = none + 1.0;
+inline void gimp_weights(const Axis& axis, double half, const Octet& corner_index, const Octet& u,
+                         Octet (&w)[3], Octet (&dw)[3], Octet (&arm)[3]) {
+  const Octet none = {}, one = none + 1.0;
   const double ih = 1.0 / axis.h;
-  const LaneMask wall = (axis.wall_low() ? corner_index == 0.0 : one < 0.0) |
-                        (axis.wall_high() ? corner_index == double(axis.n_cells) : one < 0.0);
-  const LaneMask smooth = (u < half) & (u > -half) & ~wall;
-  const Lanes below = half - u, above = half + u;
+  const OctetMask wall = (axis.wall_low() ? corner_index == 0.0 : one < 0.0) |
+                         (axis.wall_high() ? corner_index == double(axis.n_cells) : one < 0.0);
+  const OctetMask smooth = (u < half) & (u > -half) & ~wall;
+  const Octet below = half - u, above = half + u;
   w[0] = smooth ? below * below * (0.25 / half) : max(-u, none);
   w[2] = smooth ? above * above * (0.25 / half) : max(u, none);
   w[1] = 1.0 - w[0] - w[2];
@@ -81,28 +81,28 @@ inline void gimp_weights(const Axis& axis, double half, const Lanes& corner_inde
 /// Cells of eight points at x, numbered within a tile.
 template <int D>
 void find_pressure_cells(const std::array<Axis, D>& axes, const Shape<D>& shape, const Index<D>& tile,
-                         const std::array<Lanes, D>& x, std::array<int, n_lanes>& cells) {
-  Lanes cell = {};
-  const Lanes low = all_lanes(shape.kind == ShapeFunctions::gimp ? -2.0 : -1.0), high = all_lanes(tile_cells);
+                         const std::array<Octet, D>& x, std::array<int, octet_size>& cells) {
+  Octet cell = {};
+  const Octet low = all_lanes(shape.kind == ShapeFunctions::gimp ? -2.0 : -1.0), high = all_lanes(tile_cells);
   for (int d = 0; d < D; ++d) {
-    const Lanes X = (x[d] - axes[d].origin) * (1.0 / axes[d].h) - tile[d] * tile_cells;
+    const Octet X = (x[d] - axes[d].origin) * (1.0 / axes[d].h) - tile[d] * tile_cells;
     cell = cell * tile_pressure_cells + (min(max(floor(X), low), high) + 2.0);
   }
-  for (int l = 0; l < n_lanes; ++l) cells[static_cast<std::size_t>(l)] = static_cast<int>(cell[l]);
+  for (int l = 0; l < octet_size; ++l) cells[static_cast<std::size_t>(l)] = static_cast<int>(cell[l]);
 }
 
 /// Weights of eight points at x in a tile. Points more than a cell outside of it are taken at its rim: the
 /// caller makes sure that there are none.
 template <int D>
 void weigh(const std::array<Axis, D>& axes, const Shape<D>& shape, const Index<D>& tile,
-           const std::array<Lanes, D>& x, Weights<D>& weights) {
-  Lanes base = {};
-  const Lanes low = all_lanes(-1.0), high = all_lanes(tile_cells);
+           const std::array<Octet, D>& x, Weights<D>& weights) {
+  Octet base = {};
+  const Octet low = all_lanes(-1.0), high = all_lanes(tile_cells);
   for (int d = 0; d < D; ++d) {
     const Axis& axis = axes[d];
     const double first = tile[d] * tile_cells;
-    const Lanes X = (x[d] - axis.origin) * (1.0 / axis.h) - first;
-    Lanes w[3], dw[3], arm[3], at;
+    const Octet X = (x[d] - axis.origin) * (1.0 / axis.h) - first;
+    Octet w[3], dw[3], arm[3], at;
     if (shape.kind == ShapeFunctions::gimp) {
       at = min(max(floor(X + 0.5), low), high);
       detail::gimp_weights(axis, shape.half[d], at + first, X - at, w, dw, arm);
@@ -111,13 +111,13 @@ void weigh(const std::array<Axis, D>& axes, const Shape<D>& shape, const Index<D
       detail::b_spline_weights(axis, at + first, X - at, w, dw, arm);
     }
     base = base * tile_span + (at + 1.0);
-    weights.inertia[d] = Lanes{};
+    weights.inertia[d] = Octet{};
     for (int k = 0; k < 3; ++k) {
       weights.w[d][k] = w[k], weights.dw[d][k] = dw[k], weights.wa[d][k] = w[k] * arm[k];
       weights.inertia[d] += weights.wa[d][k] * arm[k];
     }
   }
-  for (int l = 0; l < n_lanes; ++l) weights.base[static_cast<std::size_t>(l)] = static_cast<int>(base[l]);
+  for (int l = 0; l < octet_size; ++l) weights.base[static_cast<std::size_t>(l)] = static_cast<int>(base[l]);
 }
 
 /// Weights of one point: what the sums below take. n: controls a direction.
@@ -205,12 +205,12 @@ template <int D, int n>
 }
 
 /// Rows of four (one a point) to columns of eight (one a component), and back.
-inline void to_columns(const NodeLanes (&row)[n_lanes], Lanes (&column)[4]) {
+inline void to_columns(const NodeLanes (&row)[octet_size], Octet (&column)[4]) {
   for (int c = 0; c < 4; ++c)
-    for (int l = 0; l < n_lanes; ++l) column[c][l] = row[l][c];
+    for (int l = 0; l < octet_size; ++l) column[c][l] = row[l][c];
 }
-inline void to_rows(const Lanes (&column)[4], NodeLanes (&row)[n_lanes]) {
-  for (int l = 0; l < n_lanes; ++l)
+inline void to_rows(const Octet (&column)[4], NodeLanes (&row)[octet_size]) {
+  for (int l = 0; l < octet_size; ++l)
     row[l] = NodeLanes{column[0][l], column[1][l], column[2][l], column[3][l]};
 }
 

@@ -114,5 +114,29 @@ TEST_F(Apparatus, BarsInThePlaneAreBadInput) {
   EXPECT_FALSE(there("."));
 }
 
+// The paper's step of 1e-4 s after 240 s of rest is longer than its scheme is stable for: everything is
+// written, marked, and the program says so.
+TEST_F(Apparatus, AnExplicitStepBeyondTheLimitIsMarked) {
+  const std::string few = " --set model.space=axisymmetric --set test.duration='2 ms' --out a --force";
+  const auto printed = tremie("run '" TREMIE_SCENES "/paper_mix_c_rest240.toml'" + few);
+  EXPECT_EQ(printed.code, 3) << printed.text;
+  const json checks = json::parse(file("summary.json"))["checks"];
+  EXPECT_EQ(checks["stability_limit_exceeded"], true);
+  ASSERT_EQ(checks["reasons"].size(), 1U);
+  EXPECT_NE(checks["reasons"][0].get<std::string>().find("viscous limit"), std::string::npos);
+
+  const auto safe = tremie("run '" TREMIE_SCENES "/paper_mix_c_rest240_safe_step.toml'" + few);
+  EXPECT_EQ(safe.code, 0) << safe.text;
+  EXPECT_EQ(json::parse(file("summary.json"))["checks"]["stability_limit_exceeded"], false);
+}
+
+TEST_F(Apparatus, AnExplicitStepNeedsABoundedViscosity) {
+  const auto result =
+      tremie("run '" TREMIE_SCENES "/slump_flow_mix_a.toml' --set model.scheme=explicit --out a");
+  EXPECT_EQ(result.code, 2) << result.text;
+  EXPECT_NE(result.text.find("model.yield"), std::string::npos) << result.text;
+  EXPECT_FALSE(there("summary.json"));
+}
+
 }  // namespace
 }  // namespace tremie

@@ -11,10 +11,10 @@
 namespace tremie {
 namespace {
 
-Lanes random_lanes(std::mt19937& random, double low, double high) {
+Octet random_lanes(std::mt19937& random, double low, double high) {
   std::uniform_real_distribution<double> u(low, high);
-  Lanes a;
-  for (int l = 0; l < n_lanes; ++l) a[l] = u(random);
+  Octet a;
+  for (int l = 0; l < octet_size; ++l) a[l] = u(random);
   return a;
 }
 
@@ -23,33 +23,33 @@ TEST(LaneFunctions, ExpAndMeanDecay) {
   std::mt19937 random(1);
   for (int i = 0; i < 2000; ++i) {
     const double reach = std::pow(10.0, -8.0 + 10.8 * i / 2000.0);
-    const Lanes x = random_lanes(random, -reach, reach), y = exp(x);
-    const Lanes z = x < 0.0 ? -x : x, d = mean_decay(z);
-    for (int l = 0; l < n_lanes; ++l) {
+    const Octet x = random_lanes(random, -reach, reach), y = exp(x);
+    const Octet z = x < 0.0 ? -x : x, d = mean_decay(z);
+    for (int l = 0; l < octet_size; ++l) {
       EXPECT_NEAR(y[l] / std::exp(x[l]), 1.0, 1e-15);
       EXPECT_NEAR(d[l] / (-std::expm1(-z[l]) / z[l]), 1.0, 2e-15);
     }
   }
-  EXPECT_EQ(exp(Lanes{})[0], 1.0);
-  EXPECT_EQ(mean_decay(Lanes{})[0], 1.0);
+  EXPECT_EQ(exp(Octet{})[0], 1.0);
+  EXPECT_EQ(mean_decay(Octet{})[0], 1.0);
   EXPECT_GT(exp(all_lanes(-1e5))[3], 0.0);
   EXPECT_TRUE(std::isfinite(exp(all_lanes(1e5))[3]));
 }
 
 TEST(LaneFunctions, Floor) {
-  const Lanes x = {-2.0, -1.5, -0.1, 0.0, 0.1, 1.0, 1.9, 1e6 + 0.5}, f = floor(x);
-  for (int l = 0; l < n_lanes; ++l) EXPECT_EQ(f[l], std::floor(x[l]));
+  const Octet x = {-2.0, -1.5, -0.1, 0.0, 0.1, 1.0, 1.9, 1e6 + 0.5}, f = floor(x);
+  for (int l = 0; l < octet_size; ++l) EXPECT_EQ(f[l], std::floor(x[l]));
 }
 
 TEST(LaneLaws, AsTheScalarLaws) {
   std::mt19937 random(2);
   for (int i = 0; i < 500; ++i) {
-    const Lanes gamma = random_lanes(random, 0.0, std::pow(10.0, -9.0 + i / 45.0));
-    const Lanes tau_y = random_lanes(random, 1.0, 900.0);
+    const Octet gamma = random_lanes(random, 0.0, std::pow(10.0, -9.0 + i / 45.0));
+    const Octet tau_y = random_lanes(random, 1.0, 900.0);
     const Papanastasiou smooth{5.0};
     const BiViscous broken{0.01};
-    const Lanes a = secant(smooth, gamma, tau_y), b = secant(broken, gamma, tau_y);
-    for (int l = 0; l < n_lanes; ++l) {
+    const Octet a = secant(smooth, gamma, tau_y), b = secant(broken, gamma, tau_y);
+    for (int l = 0; l < octet_size; ++l) {
       EXPECT_NEAR(a[l] / smooth.secant(gamma[l], tau_y[l]), 1.0, 1e-10);  // the scalar series below 1e-5
       EXPECT_DOUBLE_EQ(b[l], broken.secant(gamma[l], tau_y[l]));
       EXPECT_LE(a[l], largest_secant(smooth, tau_y[l]) * (1.0 + 1e-15));
@@ -64,11 +64,11 @@ TEST(LaneLaws, FlocculationAsTheScalarUpdate) {
   for (const Kinetics kinetics : {Kinetics::gated, Kinetics::roussel})
     for (int i = 0; i < 500; ++i) {
       const Thixotropy t{1.3, 0.03, kinetics, 0.1, 0.0};
-      const Lanes lambda = random_lanes(random, 0.0, 7.0);
-      const Lanes g0 = random_lanes(random, 0.0, i % 2 ? 0.2 : 10.0);
-      const Lanes g1 = random_lanes(random, 0.0, i % 3 ? 0.2 : 10.0);
-      const Lanes next = flocculation_step(lambda, t, 54.0, g0, g1, 0.37);
-      for (int l = 0; l < n_lanes; ++l)
+      const Octet lambda = random_lanes(random, 0.0, 7.0);
+      const Octet g0 = random_lanes(random, 0.0, i % 2 ? 0.2 : 10.0);
+      const Octet g1 = random_lanes(random, 0.0, i % 3 ? 0.2 : 10.0);
+      const Octet next = flocculation_step(lambda, t, 54.0, g0, g1, 0.37);
+      for (int l = 0; l < octet_size; ++l)
         EXPECT_NEAR(next[l], flocculation_step(lambda[l], t, 54.0, g0[l], g1[l], 0.37), 1e-13);
     }
 }
@@ -126,13 +126,13 @@ TEST_P(ShapeFunctionsOfLanes, PartitionOfUnityAndLinearFields) {
   std::mt19937 random(5);
   for (int i = 0; i < 300; ++i) {
     const int tile = i % 2;  // the high wall lies in the second one
-    std::array<Lanes, 2> x = {random_lanes(random, -0.1 + 0.08 * tile, tile ? 0.02 : -0.02),
+    std::array<Octet, 2> x = {random_lanes(random, -0.1 + 0.08 * tile, tile ? 0.02 : -0.02),
                               random_lanes(random, 0.0, 0.04)};
     if (i == 0) x[0] = all_lanes(-0.1);
     Weights<2> weights;
     weigh<2>(axes, shape, {tile, 0}, x, weights);
     for (int d = 0; d < 2; ++d)
-      for (int l = 0; l < n_lanes; ++l) {
+      for (int l = 0; l < octet_size; ++l) {
         const int base = d == 0 ? weights.base[static_cast<std::size_t>(l)] / tile_span
                                 : weights.base[static_cast<std::size_t>(l)] % tile_span;
         double one = 0.0, place = 0.0, flat = 0.0, slope = 0.0;
@@ -164,7 +164,7 @@ TEST(FactoredSums, GatherAndScatterAreAdjoint) {
   for (Axis& a : axes) a = {.h = 0.1};
   std::mt19937 random(6);
   Weights<D> weights;
-  const std::array<Lanes, D> x = {random_lanes(random, 0.0, 0.4), random_lanes(random, 0.0, 0.4),
+  const std::array<Octet, D> x = {random_lanes(random, 0.0, 0.4), random_lanes(random, 0.0, 0.4),
                                   random_lanes(random, 0.0, 0.4)};
   weigh<D>(axes, {}, {0, 0, 0}, x, weights);
   std::array<NodeLanes, TileGrid<D>::tile_nodes> v, sums{};

@@ -1,0 +1,132 @@
+// Nanoseconds a point of the explicit kernels, by space, with and without flocculation:
+//   explicit_bench [--benchmark_filter=…]; the counter is "points/s".
+//
+// A block of concrete, 2 points a cell in each direction, under its own weight between free-slip planes: the
+// same for every kernel.
+
+#include <benchmark/benchmark.h>
+#include <omp.h>
+
+#include "libmpm/step/explicit_step.hpp"
+#include "tests/libmpm/bodies.hpp"
+
+namespace tremie {
+namespace {
+
+const Papanastasiou law{5.0};
+
+/// About 14,000 points.
+template <class Space>
+Body<Space> block(bool thixotropic) {
+  constexpr int D = Space::dim, cells = D == 3 ? 12 : 60;
+  const double h = 0.015, height = cells * h;
+  Body<Space> body;
+  body.mix = test::concrete(54.0, 35.8, 33e3);
+  body.gravity[Space::up] = -9.81;
+  for (Axis& a : body.grid.axes) a = {.h = h, .low = FaceKind::free_slip};
+  test::fill_box<Space>(body, Vec<D>::Zero(), Vec<D>::Constant(height), 2,
+                        [&](const auto& x) { return 2400.0 * 9.81 * (height - x[Space::up]); });
+  if (!thixotropic) return body;
+  body.mix.thixotropy = Thixotropy{1.3, 0.01};
+  body.points.lambda.assign(body.points.size(), 1.0);
+  body.points.gamma_dot.assign(body.points.size(), 0.0);
+  return body;
+}
+
+template <class Space>
+struct Set {
+  Body<Space> body;
+  ExplicitSettings settings;
+  ExplicitState<Space> state;
+
+  Set(bool thixotropic, bool gimp, StressUpdate stress, bool cell_pressure)
+      : body(block<Space>(thixotropic)) {
+    settings.stress = stress;
+    settings.cell_pressure = cell_pressure;
+    settings.fixed_dt = 1e-5;
+    Shape<Space::dim> shape;
+    if (gimp) shape = {ShapeFunctions::gimp, {}}, shape.half.fill(0.25);
+    state = start_explicit(body, law, settings, shape);
+  }
+  void count(benchmark::State& run) const {
+    run.counters["points/s"] = benchmark::Counter(static_cast<double>(body.points.size()),
+                                                  benchmark::Counter::kIsIterationInvariantRate);
+  }
+};
+
+/// One pass over the points, without the grid: what pass names.
+template <class Space, detail::Pass pass, bool thixotropic>
+void pass_of(benchmark::State& run) {
+  omp_set_num_threads(1);
+  Set<Space> set(thixotropic, false, StressUpdate::last, false);
+  const detail::PassInput input{1e-9, 1e-9};
+  for (auto _ : run) detail::pass_over_points<pass, Space>(set.body.mix, law, set.settings, input, set.state);
+  set.count(run);
+}
+
+template <class Space, bool thixotropic>
+void law_alone(benchmark::State& run) {
+  Set<Space> set(thixotropic, false, StressUpdate::last, false);
+  detail::Fields<Space::dim> fields;
+  fields.L[0][0] = all_lanes(0.3), fields.L[0][1] = all_lanes(0.7);
+  detail::PassSums sums;
+  for (auto _ : run)
+    for (std::size_t g = 0; g < set.state.points.groups(); ++g)
+      benchmark::DoNotOptimize(detail::update_state<Space>(set.body.mix, law, false, 1e-9, fields, Octet{},
+                                                           set.state.points, g, sums));
+  set.count(run);
+}
+
+template <class Space>
+void sort_alone(benchmark::State& run) {
+  Set<Space> set(true, false, StressUpdate::last, false);
+  for (auto _ : run) {
+    write_back(set.state, set.body);
+    detail::sort_points(set.body, set.settings, set.state);
+  }
+  set.count(run);
+}
+
+/// range(0): threads.
+template <class Space, bool thixotropic, bool gimp, StressUpdate stress, bool cell_pressure>
+void whole_step(benchmark::State& run) {
+  omp_set_num_threads(static_cast<int>(run.range(0)));
+  Set<Space> set(thixotropic, gimp, stress, cell_pressure);
+  for (auto _ : run) explicit_step(set.body, law, set.settings, set.state);
+  set.count(run);
+}
+
+constexpr auto last = StressUpdate::last, first = StressUpdate::first;
+constexpr detail::Pass points_to_grid = detail::first_momenta;
+
+BENCHMARK(pass_of<ThreeD, points_to_grid, false>)->Name("3D/points to grid");
+BENCHMARK(pass_of<ThreeD, detail::motion_pass, false>)->Name("3D/grid to points and back");
+BENCHMARK(pass_of<ThreeD, detail::stress_pass, false>)->Name("3D/stress pass");
+BENCHMARK(pass_of<ThreeD, detail::whole_pass, false>)->Name("3D/whole pass");
+BENCHMARK(law_alone<ThreeD, false>)->Name("3D/law");
+BENCHMARK(law_alone<ThreeD, true>)->Name("3D/law, thixotropic");
+BENCHMARK(sort_alone<ThreeD>)->Name("3D/sort");
+BENCHMARK(whole_step<ThreeD, false, false, last, false>)
+    ->Name("3D/USL, splines, pressure by the point")
+    ->Arg(1)
+    ->Arg(2)
+    ->UseRealTime();
+BENCHMARK(whole_step<ThreeD, false, false, last, true>)->Name("3D/USL, splines")->Arg(1);
+BENCHMARK(whole_step<ThreeD, true, false, last, true>)->Name("3D/USL, splines, thixotropic")->Arg(1);
+BENCHMARK(whole_step<ThreeD, false, true, first, true>)->Name("3D/USF, GIMP")->Arg(1)->Arg(2)->UseRealTime();
+BENCHMARK(whole_step<ThreeD, true, true, first, true>)->Name("3D/USF, GIMP, thixotropic")->Arg(1);
+BENCHMARK(whole_step<PlaneStrain, false, false, last, false>)
+    ->Name("plane/USL, splines, pressure by the point")
+    ->Arg(1);
+BENCHMARK(whole_step<PlaneStrain, true, false, last, true>)->Name("plane/USL, splines, thixotropic")->Arg(1);
+BENCHMARK(whole_step<Axisymmetric, false, false, last, false>)
+    ->Name("axisymmetric/USL, splines, pressure by the point")
+    ->Arg(1);
+BENCHMARK(whole_step<Axisymmetric, true, false, last, true>)
+    ->Name("axisymmetric/USL, splines, thixotropic")
+    ->Arg(1);
+
+}  // namespace
+}  // namespace tremie
+
+BENCHMARK_MAIN();
