@@ -30,7 +30,7 @@ struct Tile {
 };
 
 template <int D>
-struct Block {
+struct NodeBlock {
   Index<D> at{};
   std::array<int, power(2, D)> tile{};  ///< tiles at - offset; -1: none
 };
@@ -43,7 +43,7 @@ struct TileGrid {
 
   std::array<Axis, D> axes;
   std::vector<Tile<D>> tiles;
-  std::vector<Block<D>> blocks;
+  std::vector<NodeBlock<D>> blocks;
   std::vector<Buffer> sums;    ///< a tile: momentum and mass that its points give
   std::vector<Buffer> forces;  ///< a tile: impulse of the stresses, for FLIP alone
   std::vector<Nodes> v;        ///< a block: velocity and mass
@@ -110,7 +110,7 @@ void join_blocks(TileGrid<D>& grid) {
 /// Lays the grid under these tiles, sorted by `at`. Velocities of controls that were there are kept.
 template <int D>
 void lay_tiles(TileGrid<D>& grid, std::vector<Tile<D>> tiles, bool flip) {
-  const std::vector<Block<D>> old = std::move(grid.blocks);
+  const std::vector<NodeBlock<D>> old = std::move(grid.blocks);
   std::vector<typename TileGrid<D>::Nodes> v = std::move(grid.v), dv = std::move(grid.dv);
   grid.tiles = std::move(tiles);
   grid.blocks = {};
@@ -146,7 +146,7 @@ void read_blocks(const Tile<D>& tile, const std::vector<std::array<NodeLanes, po
 /// Sum over the buffers of a block's tiles.
 template <int D>
 std::array<NodeLanes, power(tile_cells, D)> sum_tiles(
-    const Block<D>& block, const std::vector<std::array<NodeLanes, power(tile_span, D)>>& buffers) {
+    const NodeBlock<D>& block, const std::vector<std::array<NodeLanes, power(tile_span, D)>>& buffers) {
   std::array<NodeLanes, power(tile_cells, D)> total{};
   for (int k = 0; k < power(2, D); ++k) {
     if (block.tile[k] < 0) continue;

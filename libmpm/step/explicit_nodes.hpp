@@ -36,7 +36,7 @@ void apply_walls(const std::array<Axis, D>& axes, const Shape<D>& shape, const W
 }
 
 template <int D>
-Index<D> control_of(const Block<D>& block, int k) {
+Index<D> control_of(const NodeBlock<D>& block, int k) {
   Index<D> control;
   for (int d = D - 1; d >= 0; --d, k /= tile_cells)
     control[d] = block.at[d] * tile_cells - 1 + k % tile_cells;
@@ -45,7 +45,7 @@ Index<D> control_of(const Block<D>& block, int k) {
 
 /// Whether any control of a block may lie on a wall.
 template <int D>
-bool touches_wall(const std::array<Axis, D>& axes, const Block<D>& block) {
+bool touches_wall(const std::array<Axis, D>& axes, const NodeBlock<D>& block) {
   for (int d = 0; d < D; ++d) {
     const int first = block.at[d] * tile_cells - 1;
     if (axes[d].wall_low() && first <= 1) return true;
