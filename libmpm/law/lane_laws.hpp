@@ -20,13 +20,27 @@ inline Octet secant(const BiViscous& law, const Octet& gamma_dot, const Octet& t
 inline double largest_secant(const Papanastasiou& law, double tau_y) { return law.m * tau_y; }
 inline double largest_secant(const BiViscous& law, double tau_y) { return tau_y / law.gamma_c; }
 
+/// detail::Decay::asymmetry of flocculation.hpp: (k coth(k/2) - 2)/k^2, by its series (error 1e-15) below
+/// 1/2. `d` is mean_decay(k).
+inline Octet decay_asymmetry(const Octet& k, const Octet& d) {
+  const Octet one = all_lanes(1.0), x = k * k;
+  const OctetMask small = k < 0.5;
+  const Octet far = (2.0 * (one - d) / d - k) / (small ? one : x);
+  const Octet near =
+      1.0 / 6.0 -
+      x * (1.0 / 360.0 - x * (1.0 / 15120.0 -
+                              x * (1.0 / 604800.0 - x * (1.0 / 23950080.0 - x * (691.0 / 653837184000.0)))));
+  return small ? near : far;
+}
+
 /// flocculation_step of flocculation.hpp.
 inline Octet flocculation_step(const Octet& lambda, const Thixotropy& t, double tau_0, const Octet& gamma_0,
                                const Octet& gamma_1, double dt) {
   const double built = t.A_thix / tau_0 * dt, half = 0.5 * t.alpha * dt;
   if (t.kinetics == Kinetics::roussel) {
     const Octet k = half * (gamma_0 + gamma_1), d = mean_decay(k);
-    return lambda * (1.0 - k * d) + built * d;
+    const Octet one = all_lanes(1.0), left = d * exp(-(half * (gamma_1 - gamma_0) * decay_asymmetry(k, d)));
+    return lambda * (1.0 - k * d) + built * (left < one ? left : one);
   }
   // Gated: before and after the crossing of gamma_c at the share theta of the step.
   const Octet none = {}, gate = none + t.gamma_c;
