@@ -19,4 +19,8 @@ void read_instrument(const Scene& scene, Outcome& outcome);
 /// the end; a reason where they do not.
 void check_torques_agree(Outcome& outcome);
 
+/// Adds a reason where a Couette section's torque at the end is not that of the radial equations, which its
+/// own three readings cannot tell when all of them follow one wrong stress.
+void check_against_reference(const Scene& scene, Outcome& outcome);
+
 }  // namespace tremie::icar_vane

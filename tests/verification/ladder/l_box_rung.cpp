@@ -32,23 +32,27 @@ Run at_rest(double cell, bool side_walls) {
 }  // namespace
 
 Rung l_box_rung(Depth depth) {
-  Case one{.name = "l_box_at_rest",
-           .title = "The profile of the L-box at rest",
-           .equation = "50 Pa, 30 Pa·s, gate at 30 cm/s, 180 s",
-           .reference =
-               "F(h) − F(h2) = (τ0/ρg)(L − x) at the volume in the channel; F = h²/2, or with side "
-               "walls (W/2)[h − (W/2) ln(1 + 2h/W)]",
-           .norm = "largest mean of h / h_exact − 1 over 100 mm",
-           .series = {{"plane", {}}, {"plane with side walls", {}}},
-           .bounds = {},
-           .notes = {"The error does not fall with the cell: the films on the column's walls still feed the "
-                     "channel, and the thin-layer form leaves out the normal stress of the plug, 1 %."}};
+  Case one{
+      .name = "l_box_at_rest",
+      .title = "The profile of the L-box at rest",
+      .equation = "50 Pa, 30 Pa·s, gate at 30 cm/s, 180 s",
+      .reference =
+          "F(h) − F(h2) = (τ0/ρg)(L − x) at the volume in the channel; F = h²/2, or with side "
+          "walls (W/2)[h − (W/2) ln(1 + 2h/W)]",
+      .norm = "largest mean of h / h_exact − 1 over 100 mm",
+      .series = {{"plane", {}}, {"plane with side walls", {}}},
+      .bounds = {},
+      .notes = {"The error does not fall with the cell: at 5 mm the first 200 mm behind the gate stand too "
+                "high, for a reason not found yet."}};
   for (Series& series : one.series) {
     const bool side_walls = &series != &one.series.front();
-    series.runs.push_back(at_rest(0.02, side_walls));
-    if (depth == Depth::full) series.runs.push_back(at_rest(0.01, side_walls));
+    for (double cell : {0.02, 0.01, 0.005})
+      if (cell > 0.005 || depth == Depth::full) series.runs.push_back(at_rest(cell, side_walls));
     one.bounds.push_back(
-        {.what = series.scheme + ": error", .value = series.runs.back().error, .limit = 0.04});
+        {.what = series.scheme + ": error at 10 mm", .value = series.runs[1].error, .limit = 0.03});
+    if (depth == Depth::full)
+      one.bounds.push_back(
+          {.what = series.scheme + ": error at 5 mm", .value = series.runs[2].error, .limit = 0.03});
   }
   return {7, "The L-box at rest", {one}};
 }

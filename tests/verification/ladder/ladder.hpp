@@ -18,6 +18,7 @@ Rung l_box_rung(Depth depth);         ///< 7: the L-box at rest
 Rung paper_rung(Depth depth);         ///< 8: what the paper prints; no bounds
 Rung closed_loop_rung(Depth depth);   ///< 9: parameters -> vane -> torque -> fit -> parameters
 Rung extremes_rung(Depth depth);      ///< 10: stiff and extreme scenes
+Rung error_bars_rung(Depth depth);    ///< 11: whether the error bars hold
 
 struct Step {
   int number;
