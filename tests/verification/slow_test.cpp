@@ -55,6 +55,7 @@ TEST(Slow, AFluidLevelsInTheLBox) {
   l_box::Scene scene;
   scene.mix.tau_0 = 0.0;
   scene.mix.mu = 30.0;
+  scene.model.space = SpaceKind::plane;
   scene.model.cell = {0.01, 0.01};
   scene.model.points_per_cell = {16, 4};
   const l_box::Outcome outcome = l_box::run(scene);
