@@ -108,7 +108,8 @@ TEST(SpaceSolver, GradientsAndTheirAdjoint) {
         Mat<3, 3> L = Mat<3, 3>::Zero();
         for (int i = 0; i < 27; ++i) L += v.segment<3>(3 * body.grid.cell_nodes[c][i]) * st.g[i].transpose();
         for (int d = 0; d < 3; ++d)
-          for (int e = 0; e < 3; ++e) worst = std::max(worst, std::abs(G.g[d][e][k][c % batch_size] - L(d, e)));
+          for (int e = 0; e < 3; ++e)
+            worst = std::max(worst, std::abs(G.g[d][e][k][c % batch_size] - L(d, e)));
         work_on_gradients += L.squaredNorm();
       }
   }
