@@ -14,12 +14,13 @@
 #include <string>
 #include <vector>
 
-#include "apparatus/slump_flow/slump_flow.hpp"
+#include "tests/verification/slump_curve.hpp"
 #include "tests/verification/study_output.hpp"
 
 namespace {
 
 using namespace tremie;
+using verification::spread_at;
 
 struct Grid {
   std::array<double, 2> cell;  // [mm]
@@ -56,16 +57,6 @@ Run run(const Mixture& mix, const Grid& grid, MethodKind method, bool instant, b
   Run r{slump_flow::run(scene), 0.0};
   r.cpu = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   return r;
-}
-
-/// Spread [mm] at a time, linear between the steps; the last one after the flow has stopped.
-double spread_at(const slump_flow::Outcome& outcome, double time) {
-  const auto& s = outcome.series;
-  for (std::size_t i = 1; i < s.size(); ++i)
-    if (s[i].time >= time)
-      return 1e3 * (s[i - 1].spread +
-                    (time - s[i - 1].time) / (s[i].time - s[i - 1].time) * (s[i].spread - s[i - 1].spread));
-  return 1e3 * s.back().spread;
 }
 
 std::string name(const Grid& g) {

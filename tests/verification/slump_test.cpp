@@ -4,13 +4,14 @@
 
 #include <gtest/gtest.h>
 
-#include "apparatus/slump_flow/slump_flow.hpp"
 #include "tests/verification/lubrication.hpp"
+#include "tests/verification/slump_curve.hpp"
 
 namespace tremie {
 namespace {
 
 using namespace slump_flow;
+using verification::at;
 
 Scene instant(double tau_0, double mu, double duration) {
   Scene scene;
@@ -19,17 +20,6 @@ Scene instant(double tau_0, double mu, double duration) {
   scene.lift_speed.reset();
   scene.duration = duration;
   return scene;
-}
-
-/// The curve at a time, linear between steps.
-double at(const Outcome& outcome, double time, double Sample::*quantity) {
-  const auto& series = outcome.series;
-  for (std::size_t i = 1; i < series.size(); ++i)
-    if (series[i].time >= time) {
-      const double share = (time - series[i - 1].time) / (series[i].time - series[i - 1].time);
-      return series[i - 1].*quantity + share * (series[i].*quantity - series[i - 1].*quantity);
-    }
-  return series.back().*quantity;
 }
 
 // Spread within 1.5 % from 1 s on, centre height within 5 %: the finite elements are good to 2 mm of 445, the

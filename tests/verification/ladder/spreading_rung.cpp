@@ -5,10 +5,10 @@
 #include <array>
 #include <utility>
 
-#include "apparatus/slump_flow/slump_flow.hpp"
 #include "tests/verification/huppert.hpp"
 #include "tests/verification/ladder/ladder.hpp"
 #include "tests/verification/slender.hpp"
+#include "tests/verification/slump_curve.hpp"
 
 namespace tremie::verification {
 namespace {
@@ -71,16 +71,6 @@ Case slender(Depth depth) {
   for (const Series& s : one.series)
     one.bounds.push_back({.what = s.scheme + ": finest cells", .value = s.runs.back().error, .limit = 0.03});
   return one;
-}
-
-/// The spread [mm] at a time, linear between steps.
-double spread_at(const slump_flow::Outcome& outcome, double time) {
-  const auto& s = outcome.series;
-  for (std::size_t i = 1; i < s.size(); ++i)
-    if (s[i].time >= time)
-      return 1e3 * (s[i - 1].spread +
-                    (time - s[i - 1].time) / (s[i].time - s[i - 1].time) * (s[i].spread - s[i - 1].spread));
-  return 1e3 * s.back().spread;
 }
 
 Run against_finite_elements(const Cell& cell, const Model& scheme) {
