@@ -100,19 +100,8 @@ Outcome run_explicit_in(const Scene& scene, const Law& law, const Observer& obse
     write_back(state, body);
     activate(body.grid, body.points);
     outcome.cost.cells_active = std::max<std::int64_t>(outcome.cost.cells_active, body.grid.n_cells());
-    outcome.series.push_back(read(scene, body, step));
-    if (observer.on_step) observer.on_step(outcome.series.back());
-    if (observer.on_frame && body.time >= next_frame) {
-      observer.on_frame(engine::frame_of(body));
-      next_frame += scene.frame_interval;
-    }
-    const Sample& now = outcome.series.back();
-    const bool clear = !scene.lift_speed || rim_height(scene, now.time) > now.height + scene.model.cell[1];
-    stopped = watch.at_rest(clear, now.max_speed, now.time);
-    if (observer.interrupted && *observer.interrupted) {
-      outcome.status = Status::interrupted;
-      break;
-    }
+    stopped = record(scene, body, step, observer, watch, next_frame, outcome);
+    if (outcome.status == Status::interrupted) break;
   }
   read_results(watch, stopped, outcome);
   limits.tell(outcome.cost.steps, outcome.checks);
