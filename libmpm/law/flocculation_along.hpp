@@ -5,6 +5,7 @@
 // Sixth order.
 
 #include <array>
+#include <utility>
 
 #include "libmpm/law/flocculation.hpp"
 
@@ -27,6 +28,13 @@ struct CubicRate {
     a2 = 5.0 / 12.0 * (g[0] + g[3] - g[1] - g[2]);
     a3 = 0.25 * (outer - inner);
   }
+
+  /// Value, and slope over the share x of the step.
+  std::pair<double, double> at(double x) const {
+    const double u = 2.0 * x - 1.0;
+    return {mean + a1 * u + a2 * (1.5 * u * u - 0.5) + a3 * u * (2.5 * u * u - 1.5),
+            2.0 * (a1 + 3.0 * a2 * u + a3 * (7.5 * u * u - 1.5))};
+  }
 };
 
 template <class Rate>
@@ -44,29 +52,44 @@ inline double roussel_step(double lambda, double build_rate, double alpha, const
   return build_and_break(lambda, build_rate, d, z, dt);
 }
 
-/// Where the rate passes gamma_c between two times a and b, at which it is fa and fb above: the secant that
-/// keeps the bracket, with the weight of Anderson and Bjorck (1973) for an end that stays.
+/// Where the cubic passes gamma_c between two shares a and b of the step, at which it is on two sides of it:
+/// Newton's method from the chord, held in [a, b]. To a hundredth of b - a or so: it is a first guess.
+inline double crossing_of(const CubicRate& rate, double gamma_c, double a, double fa, double b, double fb) {
+  double x = (a * fb - b * fa) / (fb - fa);
+  for (int i = 0; i < 3; ++i) {
+    const auto [value, slope] = rate.at(x);
+    if (slope == 0.0) break;
+    x = std::clamp(x - (value - gamma_c) / slope, a, b);
+  }
+  return x;
+}
+
+/// Where the rate passes gamma_c between two times a and b, at which it is fa and fb above, tried first at
+/// `guess`, where its slope is about `slope`: the secant that keeps the bracket, with the weight of Anderson
+/// and Bjorck (1973) for an end that stays. The error of a secant goes with the product of the two changes
+/// before it; the last one is not asked for its rate.
 template <class Rate>
-double gate_crossing(const Rate& rate, double gamma_c, double a, double fa, double b, double fb) {
-  const double close = 1e-3 * std::abs(b - a);
-  double last = a, f_last = fa;
+double gate_crossing(const Rate& rate, double gamma_c, double a, double fa, double b, double fb, double guess,
+                     double slope) {
+  const double close = 1e-5 * (b - a) * (b - a);
+  double last = guess, change = b - a;
   for (int i = 0; i < 50; ++i) {
-    const double next = (a * fb - b * fa) / (fb - fa), f = rate(next) - gamma_c;
-    if (f == 0.0) return next;
-    if (std::abs(next - last) <
-        close)  // one secant more, without asking for the rate: the square of it or so
-      return f != f_last ? next - f * (next - last) / (f - f_last) : next;
-    last = next;
-    f_last = f;
+    const double f = rate(last) - gamma_c;
+    if (f == 0.0) return last;
     if ((f < 0.0) != (fb < 0.0)) {  // b is the newest of the bracket's ends
       a = b;
       fa = fb;
-    } else {
+    } else if (i > 0) {
       const double weight = 1.0 - f / fb;
       fa *= weight > 0.0 ? weight : 0.5;
     }
-    b = next;
+    b = last;
     fb = f;
+    double next = (a * fb - b * fa) / (fb - fa);
+    if (const double newton = b - f / slope; i == 0 && (newton - a) * (newton - b) < 0.0) next = newton;
+    if (std::abs(change * (next - last)) < close) return next;
+    change = next - last;
+    last = next;
   }
   return last;
 }
@@ -99,9 +122,11 @@ double gated_step(double lambda, double build_rate, const Thixotropy& t, const R
   };
   for (std::size_t i = 1; i < 4; ++i) {
     const double a = g.value[i - 1] - t.gamma_c, b = g.value[i] - t.gamma_c;
-    if ((a < 0.0) != (b < 0.0))
-      go_to(gate_crossing(rate, t.gamma_c, start + lobatto[i - 1] * dt, a, start + lobatto[i] * dt, b),
-            t.gamma_c, a < 0.0);
+    if ((a < 0.0) == (b < 0.0)) continue;
+    const double guess = crossing_of(g, t.gamma_c, lobatto[i - 1], a, lobatto[i], b);
+    go_to(gate_crossing(rate, t.gamma_c, start + lobatto[i - 1] * dt, a, start + lobatto[i] * dt, b,
+                        start + guess * dt, g.at(guess).second / dt),
+          t.gamma_c, a < 0.0);
   }
   go_to(start + dt, gamma_1, gamma_1 < t.gamma_c);
   return lambda;

@@ -58,15 +58,16 @@ template <class Method>
 std::vector<double> march(const Case& c, double dt, Method method) {
   std::vector<double> result;
   result.reserve(c.times.size());
-  double lambda = c.lambda_0, piece_start = 0.0, now = 0.0;
+  double lambda = c.lambda_0, piece_start = 0.0, now = 0.0, g0 = c.history.front().rate(0.0);
   std::size_t piece = 0;
   for (const double end : c.times) {
-    while (now - piece_start >= c.history[piece].duration * (1.0 - 1e-12))
+    while (now - piece_start >= c.history[piece].duration * (1.0 - 1e-12)) {
       piece_start += c.history[piece++].duration;
+      g0 = c.history[piece].rate(now - piece_start);
+    }
     const int n = std::max(1, static_cast<int>(std::lround((end - now) / dt)));
     const double h = (end - now) / n;
     const ShearPiece& p = c.history[piece];
-    double g0 = p.rate(now - piece_start);
     for (int i = 1; i <= n; ++i) {
       const double start = now - piece_start + (i - 1) * h, g1 = p.rate(start + h);
       lambda = method(c.thixotropy, lambda, Step{p, start, g0, g1, h});
