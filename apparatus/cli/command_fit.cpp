@@ -10,6 +10,7 @@
 
 #include "apparatus/cli/commands.hpp"
 #include "apparatus/cli/fit_charts.hpp"
+#include "apparatus/cli/program.hpp"
 #include "apparatus/cli/rheometer_files.hpp"
 #include "apparatus/report/run_folder.hpp"
 #include "apparatus/scene/input_error.hpp"
@@ -221,8 +222,7 @@ int run(const Options& options) {
 
 void add_command_fit(CLI::App& app, int& exit_code) {
   auto o = std::make_shared<Options>();
-  auto* command =
-      app.add_subcommand("fit", "Material parameters, with their uncertainty, from a torque record");
+  auto* command = app.add_subcommand(fit_command.name, fit_command.description);
   command
       ->add_option("data", o->data,
                    "CSV: speed_rev_per_s,torque_N_m (flow curve) or time_s,torque_N_m (decay)")

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/program.hpp"
 #include "apparatus/report/run_folder.hpp"
 #include "apparatus/scene/input_error.hpp"
 #include "tests/verification/ladder/document.hpp"
@@ -79,8 +80,7 @@ int verify(const Options& options) {
 
 void add_command_verify(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
-  auto* command = app.add_subcommand(
-      "verify", "Measure the error against exact solutions, and what it costs; write VERIFICATION.md");
+  auto* command = app.add_subcommand(verify_command.name, verify_command.description);
   command->add_option("rungs", options->rungs, "Rungs by name or number (default: all): " + known_rungs());
   auto* quick =
       command->add_flag("--quick", options->quick, "Coarser cells, under five minutes (the default)");

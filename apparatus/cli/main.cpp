@@ -1,46 +1,53 @@
+// The program `tremie`: scenes and the law. What fits and verifies is handed over to tremie-study.
+
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdio>
-#include <exception>
+#include <cstring>
+#include <filesystem>
 
 #include "apparatus/cli/command_cell.hpp"
-#include "apparatus/cli/command_fit.hpp"
 #include "apparatus/cli/commands.hpp"
-#include "apparatus/scene/input_error.hpp"
-#include "tremie_version.hpp"
+#include "apparatus/cli/program.hpp"
 
 namespace {
 
-int run(int argc, char** argv) {
-  CLI::App app{"Virtual test apparatus for thixotropic fresh concrete", "tremie"};
-  app.set_version_flag("--version", fmt::format("tremie {} ({})", tremie::version, tremie::commit));
-  app.require_subcommand(1);
-  int exit_code = tremie::cli::done;
-  tremie::cli::add_command_run(app, exit_code);
-  tremie::cli::add_command_check(app, exit_code);
-  tremie::cli::add_command_new(app, exit_code);
-  tremie::cli::add_command_cell(app, exit_code);
-  tremie::cli::add_command_fit(app, exit_code);
-  tremie::cli::add_command_verify(app, exit_code);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? tremie::cli::done : tremie::cli::bad_input;
-  }
-  return exit_code;
+using namespace tremie::cli;
+
+constexpr StudyCommand study_commands[] = {fit_command, verify_command};
+
+bool is_study_command(const char* word) {
+  for (const StudyCommand& command : study_commands)
+    if (std::strcmp(word, command.name) == 0) return true;
+  return false;
+}
+
+/// Becomes tremie-study, with the same arguments; returns where that cannot be.
+int hand_over(char** argv) {
+  std::error_code error;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / "tremie-study";
+  execv(program.c_str(), argv);
+  fmt::print(stderr, "tremie: {}: {}\n", program.string(), std::strerror(errno));
+  return fault;
+}
+
+/// The commands of tremie-study, for --help.
+void name_study_commands(CLI::App& app) {
+  for (const StudyCommand& command : study_commands) app.add_subcommand(command.name, command.description);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(argc, argv);
-  } catch (const tremie::scene::InputError& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return tremie::cli::bad_input;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "tremie: {}\n", error.what());
-    return tremie::cli::fault;
-  }
+  if (argc > 1 && is_study_command(argv[1])) return hand_over(argv);
+  return run_program(argc, argv, [](CLI::App& app, int& exit_code) {
+    add_command_run(app, exit_code);
+    add_command_check(app, exit_code);
+    add_command_new(app, exit_code);
+    add_command_cell(app, exit_code);
+    name_study_commands(app);
+  });
 }

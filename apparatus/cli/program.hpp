@@ -1,0 +1,26 @@
+#pragma once
+
+#include <functional>
+#include <span>
+
+namespace CLI {
+class App;
+}
+
+namespace tremie::cli {
+
+/// Reads the command line with the commands that `add` adds, runs the one that is named there, and makes an
+/// exit code (commands.hpp) of what leaves it.
+int run_program(int argc, char** argv, const std::function<void(CLI::App&, int& exit_code)>& add);
+
+/// A command of tremie-study, a program beside tremie: what fits and verifies needs libraries that would cost
+/// every scene milliseconds to load.
+struct StudyCommand {
+  const char *name, *description;
+};
+inline constexpr StudyCommand fit_command{
+    "fit", "Material parameters, with their uncertainty, from a torque record"};
+inline constexpr StudyCommand verify_command{
+    "verify", "Measure the error against exact solutions, and what it costs; write VERIFICATION.md"};
+
+}  // namespace tremie::cli
