@@ -36,6 +36,7 @@ inline StepSettings step_settings(const Model& model) {
   settings.transfer.flip_blend = model.flip_blend;
   settings.even_out.on = model.even_out;
   settings.fixed_dt = model.time_step;
+  settings.dt_max *= model.step_scale;
   return settings;
 }
 

@@ -37,8 +37,9 @@ struct Model {
   ShapeKind shape = ShapeKind::b_spline;
   PressureKind pressure = PressureKind::cell;  ///< one divergence a cell or a point, explicit schemes alone
   TransferKind transfer = TransferKind::apic;
-  double flip_blend = 0.95;                    ///< share of FLIP, transfer = flip alone
-  std::optional<double> time_step;             ///< fixed step [s]; empty: chosen at every step
+  double flip_blend = 0.95;         ///< share of FLIP, transfer = flip alone
+  std::optional<double> time_step;  ///< fixed step [s]; empty: chosen at every step
+  double step_scale = 1.0;          ///< on the longest step that is chosen; no scene key, for error estimates
   std::array<double, 2> cell = {0.01, 0.005};  ///< [m] across, up
   bool even_out =
       true;  ///< keep cells inside the body full (libmpm/transfer/even_out.hpp); no scene key, for studies

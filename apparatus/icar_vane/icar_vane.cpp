@@ -86,7 +86,7 @@ Outcome run_section(const Scene& scene, const Section& section, const Law& law, 
     body.dt = first_dt;
     while (body.time < stage_end * (1.0 - 1e-12) && outcome.status == Status::completed) {
       const double left = stage_end - body.time;
-      settings.dt_max = left / std::ceil(left / largest_dt - 1e-9);
+      settings.dt_max = left / std::ceil(left / (scene.model.step_scale * largest_dt) - 1e-9);
       const double ramp = std::clamp((body.time + first_dt - stage_start) / start_up, 0.0, 1.0);
       const double speed = last_speed + ramp * (stage.speed - last_speed);
       section.turn(body, angular(speed));

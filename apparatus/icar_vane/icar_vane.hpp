@@ -40,6 +40,7 @@ struct Scene {
   Model model;                  ///< space couette or plane
   double frame_interval = 0.5;  ///< [s]
   int threads = 1;
+  bool with_reference = true;  ///< read torque_couette_reference; no scene key, for runs that are coarser
 };
 
 /// One line of timeseries.csv. Torques [N m] about the axis, of the vane's whole height.

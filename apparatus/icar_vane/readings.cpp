@@ -1,5 +1,7 @@
 #include "apparatus/icar_vane/readings.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -119,7 +121,8 @@ void read_instrument(const Scene& scene, Outcome& outcome) {
   r.flow_curve = flow_curve(scene, outcome.series);
   r.reiner_riwlin = reported_bingham(r.flow_curve, instrument);
   if (!scene.speeds.empty() || scene.speed == 0.0) return;
-  r.torque_couette_reference = std::copysign(couette_reference(scene, instrument), scene.speed);
+  if (scene.with_reference)
+    r.torque_couette_reference = std::copysign(couette_reference(scene, instrument), scene.speed);
   read_decay(outcome);
 }
 
@@ -135,9 +138,10 @@ void check_torques_agree(Outcome& outcome) {
   const double wall = std::abs(r.torque_end - r.torque_wall_end - momentum_rate / time);
   const double power = std::abs(r.torque_end - r.torque_power_end);
   if (scale > 0.0 && std::max(wall, power) > agreement * scale)
-    outcome.checks.reasons.push_back("the torques on the blades, on the wall and from the power differ by " +
-                                     std::to_string(100.0 * std::max(wall, power) / scale) +
-                                     " %: not steady, or cells too large");
+    outcome.checks.reasons.push_back(fmt::format(
+        "the torques on the blades, on the wall and from the power differ by {:.1f} %: not steady, or "
+        "cells too large",
+        100.0 * std::max(wall, power) / scale));
 }
 
 void check_against_reference(const Scene& scene, Outcome& outcome) {
@@ -147,9 +151,10 @@ void check_against_reference(const Scene& scene, Outcome& outcome) {
   if (!reference || !same_problem || last.time < settled) return;
   const double off = last.torque / *reference - 1.0;
   if (std::abs(off) > agreement_with_reference)
-    outcome.checks.reasons.push_back("the torque is " + std::to_string(100.0 * off) +
-                                     " % off that of the equations without inertia: not steady, or a sheared "
-                                     "layer that the cells do not resolve");
+    outcome.checks.reasons.push_back(fmt::format(
+        "the torque is {:.1f} % off that of the equations without inertia: not steady, or a sheared layer "
+        "that the cells do not resolve",
+        100.0 * off));
 }
 
 }  // namespace tremie::icar_vane

@@ -149,7 +149,8 @@ Outcome run_plane(const Scene& scene, const Law& law, const Observer& observer) 
   while (!stopped && body.time < scene.duration * (1.0 - 1e-12)) {
     // The films on the column's walls drain ever more slowly: so may the steps go.
     settings.dt_max =
-        std::min(std::max(StepSettings{}.dt_max, share_of_time * body.time), scene.duration - body.time);
+        std::min(scene.model.step_scale * std::max(StepSettings{}.dt_max, share_of_time * body.time),
+                 scene.duration - body.time);
     body.boundary = front_wall(scene, body.time);
     const StepReport step = implicit_step(body, law, settings);
     engine::count_step(body, step, outcome.checks, outcome.cost);

@@ -1,7 +1,7 @@
 #pragma once
 
-// How far a result may be from what finer cells and steps would give: the scene once more with cells (and,
-// where they follow the cells or are fixed, steps) 1.5 and 2 times as large.
+// How far a result may be from what finer cells and steps would give: the scene twice more, with cells and
+// steps that are larger by two factors.
 
 #include <string>
 #include <vector>
@@ -10,18 +10,23 @@
 
 namespace tremie::scene {
 
-/// What three grids h, 1.5 h and 2 h say about a number.
+/// The cells and steps of the two coarser runs, over the scene's.
+struct Coarsening {
+  double middle = 1.5, coarse = 2.0;
+};
+
+/// What three grids say about a number.
 struct Extrapolation {
   double error = 0.0;       ///< half-width of the bar about the finest value, in its unit
   bool richardson = false;  ///< the three are in order and their order of convergence is between 0.5 and 4
   double order = 0.0;       ///< richardson alone
 };
 
-/// Richardson's estimate with the order seen, at most 2, times 1.25; where no order is seen, 1.25 times the
+/// Richardson's estimate with the order seen, at most 1, times 1.25; where no order is seen, 1.25 times the
 /// spread of the three. Never less than a thousandth of the value.
-Extrapolation extrapolate(double fine, double middle, double coarse);
+Extrapolation extrapolate(double fine, double middle, double coarse, const Coarsening& by = {});
 
-/// The same scene with cells and fixed steps `factor` times as large.
+/// The same scene with cells and steps, fixed or chosen, `factor` times as large.
 Scene coarsened(const Scene& scene, double factor);
 
 /// The error bars of the outcome's headline numbers, and what they cost. Runs two coarser scenes. Empty, with

@@ -149,7 +149,7 @@ Outcome run_in(const Scene& scene, const Law& law, const Observer& observer) {
   bool stopped = false;
   double next_frame = scene.frame_interval;
   while (!stopped && body.time < scene.duration * (1.0 - 1e-12)) {
-    settings.dt_max = std::min(StepSettings{}.dt_max, scene.duration - body.time);
+    settings.dt_max = std::min(scene.model.step_scale * StepSettings{}.dt_max, scene.duration - body.time);
     const bool cone_gone =
         scene.lift_speed && rim_height(scene, body.time) > outcome.series.back().height + 0.02;
     const StepReport step = implicit_step(body, law, settings, cone_gone ? RigidWall<Space::dim>{} : wall);
