@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/verification/finite_elements.hpp"
 #include "tests/verification/lubrication.hpp"
-#include "tests/verification/slump_curve.hpp"
 
 namespace tremie {
 namespace {
@@ -13,25 +13,15 @@ namespace {
 using namespace slump_flow;
 using verification::at;
 
-Scene instant(double tau_0, double mu, double duration) {
-  Scene scene;
-  scene.mix.tau_0 = tau_0;
-  scene.mix.mu = mu;
-  scene.lift_speed.reset();
-  scene.duration = duration;
-  return scene;
-}
-
 // Spread within 1.5 % from 1 s on, centre height within 5 %: the finite elements are good to 2 mm of 445, the
 // rest is what ten-millimetre cells are allowed.
 TEST(Slump, MixCFollowsTheFiniteElements) {
-  const Outcome outcome = run(instant(130.0, 30.2, 30.0));
+  const Outcome outcome = run(verification::instant_release(130.0, 30.2, 30.0));
   EXPECT_EQ(outcome.checks.unconverged_steps, 0);
   EXPECT_EQ(outcome.checks.points_lost, 0);
   EXPECT_NEAR(outcome.checks.mass_error, 0.0, 1e-13);
   EXPECT_LE(std::abs(outcome.checks.volume_change), 2e-3);
-  for (const auto& [t, mm] :
-       {std::pair{1.0, 435.4}, {2.0, 442.4}, {3.0, 444.8}, {5.0, 446.0}, {10.0, 447.8}, {20.0, 448.8}}) {
+  for (const auto& [t, mm] : verification::finite_elements_mix_c) {
     const double spread = 1e3 * at(outcome, t, &Sample::spread),
                  height = 1e3 * at(outcome, t, &Sample::height);
     std::printf("Mix C %4.1f s: spread %.1f mm (%+.2f %%), centre height %.1f mm (%+.1f %%)\n", t, spread,

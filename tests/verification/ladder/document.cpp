@@ -97,7 +97,7 @@ std::string chart_of(const Rung& rung) {
       "'#dddddd'\n"
       "set xlabel 'CPU time in s'\nset key outside bottom center horizontal\nset multiplot layout {},{}\n",
       620 * columns, 460 * rows, stem_of(rung), rows, columns);
-  constexpr std::array colours{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"};
+  constexpr std::array colours{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"};
   for (const Case* one : drawn) {
     std::string plots;
     for (std::size_t i = 0; i < one->series.size(); ++i) {

@@ -19,6 +19,7 @@ Rung paper_rung(Depth depth);         ///< 8: what the paper prints; no bounds
 Rung closed_loop_rung(Depth depth);   ///< 9: parameters -> vane -> torque -> fit -> parameters
 Rung extremes_rung(Depth depth);      ///< 10: stiff and extreme scenes
 Rung error_bars_rung(Depth depth);    ///< 11: whether the error bars hold
+Rung pareto_rung(Depth depth);        ///< 12: which scheme for which CPU budget
 
 struct Step {
   int number;

@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <utility>
 
+#include "tests/verification/finite_elements.hpp"
 #include "tests/verification/huppert.hpp"
 #include "tests/verification/ladder/ladder.hpp"
 #include "tests/verification/slender.hpp"
-#include "tests/verification/slump_curve.hpp"
 
 namespace tremie::verification {
 namespace {
@@ -74,19 +73,12 @@ Case slender(Depth depth) {
 }
 
 Run against_finite_elements(const Cell& cell, const Model& scheme) {
-  constexpr std::array<std::pair<double, double>, 6> reference{
-      {{1, 435.4}, {2, 442.4}, {3, 444.8}, {5, 446.0}, {10, 447.8}, {20, 448.8}}};
   const double start = cpu_seconds();
-  slump_flow::Scene scene;
-  scene.mix.tau_0 = 130.0, scene.mix.mu = 30.2;
-  scene.lift_speed.reset();
-  scene.duration = 20.0;
+  slump_flow::Scene scene = instant_release(130.0, 30.2, 20.0);
   scene.model = scheme;
   scene.model.cell = {1e-3 * cell[0], 1e-3 * cell[1]};
   const auto outcome = slump_flow::run(scene);
-  double worst = 0.0;
-  for (const auto& [time, mm] : reference)
-    worst = std::max(worst, std::abs(spread_at(outcome, time) / mm - 1.0));
+  const double worst = worst_error(outcome, finite_elements_mix_c);
   return {label_of(cell), size_of(cell), worst, cpu_seconds() - start,
           unconverged(outcome.checks.unconverged_steps)};
 }
@@ -127,10 +119,7 @@ Case rest_balance() {
            .series = {{"implicit", {}}},
            .bounds = {}};
   const double start = cpu_seconds();
-  slump_flow::Scene scene;
-  scene.mix.tau_0 = 130.0, scene.mix.mu = 30.2;
-  scene.lift_speed.reset();
-  const auto outcome = slump_flow::run(scene);
+  const auto outcome = slump_flow::run(instant_release(130.0, 30.2, slump_flow::Scene{}.duration));
   const Fluid fluid{2400.0, 9.81, 130.0, 30.2};
   const double low = 2.0 * rest_radius(fluid, cone_volume(), plug_normal_stress);
   const double high = 2.0 * rest_radius(fluid, cone_volume(), 0.0);
