@@ -55,14 +55,19 @@ std::optional<ReinerRiwlin> reported_bingham(const std::vector<CurvePoint>& curv
 /// Torque at the end between solid cylinders, by the rheometer's references.
 double couette_reference(const Scene& scene, const Instrument& instrument) {
   const double omega = angular_speed(std::abs(scene.speed));
-  const Bingham bingham{scene.mix.tau_0, scene.mix.mu};
-  if (!scene.mix.thixotropy || scene.mix.thixotropy->alpha == 0.0)
-    return reiner_riwlin(bingham, omega, instrument).torque;
+  Bingham bingham{scene.mix.tau_0, scene.mix.mu};
+  if (!scene.mix.thixotropy) return reiner_riwlin(bingham, omega, instrument).torque;
   CouetteFlow flow;
   flow.bingham = bingham;
   flow.thixotropy = *scene.mix.thixotropy;
-  flow.thixotropy.initial_flocculation = flocculation_after_rest(
-      flow.thixotropy.initial_flocculation, flow.thixotropy, scene.mix.tau_0, scene.rest);
+  double& lambda = flow.thixotropy.initial_flocculation;
+  lambda = flocculation_after_rest(lambda, flow.thixotropy, scene.mix.tau_0, scene.rest);
+  if (flow.thixotropy.alpha == 0.0) {  // nothing breaks it down: the same everywhere
+    if (flow.thixotropy.kinetics == Kinetics::roussel)
+      lambda = flocculation_after_rest(lambda, flow.thixotropy, scene.mix.tau_0, scene.duration);
+    bingham.tau_0 = static_yield_stress(lambda, bingham.tau_0);
+    return reiner_riwlin(bingham, omega, instrument).torque;
+  }
   flow.omega = omega;
   const double times[] = {0.0, scene.duration};
   return thixotropic_couette(flow, times, instrument).torque.back();

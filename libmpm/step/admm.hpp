@@ -35,6 +35,9 @@ namespace detail {
 /// So little is no stress of a concrete [Pa]: the scale where nothing yields and nothing moves.
 inline constexpr double no_stress = 1e-3;
 
+/// Hardly any place of a test shears faster for long [1/s].
+inline constexpr double fastest_rate = 100.0;
+
 /// Squares of the primal and dual mismatch and of the stress scale, weighted by volume.
 struct Mismatch {
   double primal = 0.0, dual = 0.0, scale = 0.0;
@@ -80,16 +83,29 @@ std::vector<double> volumes_around_nodes(const YieldProblem<Space>& problem) {
   return V;
 }
 
-/// The penalty r [Pa s]: a multiple of the viscosity, or of the inertia of a cell where that is stiffer. A
-/// smaller one would hardly move the stresses in an iteration, and the mismatch r (q - d) would look
-/// converged from the start.
+/// Mean yield stress [Pa], by volume.
+template <class Space>
+double mean_yield_stress(const YieldProblem<Space>& problem) {
+  double sum = 0.0, volume = 0.0;
+  for (int c = 0; c < problem.grid.n_cells(); ++c)
+    for (int k = 0; k < power(2, Space::dim); ++k) {
+      sum += problem.quadrature.V[c][k] * problem.quadrature.tau_y[c][k];
+      volume += problem.quadrature.V[c][k];
+    }
+  return volume > 0.0 ? sum / volume : 0.0;
+}
+
+/// The penalty r [Pa s]: a multiple of the viscosity, or the inertia of a cell or the yield stress over the
+/// fastest rate of a test where that is stiffer. A smaller one would hardly move the stresses in an
+/// iteration, and the mismatch r (q - d) would look converged from the start.
 template <class Space>
 double penalty(const YieldProblem<Space>& problem, double viscosities) {
   double mass = 0.0, volume = 0.0;
   for (double m : problem.nodes.mass) mass += m;
   for (double V : problem.quadrature.V_cell) volume += V;
   const double h = problem.grid.cell_size_min();
-  return std::max(viscosities * problem.mu, mass / volume * h * h / problem.dt);
+  return std::max({viscosities * problem.mu, mass / volume * h * h / problem.dt,
+                   mean_yield_stress(problem) / fastest_rate});
 }
 
 }  // namespace detail

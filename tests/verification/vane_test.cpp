@@ -161,5 +161,41 @@ TEST(VanePlane, FramesShowTheWholeSection) {
   }
 }
 
+// All shear is in a layer far thinner than a cell, and the torque is that of the yield stress at the vane. 2
+// %: the stress is that of the first Gauss place, 0.2 mm off the vane, and 1e-3 is what the iteration
+// tolerates.
+TEST(VaneCouette, AYieldStressThatDwarfsTheViscosityIsCarried) {
+  for (const double speed : {0.01, 0.25, 5.0}) {
+    Scene scene;
+    scene.model.space = SpaceKind::couette;
+    scene.model.cell = {0.001, 0.001};
+    scene.mix.tau_0 = 5000.0, scene.mix.mu = 0.01;
+    scene.speed = speed;
+    scene.duration = 2.0;
+    const Outcome outcome = run(scene);
+    const double expected =
+        reiner_riwlin({scene.mix.tau_0, scene.mix.mu}, 2.0 * std::numbers::pi * speed, Instrument{}).torque;
+    std::printf("5000 Pa, 0.01 Pa.s, %g rev/s: %.3f N m of %.3f\n", speed, outcome.results.torque_end,
+                expected);
+    EXPECT_NEAR(outcome.results.torque_end / expected, 1.0, 0.02);
+  }
+}
+
+// Where nothing breaks it down, lambda stays what the rest made it: 1.3 Pa/s * 240 s / 54 Pa, and the torque
+// is that of the static yield stress (equation 7). 0.5 %: what Couette sections are held to.
+TEST(VaneCouette, WithoutBreakdownTheTorqueIsOfTheStaticYieldStress) {
+  Scene scene;
+  scene.model.space = SpaceKind::couette;
+  scene.model.cell = {0.001, 0.001};
+  scene.mix.tau_0 = 54.0, scene.mix.mu = mu;
+  scene.mix.thixotropy = Thixotropy{.A_thix = 1.3, .alpha = 0.0};
+  scene.rest = 240.0;
+  scene.duration = 2.0;
+  const Outcome outcome = run(scene);
+  const double expected = reiner_riwlin({54.0 + 1.3 * 240.0, mu}, omega, Instrument{}).torque;
+  EXPECT_NEAR(outcome.results.torque_end / expected, 1.0, 0.005);
+  EXPECT_NEAR(outcome.results.torque_couette_reference.value() / expected, 1.0, 1e-9);
+}
+
 }  // namespace
 }  // namespace tremie::icar_vane

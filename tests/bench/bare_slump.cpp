@@ -1,0 +1,29 @@
+// The slump of a Bingham concrete on a no-slip floor, axisymmetric, and nothing else: no scene, no readings,
+// no files, one law and one space in the program. What the program `tremie` takes beyond it for the same
+// steps is what a scene carries that it does not need.
+//
+//   bare_slump CELL_M DURATION_S     prints steps and points
+
+#include <cstdio>
+#include <cstdlib>
+
+#include "apparatus/slump_flow/engine.hpp"
+
+int main(int argc, char** argv) {
+  using namespace tremie;
+  if (argc != 3) return 2;
+  slump_flow::Scene scene;
+  scene.mix.tau_0 = 54.0, scene.mix.mu = 35.8;
+  scene.lift_speed.reset();
+  scene.model.cell = {std::atof(argv[1]), 0.5 * std::atof(argv[1])};
+  scene.duration = std::atof(argv[2]);
+
+  auto body = slump_flow::filled_cone<Axisymmetric>(scene);
+  StepSettings settings = slump_flow::step_settings(scene);
+  long steps = 0;
+  for (; body.time < scene.duration * (1.0 - 1e-12); ++steps) {
+    settings.dt_max = std::min(StepSettings{}.dt_max, scene.duration - body.time);
+    implicit_step(body, ExactBingham{}, settings, RigidWall<2>{});
+  }
+  std::printf("%ld %zu\n", steps, body.points.size());
+}
