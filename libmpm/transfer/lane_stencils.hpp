@@ -35,6 +35,7 @@ struct Weights {
   std::array<std::array<Octet, 3>, D> w, dw, wa;
   std::array<Octet, D> inertia;  ///< sum of w times arm squared [m^2]
   std::array<int, octet_size> base;
+  bool together = false;  ///< all stencils begin at the same place
 };
 
 /// Cells of a tile in each direction that a point may have its pressure in.
@@ -59,19 +60,24 @@ inline void b_spline_weights(const Axis& axis, const Octet& cell_index, const Oc
 
 /// u: distance from the nearest corner, in cells. A point whose extent would reach beyond a wall is taken
 /// without extent: linear hats, whose control on the wall sets the velocity of the whole wall.
-inline void gimp_weights(const Axis& axis, double half, const Octet& corner_index, const Octet& u,
+inline void gimp_weights(const Axis& axis, double extent, const Octet& corner_index, const Octet& u,
                          Octet (&w)[3], Octet (&dw)[3], Octet (&arm)[3]) {
-  const Octet none = {}, one = none + 1.0;
+  const Octet none = {}, point = all_lanes(1e-16);
+  Octet half = all_lanes(extent), inverse = all_lanes(0.5 / extent);
+  const auto shrink = [&](double corner) {
+    const OctetMask wall = corner_index == corner;
+    half = wall ? point : half, inverse = wall ? all_lanes(0.5e16) : inverse;
+  };
+  if (axis.wall_low()) shrink(0.0);
+  if (axis.wall_high()) shrink(axis.n_cells);
+  // How much of the extent lies below and above the corner, and how far the extent is from it.
+  const Octet whole = half + half, below = min(max(half - u, none), whole),
+              above = min(max(half + u, none), whole);
   const double ih = 1.0 / axis.h;
-  const OctetMask wall = (axis.wall_low() ? corner_index == 0.0 : one < 0.0) |
-                         (axis.wall_high() ? corner_index == double(axis.n_cells) : one < 0.0);
-  const OctetMask smooth = (u < half) & (u > -half) & ~wall;
-  const Octet below = half - u, above = half + u;
-  w[0] = smooth ? below * below * (0.25 / half) : max(-u, none);
-  w[2] = smooth ? above * above * (0.25 / half) : max(u, none);
+  dw[0] = -ih * (below * inverse), dw[2] = ih * (above * inverse);
+  w[0] = 0.5 * below * (below * inverse) + max(-u - half, none);
+  w[2] = 0.5 * above * (above * inverse) + max(u - half, none);
   w[1] = 1.0 - w[0] - w[2];
-  dw[0] = ih * (smooth ? below * (-0.5 / half) : (u < 0.0 ? -one : none));
-  dw[2] = ih * (smooth ? above * (0.5 / half) : (u < 0.0 ? none : one));
   dw[1] = -dw[0] - dw[2];
   for (int k = 0; k < 3; ++k) arm[k] = axis.h * ((k - 1) - u);
 }
@@ -98,6 +104,7 @@ void weigh(const std::array<Axis, D>& axes, const Shape<D>& shape, const Index<D
            const std::array<Octet, D>& x, Weights<D>& weights) {
   Octet base = {};
   const Octet low = all_lanes(-1.0), high = all_lanes(tile_cells);
+#pragma GCC unroll 3
   for (int d = 0; d < D; ++d) {
     const Axis& axis = axes[d];
     const double first = tile[d] * tile_cells;
@@ -117,7 +124,13 @@ void weigh(const std::array<Axis, D>& axes, const Shape<D>& shape, const Index<D
       weights.inertia[d] += weights.wa[d][k] * arm[k];
     }
   }
-  for (int l = 0; l < octet_size; ++l) weights.base[static_cast<std::size_t>(l)] = static_cast<int>(base[l]);
+  const OctetMask differs = base != all_lanes(base[0]);
+  std::int64_t any = 0;
+  for (int l = 0; l < octet_size; ++l) {
+    weights.base[static_cast<std::size_t>(l)] = static_cast<int>(base[l]);
+    any |= differs[l];
+  }
+  weights.together = any == 0;
 }
 
 /// Weights of one point: what the sums below take. n: controls a direction.
@@ -202,16 +215,6 @@ template <int D, int n>
   for (int d = 0; d < D; ++d)
     for (int k = 0; k < n; ++k) along[d][k] = p.dw[d][k] * slope[d] + p.wa[d][k] * moment[d];
   scatter<D, n, 0>(node, p, along, value, NodeLanes{} + 1.0);
-}
-
-/// Rows of four (one a point) to columns of eight (one a component), and back.
-inline void to_columns(const NodeLanes (&row)[octet_size], Octet (&column)[4]) {
-  for (int c = 0; c < 4; ++c)
-    for (int l = 0; l < octet_size; ++l) column[c][l] = row[l][c];
-}
-inline void to_rows(const Octet (&column)[4], NodeLanes (&row)[octet_size]) {
-  for (int l = 0; l < octet_size; ++l)
-    row[l] = NodeLanes{column[0][l], column[1][l], column[2][l], column[3][l]};
 }
 
 }  // namespace tremie

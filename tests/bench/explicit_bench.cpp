@@ -69,7 +69,7 @@ void law_alone(benchmark::State& run) {
   Set<Space> set(thixotropic, false, StressUpdate::last, false);
   detail::Fields<Space::dim> fields;
   fields.L[0][0] = all_lanes(0.3), fields.L[0][1] = all_lanes(0.7);
-  detail::PassSums sums;
+  detail::LaneSums sums;
   for (auto _ : run)
     for (std::size_t g = 0; g < set.state.points.groups(); ++g)
       benchmark::DoNotOptimize(detail::update_state<Space>(set.body.mix, law, false, 1e-9, fields, Octet{},
@@ -81,8 +81,7 @@ template <class Space>
 void sort_alone(benchmark::State& run) {
   Set<Space> set(true, false, StressUpdate::last, false);
   for (auto _ : run) {
-    write_back(set.state, set.body);
-    detail::sort_points(set.body, set.settings, set.state);
+    detail::sort_points(set.settings, set.state);
   }
   set.count(run);
 }
