@@ -46,10 +46,13 @@ inline Octet polynomial(const Octet& x, const double (&c)[14]) {
 }
 }  // namespace detail
 
+/// Whole number next to x, |x| < 2^51.
+inline Octet nearest(const Octet& x) { return (x + detail::round_to_whole) - detail::round_to_whole; }
+
 /// Largest whole number that is not above x, |x| < 2^51.
 inline Octet floor(const Octet& x) {
-  const Octet nearest = (x + detail::round_to_whole) - detail::round_to_whole;
-  return nearest > x ? nearest - 1.0 : nearest;
+  const Octet near = nearest(x);
+  return near > x ? near - 1.0 : near;
 }
 
 /// e^x for |x| <= 700 to 2e-16 relative; beyond, e^-700 or e^700.

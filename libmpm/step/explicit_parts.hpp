@@ -42,12 +42,6 @@ void sort_if_drifted(const ExplicitSettings& settings, ExplicitState<Space>& sta
     sort_points(settings, state);
 }
 
-/// Counts the groups that a pass found to be of several cells.
-template <class Space>
-void count_mixed(std::int64_t mixed, ExplicitState<Space>& state) {
-  state.mixed_since += std::max<std::int64_t>(0, mixed - state.mixed_groups);
-}
-
 /// The limits of the step to come, and its length.
 template <class Space, class Law>
 void choose_next_step(const Body<Space>& body, const Law& law, const ExplicitSettings& settings,

@@ -186,41 +186,31 @@ void move_group(const std::array<Axis, D>& axes, const Transfer& transfer, doubl
 /// Momentum, mass and impulses of group g to the controls; `forces` is `sums` unless FLIP must tell them
 /// apart.
 template <Pass pass, class Space>
-void scatter_group(bool flip, bool apart, double impulse_dt, const Weights<Space::dim>& weights,
-                   const GroupStress<Space::dim>& stress, int n, const LanePoints<Space::dim>& points,
-                   std::size_t g, Cube<Space::dim>& sums, Cube<Space::dim>& forces) {
+void scatter_points(bool flip, bool apart, double impulse_dt, const Weights<Space::dim>& weights,
+                    const GroupStress<Space::dim>& stress, int n, const LanePoints<Space::dim>& points,
+                    std::size_t g, Cube<Space::dim>& sums, Cube<Space::dim>& forces) {
   constexpr int D = Space::dim;
-  constexpr bool momentum = pass.move, hooped = pass.stress && std::is_same_v<Space, Axisymmetric>;
-  constexpr Wanted given{.slopes = pass.stress, .moments = momentum};
-  NodeLanes value[octet_size], slope[D][octet_size], moment[D][octet_size], pull[octet_size] = {};
-  Octet column[4] = {}, hoop[4] = {};
-  if (momentum) {
-    for (int d = 0; d < D; ++d) column[d] = points.mass[g] * points.v[d][g];
-    column[D] = points.mass[g];
+  constexpr bool hooped = pass.stress && std::is_same_v<Space, Axisymmetric>;
+  constexpr Given momenta{.slopes = false}, impulses{.values = hooped, .moments = false};
+  constexpr Given both{.values = pass.move || hooped, .slopes = pass.stress, .moments = pass.move};
+  const Octet mass = points.mass[g];
+  Spread<D> momentum, impulse;
+  Spread<D>& forced = apart ? impulse : momentum;
+  for (Octet& value : momentum.value) value = Octet{};
+  for (Octet& value : impulse.value) value = Octet{};
+  if (pass.move) momentum.value[D] = mass;
+  for (int a = 0; a < D; ++a) {
+    if (pass.move) momentum.value[a] = mass * points.v[a][g];
+    for (int b = 0; b < D && pass.move; ++b)
+      momentum.moment[b][a] = flip ? Octet{} : mass * points.C[a * D + b][g];
+    for (int b = 0; b < D && pass.stress; ++b) forced.slope[b][a] = -impulse_dt * stress.sigma[a][b];
   }
-  if (hooped) hoop[0] = -impulse_dt * stress.hoop / points.x[0][g];
-  if (hooped && apart) to_rows(hoop, pull);
-  if (hooped && !apart) column[0] += hoop[0];
-  to_rows(column, value);
-  for (int b = 0; b < D; ++b) {
-    Octet s[4] = {}, m[4] = {};
-    for (int a = 0; a < D && pass.stress; ++a) s[a] = -impulse_dt * stress.sigma[a][b];
-    for (int a = 0; a < D && momentum && !flip; ++a) m[a] = points.mass[g] * points.C[a * D + b][g];
-    if (pass.stress) to_rows(s, slope[b]);
-    if (momentum) to_rows(m, moment[b]);
-  }
-  RowWeights<D> rows;
-  multiply_rows<D>(weights, rows);
-  for (std::size_t l = 0; l < static_cast<std::size_t>(n); ++l) {
-    NodeLanes s[D] = {}, m[D] = {};
-    for (int d = 0; d < D && pass.stress; ++d) s[d] = slope[d][l];
-    for (int d = 0; d < D && momentum; ++d) m[d] = moment[d][l];
-    if (apart) {
-      scatter_point<D, moments_only>(sums.data(), weights, rows, l, value[l], s, m);
-      scatter_point<D, slopes_only>(forces.data(), weights, rows, l, pull[l], s, m);
-    } else {
-      scatter_point<D, given>(sums.data(), weights, rows, l, value[l], s, m);
-    }
+  if (hooped) forced.value[0] += -impulse_dt * stress.hoop / points.x[0][g];
+  if (apart) {
+    scatter_group<D, momenta>(weights, momentum, n, sums.data());
+    scatter_group<D, impulses>(weights, impulse, n, forces.data());
+  } else {
+    scatter_group<D, both>(weights, momentum, n, sums.data());
   }
 }
 
@@ -252,14 +242,16 @@ PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& 
     before.read_divergences(v);
   }
   LaneSums reduced;
+  const StencilFrame<D> frame = stencil_frame<D>(grid.axes, state.shape, tile.at);
 
   for (std::size_t g = first; g < last; ++g) {
     const int n = filled<D>(points, g);
     Weights<D> weights;
     const auto place = [&] {
+      constexpr Wanted wanted{.slopes = pass.stress, .moments = pass.move};
       std::array<Octet, D> x;
       for (int d = 0; d < D; ++d) x[d] = points.x[d][g];
-      weigh<D>(grid.axes, state.shape, tile.at, x, weights);
+      weigh<D, wanted>(frame, x, weights);
     };
     place();
     Fields<D> fields;
@@ -282,7 +274,7 @@ PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& 
       if (!pass.gather || pass.move) pushed.add_group(points, g, cell);
       pushed.push(cell, n, input.impulse_dt * stress.pressure);
     }
-    scatter_group<pass, Space>(flip, apart, input.impulse_dt, weights, stress, n, points, g, sums, forces);
+    scatter_points<pass, Space>(flip, apart, input.impulse_dt, weights, stress, n, points, g, sums, forces);
   }
   if (pass.stress && cells) pushed.scatter_impulses(forces);
   return reduced.reduced();
@@ -298,6 +290,7 @@ PassSums pass_over_points(const Mix& mix, const Law& law, const ExplicitSettings
     reduced[t] = pass_over_tile<pass, Space>(mix, law, settings, input, t, state);
   PassSums all;
   for (const PassSums& one : reduced) all.add(one);
+  state.mixed_since += std::max<std::int64_t>(0, all.mixed - state.mixed_groups);
   return all;
 }
 

@@ -82,7 +82,6 @@ ExplicitReport explicit_step(Body<Space>& body, const Law& law, const ExplicitSe
   const detail::PassSums sums = settings.stress == StressUpdate::last
                                     ? stress_last(body, law, settings, wall, dt, state)
                                     : stress_first(body, law, settings, wall, dt, state);
-  detail::count_mixed(sums.mixed, state);
   body.time += dt;
   body.dt = dt;
   report.failed = sums.ran_away;
