@@ -7,6 +7,9 @@
 // eight.
 
 #include "libmpm/transfer/lane_stencils.hpp"
+#ifdef __AVX512F__
+#include <immintrin.h>
+#endif
 
 namespace tremie {
 
@@ -46,7 +49,13 @@ template <int D, Wanted wanted, int d = 0>
 }
 
 /// The same vector in both halves, and two vectors side by side.
-inline Octet twice(const NodeLanes& a) { return __builtin_shufflevector(a, a, 0, 1, 2, 3, 0, 1, 2, 3); }
+inline Octet twice(const NodeLanes& a) {
+#ifdef __AVX512F__  // one load; a shuffle would take an arithmetic unit
+  return _mm512_maskz_broadcast_f64x4(0xff, a);
+#else
+  return __builtin_shufflevector(a, a, 0, 1, 2, 3, 0, 1, 2, 3);
+#endif
+}
 inline Octet side_by_side(const NodeLanes& a, const NodeLanes& b) {
   return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
 }
