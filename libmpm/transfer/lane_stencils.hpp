@@ -43,7 +43,7 @@ inline constexpr int tile_pressure_cells = tile_cells + 3;
 
 /// What a tile's weights need of one axis; cells and corners are counted from the tile's first.
 struct StencilAxis {
-  double h, ih, offset;              ///< x ih + offset is the place in cells
+  double h, ih, origin, first;       ///< (x - origin) ih - first is the place in cells
   double half, inverse;              ///< GIMP: of a point's extent, and 1/(2 half)
   bool walls;                        ///< whether one of these is in sight:
   double low = 1e300, high = 1e300;  ///< cell (GIMP: corner) at a low and at a high wall
@@ -62,7 +62,7 @@ StencilFrame<D> stencil_frame(const std::array<Axis, D>& axes, const Shape<D>& s
     const Axis& a = axes[d];
     StencilAxis& to = frame.axis[d];
     const double first = tile[d] * tile_cells;
-    to.h = a.h, to.ih = 1.0 / a.h, to.offset = -a.origin / a.h - first;
+    to.h = a.h, to.ih = 1.0 / a.h, to.origin = a.origin, to.first = first;
     to.half = shape.half[d], to.inverse = 0.5 / shape.half[d];
     if (a.wall_low()) to.low = -first;
     if (a.wall_high()) to.high = a.n_cells - (shape.kind == ShapeFunctions::gimp ? 0 : 1) - first;
@@ -140,7 +140,7 @@ void weigh(const StencilFrame<D>& frame, const std::array<Octet, D>& x, Weights<
 #pragma GCC unroll 3
   for (int d = 0; d < D; ++d) {
     const StencilAxis& axis = frame.axis[d];
-    const Octet X = x[d] * axis.ih + axis.offset;
+    const Octet X = (x[d] - axis.origin) * axis.ih - axis.first;
     Octet w[3], dw[3], arm[3], at;
     if (frame.kind == ShapeFunctions::gimp) {
       at = min(max(nearest(X), low), high);
