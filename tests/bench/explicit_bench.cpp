@@ -15,10 +15,10 @@ namespace {
 
 const Papanastasiou law{5.0};
 
-/// About 14,000 points.
+/// About 14,000 points unless said otherwise.
 template <class Space>
-Body<Space> block(bool thixotropic) {
-  constexpr int D = Space::dim, cells = D == 3 ? 12 : 60;
+Body<Space> block(bool thixotropic, int cells = Space::dim == 3 ? 12 : 60) {
+  constexpr int D = Space::dim;
   const double h = 0.015, height = cells * h;
   Body<Space> body;
   body.mix = test::concrete(54.0, 35.8, 33e3);
@@ -40,7 +40,8 @@ struct Set {
   ExplicitState<Space> state;
 
   Set(bool thixotropic, bool gimp, StressUpdate stress, bool cell_pressure)
-      : body(block<Space>(thixotropic)) {
+      : Set(block<Space>(thixotropic), gimp, stress, cell_pressure) {}
+  Set(Body<Space> filled, bool gimp, StressUpdate stress, bool cell_pressure) : body(std::move(filled)) {
     settings.stress = stress;
     settings.cell_pressure = cell_pressure;
     settings.fixed_dt = 1e-5;
@@ -95,6 +96,15 @@ void whole_step(benchmark::State& run) {
   set.count(run);
 }
 
+/// range(0): cells a direction. A run of one size alone tells by its peak memory what a point needs.
+template <bool gimp, StressUpdate stress>
+void step_by_size(benchmark::State& run) {
+  omp_set_num_threads(1);
+  Set<ThreeD> set(block<ThreeD>(true, static_cast<int>(run.range(0))), gimp, stress, true);
+  for (auto _ : run) explicit_step(set.body, law, set.settings, set.state);
+  set.count(run);
+}
+
 constexpr auto last = StressUpdate::last, first = StressUpdate::first;
 constexpr detail::Pass points_to_grid = detail::first_momenta;
 
@@ -124,6 +134,8 @@ BENCHMARK(whole_step<Axisymmetric, false, false, last, false>)
 BENCHMARK(whole_step<Axisymmetric, true, false, last, true>)
     ->Name("axisymmetric/USL, splines, thixotropic")
     ->Arg(1);
+BENCHMARK(step_by_size<false, last>)->Name("3D/size, USL, splines, thixotropic")->Arg(12)->Arg(24)->Arg(48);
+BENCHMARK(step_by_size<true, first>)->Name("3D/size, USF, GIMP, thixotropic")->Arg(12)->Arg(24)->Arg(48);
 
 }  // namespace
 }  // namespace tremie
