@@ -75,12 +75,17 @@ void write_back(LanePoints<D>& lanes, const std::array<Axis, D>& axes, Points<D>
   }
 }
 
-/// Takes over the points, eight by eight as they come: to be sorted.
+/// Takes over the points, eight by eight as they come: to be sorted. Theirs give up the room to grow.
 template <int D>
 void take_points(Points<D>& points, bool affine, LanePoints<D>& lanes) {
+  points.x.shrink_to_fit(), points.v.shrink_to_fit(), points.C.shrink_to_fit();
+  for (std::vector<double>* array :
+       {&points.mass, &points.V0, &points.ln_J, &points.lambda, &points.gamma_dot})
+    array->shrink_to_fit();
   const std::size_t groups = (points.size() + octet_size - 1) / octet_size;
   lanes.id.assign(groups, {});
   const auto copy = [&](std::vector<Octet>& to, auto member) {
+    to.reserve(groups + groups / 4);  // sorting fills groups up
     to.assign(groups, Octet{});
     for (std::size_t p = 0; p < points.size(); ++p) to[p / octet_size][p % octet_size] = member(points, p);
   };
@@ -145,6 +150,7 @@ TileBox<D> sort_keys(const std::array<Axis, D>& axes, double stencil_shift, cons
     }
   });
   for (int d = 0; d < D; ++d) box.size[d] = high[d] - box.low[d] + 1;
+  keys.reserve(lanes.groups() * octet_size);
   each([&](std::size_t g, std::size_t l) {
     Index<D> tile;
     std::uint64_t cell = 0;
@@ -165,18 +171,18 @@ TileBox<D> sort_keys(const std::array<Axis, D>& axes, double stencil_shift, cons
 inline constexpr std::size_t own_group = 5;
 
 /// Slots that make up each group, -1 for what fills it up.
-using GroupSlots = std::array<std::int64_t, octet_size>;
+using GroupSlots = std::array<std::int32_t, octet_size>;
 
 /// Groups of one cell's points first, of several cells' points at the end. Returns how many the latter are.
 inline std::size_t form_groups(const SortKey* first, const SortKey* last, std::vector<GroupSlots>& groups) {
-  std::vector<std::int64_t> left;
+  std::vector<std::int32_t> left;
   const auto add = [&](const auto* from, std::size_t n, auto slot) {
     GroupSlots group;
     group.fill(-1);
     for (std::size_t l = 0; l < n; ++l) group[l] = slot(from[l]);
     groups.push_back(group);
   };
-  const auto of_key = [](const SortKey& key) { return static_cast<std::int64_t>(key.slot); };
+  const auto of_key = [](const SortKey& key) { return static_cast<std::int32_t>(key.slot); };
   while (first != last) {
     const SortKey* end =
         std::find_if(first, last, [&](const SortKey& key) { return key.cell != first->cell; });
@@ -184,39 +190,45 @@ inline std::size_t form_groups(const SortKey* first, const SortKey* last, std::v
          (n = std::min<std::size_t>(octet_size, static_cast<std::size_t>(end - first))) >= own_group;
          first += n)
       add(first, n, of_key);
-    for (; first != end; ++first) left.push_back(first->slot);
+    for (; first != end; ++first) left.push_back(of_key(*first));
   }
   const std::size_t before = groups.size();
   for (std::size_t i = 0; i < left.size(); i += octet_size)
-    add(&left[i], std::min<std::size_t>(octet_size, left.size() - i), [](std::int64_t slot) { return slot; });
+    add(&left[i], std::min<std::size_t>(octet_size, left.size() - i), [](std::int32_t slot) { return slot; });
   return groups.size() - before;
 }
 
 /// Brings what an array keeps of the points into the groups. What fills up a group stands where its first
-/// point does, so that its weights are finite.
-inline void permute(const std::vector<GroupSlots>& groups, bool zero_filled, std::vector<Octet>& array) {
+/// point does, so that its weights are finite. `scratch` has the old array afterwards.
+inline void permute(const std::vector<GroupSlots>& groups, bool zero_filled, std::vector<Octet>& array,
+                    std::vector<Octet>& scratch) {
   if (array.empty()) return;
-  std::vector<Octet> to(groups.size());
+  scratch.reserve(array.capacity());
+  scratch.resize(groups.size());
   for (std::size_t g = 0; g < groups.size(); ++g)
     for (std::size_t l = 0; l < octet_size; ++l) {
       const bool real = groups[g][l] >= 0;
       const auto slot = static_cast<std::size_t>(groups[g][real ? l : 0]);
-      to[g][l] = real || !zero_filled ? array[slot / octet_size][slot % octet_size] : 0.0;
+      scratch[g][l] = real || !zero_filled ? array[slot / octet_size][slot % octet_size] : 0.0;
     }
-  array = std::move(to);
+  array.swap(scratch);
 }
 
 template <int D>
 void permute_points(const std::vector<GroupSlots>& groups, LanePoints<D>& lanes) {
   std::vector<std::vector<Octet>*> arrays;
   for_each_array<D>(lanes, true, true, [&](std::vector<Octet>& array, auto) { arrays.push_back(&array); });
-#pragma omp parallel for schedule(dynamic)
-  for (std::size_t i = 0; i < arrays.size(); ++i)
-    permute(groups, arrays[i] == &lanes.mass || arrays[i] == &lanes.V0, *arrays[i]);
+#pragma omp parallel
+  {
+    std::vector<Octet> scratch;
+#pragma omp for schedule(dynamic)
+    for (std::size_t i = 0; i < arrays.size(); ++i)
+      permute(groups, arrays[i] == &lanes.mass || arrays[i] == &lanes.V0, *arrays[i], scratch);
+  }
   std::vector<std::array<std::int32_t, octet_size>> id(groups.size());
   for (std::size_t g = 0; g < groups.size(); ++g)
     for (std::size_t l = 0; l < octet_size; ++l) {
-      const std::int64_t slot = groups[g][l];
+      const std::int32_t slot = groups[g][l];
       id[g][l] = slot < 0 ? -1
                           : lanes.id[static_cast<std::size_t>(slot) / octet_size]
                                     [static_cast<std::size_t>(slot) % octet_size];
@@ -250,6 +262,7 @@ SortedTiles<D> sort_into_tiles(const std::array<Axis, D>& axes, double stencil_s
   const auto box = detail::sort_keys<D>(axes, stencil_shift, lanes, keys);
   SortedTiles<D> sorted;
   std::vector<detail::GroupSlots> groups;
+  groups.reserve(lanes.groups() + lanes.groups() / 4);
   const auto tile_number = [](const detail::SortKey& key) { return key.cell / power(tile_cells, D); };
   for (const detail::SortKey *first = keys.data(), *last = first + keys.size(); first != last;) {
     const std::uint64_t number = tile_number(*first);
@@ -261,6 +274,7 @@ SortedTiles<D> sort_into_tiles(const std::array<Axis, D>& axes, double stencil_s
     sorted.tiles.push_back(tile);
     first = end;
   }
+  keys = {};
   detail::permute_points<D>(groups, lanes);
   return sorted;
 }
