@@ -35,10 +35,14 @@ struct NodeBlock {
   std::array<int, power(2, D)> tile{};  ///< tiles at - offset; -1: none
 };
 
+/// The controls that a tile sees, aligned so that an even one and the next make one vector of eight.
+template <int n>
+struct alignas(64) NodeCube : std::array<NodeLanes, n> {};
+
 template <int D>
 struct TileGrid {
   static constexpr int tile_nodes = power(tile_span, D), block_nodes = power(tile_cells, D);
-  using Buffer = std::array<NodeLanes, tile_nodes>;
+  using Buffer = NodeCube<tile_nodes>;
   using Nodes = std::array<NodeLanes, block_nodes>;
 
   std::array<Axis, D> axes;
@@ -146,7 +150,7 @@ void read_blocks(const Tile<D>& tile, const std::vector<std::array<NodeLanes, po
 /// Sum over the buffers of a block's tiles.
 template <int D>
 std::array<NodeLanes, power(tile_cells, D)> sum_tiles(
-    const NodeBlock<D>& block, const std::vector<std::array<NodeLanes, power(tile_span, D)>>& buffers) {
+    const NodeBlock<D>& block, const std::vector<NodeCube<power(tile_span, D)>>& buffers) {
   std::array<NodeLanes, power(tile_cells, D)> total{};
   for (int k = 0; k < power(2, D); ++k) {
     if (block.tile[k] < 0) continue;

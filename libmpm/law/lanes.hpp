@@ -12,7 +12,7 @@ inline constexpr int octet_size = 8;
 using Octet [[gnu::vector_size(64)]] = double;
 using OctetMask [[gnu::vector_size(64)]] = std::int64_t;
 
-inline Octet all_lanes(double x) { return Octet{} + x; }
+inline Octet all_lanes(double x) { return Octet{x, x, x, x, x, x, x, x}; }
 inline Octet max(const Octet& a, const Octet& b) { return a > b ? a : b; }
 inline Octet min(const Octet& a, const Octet& b) { return a < b ? a : b; }
 
@@ -36,12 +36,23 @@ inline Octet sqrt(const Octet& a) {
 namespace detail {
 /// Adding it to |x| < 2^51 leaves the nearest whole number in the low bits.
 inline constexpr double round_to_whole = 6755399441055744.0;  // 1.5 * 2^52
+
+/// Sum of c[k] x^k, by pairs of terms, pairs of pairs and so on (Estrin): few steps wait for another.
+inline Octet polynomial(const Octet& x, const double (&c)[14]) {
+  const Octet x2 = x * x, x4 = x2 * x2, x8 = x4 * x4;
+  const auto two = [&](int k) { return c[k] + x * c[k + 1]; };
+  const auto four = [&](int k) { return two(k) + x2 * two(k + 2); };
+  return (four(0) + x4 * four(4)) + x8 * (four(8) + x4 * two(12));
+}
 }  // namespace detail
+
+/// Whole number next to x, |x| < 2^51.
+inline Octet nearest(const Octet& x) { return (x + detail::round_to_whole) - detail::round_to_whole; }
 
 /// Largest whole number that is not above x, |x| < 2^51.
 inline Octet floor(const Octet& x) {
-  const Octet nearest = (x + detail::round_to_whole) - detail::round_to_whole;
-  return nearest > x ? nearest - 1.0 : nearest;
+  const Octet near = nearest(x);
+  return near > x ? near - 1.0 : near;
 }
 
 /// e^x for |x| <= 700 to 2e-16 relative; beyond, e^-700 or e^700.
@@ -51,21 +62,9 @@ inline Octet exp(const Octet& x) {
   const Octet k = shifted - detail::round_to_whole;
   const Octet r = (y - k * 6.93147180369123816490e-01) - k * 1.90821492927058770002e-10;  // ln 2 in two parts
   // Taylor's polynomial on |r| <= ln 2 / 2: the first term left out is 4e-18.
-  Octet p = all_lanes(1.0 / 6227020800.0);
-  constexpr double coefficients[] = {1.0 / 479001600.0,
-                                     1.0 / 39916800.0,
-                                     1.0 / 3628800.0,
-                                     1.0 / 362880.0,
-                                     1.0 / 40320.0,
-                                     1.0 / 5040.0,
-                                     1.0 / 720.0,
-                                     1.0 / 120.0,
-                                     1.0 / 24.0,
-                                     1.0 / 6.0,
-                                     0.5,
-                                     1.0,
-                                     1.0};
-  for (double c : coefficients) p = p * r + c;
+  const Octet p = detail::polynomial(
+      r, {1.0, 1.0, 0.5, 1.0 / 6.0, 1.0 / 24.0, 1.0 / 120.0, 1.0 / 720.0, 1.0 / 5040.0, 1.0 / 40320.0,
+          1.0 / 362880.0, 1.0 / 3628800.0, 1.0 / 39916800.0, 1.0 / 479001600.0, 1.0 / 6227020800.0});
   OctetMask bits;
   std::memcpy(&bits, &shifted, sizeof bits);
   bits = (bits + 1023) << 52;  // 2^k; what the shift pushes out is the rounding constant
@@ -77,21 +76,10 @@ inline Octet exp(const Octet& x) {
 /// (1 - e^-x)/x for x >= 0, 1 at x = 0, to 1e-15 relative.
 inline Octet mean_decay(const Octet& x) {
   // Below 1/2 the difference loses digits; there the series' first term left out is 5e-17.
-  Octet series = all_lanes(-1.0 / 87178291200.0);
-  constexpr double coefficients[] = {1.0 / 6227020800.0,
-                                     -1.0 / 479001600.0,
-                                     1.0 / 39916800.0,
-                                     -1.0 / 3628800.0,
-                                     1.0 / 362880.0,
-                                     -1.0 / 40320.0,
-                                     1.0 / 5040.0,
-                                     -1.0 / 720.0,
-                                     1.0 / 120.0,
-                                     -1.0 / 24.0,
-                                     1.0 / 6.0,
-                                     -0.5,
-                                     1.0};
-  for (double c : coefficients) series = series * x + c;
+  const Octet series = detail::polynomial(
+      x, {1.0, -0.5, 1.0 / 6.0, -1.0 / 24.0, 1.0 / 120.0, -1.0 / 720.0, 1.0 / 5040.0, -1.0 / 40320.0,
+          1.0 / 362880.0, -1.0 / 3628800.0, 1.0 / 39916800.0, -1.0 / 479001600.0, 1.0 / 6227020800.0,
+          -1.0 / 87178291200.0});
   const Octet direct = (1.0 - exp(-x)) / max(x, all_lanes(0.5));
   return x < 0.5 ? series : direct;
 }

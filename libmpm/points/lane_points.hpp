@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "libmpm/grid/tiles.hpp"
@@ -13,8 +14,8 @@
 
 namespace tremie {
 
-/// What a material does not have is an empty array. The last group of a tile may be filled up with points
-/// without mass, whose id is -1.
+/// What a material does not have is an empty array. A group may be filled up with points without mass, whose
+/// id is -1.
 template <int D>
 struct LanePoints {
   std::array<std::vector<Octet>, D> x, v;   ///< [m], [m/s]
@@ -74,58 +75,208 @@ void write_back(LanePoints<D>& lanes, const std::array<Axis, D>& axes, Points<D>
   }
 }
 
-/// Sorts the points by tile and cell into groups of eight; returns the tiles. `stencil_shift`: 0 where a
-/// point's stencil begins with its cell, 1/2 where it is that of the nearest corner (GIMP).
+/// Takes over the points, eight by eight as they come: to be sorted. Theirs give up the room to grow.
 template <int D>
-std::vector<Tile<D>> sort_into_tiles(const std::array<Axis, D>& axes, double stencil_shift, bool affine,
-                                     Points<D>& points, LanePoints<D>& lanes) {
-  struct Key {
-    Index<D> tile;
-    std::int32_t cell, id;
-    auto operator<=>(const Key&) const = default;
-  };
-  std::vector<Key> keys(points.size());
-  for (std::size_t p = 0; p < points.size(); ++p) {
-    Key& key = keys[p];
-    key.cell = 0, key.id = static_cast<std::int32_t>(p);
-    for (int d = 0; d < D; ++d) {
-      const int c =
-          static_cast<int>(std::floor((points.x[p][d] - axes[d].origin) / axes[d].h + stencil_shift));
-      key.tile[d] = (c >= 0 ? c : c - tile_cells + 1) / tile_cells;
-      key.cell = key.cell * tile_cells + (c - key.tile[d] * tile_cells);
-      key.tile[d] = detail::wrapped(axes[d], key.tile[d]);
-    }
-  }
-  std::sort(keys.begin(), keys.end());
-
-  std::vector<Tile<D>> tiles;
-  lanes.id.clear();
-  int lane = octet_size;
-  for (const Key& key : keys) {
-    if (tiles.empty() || tiles.back().at != key.tile) {
-      tiles.push_back({.at = key.tile, .first_group = static_cast<int>(lanes.id.size())});
-      lane = octet_size;
-    }
-    if (lane == octet_size) {
-      lanes.id.push_back({});
-      lanes.id.back().fill(-1);
-      lane = 0;
-    }
-    lanes.id.back()[static_cast<std::size_t>(lane++)] = key.id;
-    tiles.back().last_group = static_cast<int>(lanes.id.size());
-  }
+void take_points(Points<D>& points, bool affine, LanePoints<D>& lanes) {
+  points.x.shrink_to_fit(), points.v.shrink_to_fit(), points.C.shrink_to_fit();
+  for (std::vector<double>* array :
+       {&points.mass, &points.V0, &points.ln_J, &points.lambda, &points.gamma_dot})
+    array->shrink_to_fit();
+  const std::size_t groups = (points.size() + octet_size - 1) / octet_size;
+  lanes.id.assign(groups, {});
   const auto copy = [&](std::vector<Octet>& to, auto member) {
-    to.resize(lanes.id.size());
-    for (std::size_t g = 0; g < lanes.id.size(); ++g)
-      for (int l = 0; l < octet_size; ++l) {
-        // What fills up a group stands where its first point does, so that its weights are finite.
-        const std::int32_t id = lanes.id[g][static_cast<std::size_t>(l)];
-        to[g][l] = member(points, static_cast<std::size_t>(id >= 0 ? id : lanes.id[g][0]));
-        if (id < 0 && (&to == &lanes.mass || &to == &lanes.V0)) to[g][l] = 0.0;
-      }
+    to.reserve(groups + groups / 4);  // sorting fills groups up
+    to.assign(groups, Octet{});
+    for (std::size_t p = 0; p < points.size(); ++p) to[p / octet_size][p % octet_size] = member(points, p);
   };
   detail::for_each_array<D>(lanes, affine, points.thixotropic(), copy);
-  return tiles;
+  for (std::size_t p = 0; p < groups * octet_size; ++p)
+    lanes.id[p / octet_size][p % octet_size] = p < points.size() ? static_cast<std::int32_t>(p) : -1;
+}
+
+namespace detail {
+
+/// Where a point is sorted to, and where it was: eight times its group plus its lane.
+struct SortKey {
+  std::uint64_t cell;  ///< tiles in their order, and the cells of each
+  std::uint32_t slot;
+  auto operator<=>(const SortKey&) const = default;
+};
+
+/// The tiles' positions are those of cells in a box that holds all points.
+template <int D>
+struct TileBox {
+  Index<D> low, size;
+  std::uint64_t number(const Index<D>& tile) const {
+    std::uint64_t n = 0;
+    for (int d = 0; d < D; ++d)
+      n = n * static_cast<std::uint64_t>(size[d]) + static_cast<std::uint64_t>(tile[d] - low[d]);
+    return n;
+  }
+  Index<D> tile(std::uint64_t number) const {
+    Index<D> at;
+    for (int d = D - 1; d >= 0; --d) {
+      const auto n = static_cast<std::uint64_t>(size[d]);
+      at[d] = low[d] + static_cast<int>(number % n);
+      number /= n;
+    }
+    return at;
+  }
+};
+
+/// Tile of a cell on an axis.
+inline int tile_of(const Axis& axis, int cell) {
+  return wrapped(axis, (cell >= 0 ? cell : cell - tile_cells + 1) / tile_cells);
+}
+
+/// Keys of all points in their order.
+template <int D>
+TileBox<D> sort_keys(const std::array<Axis, D>& axes, double stencil_shift, const LanePoints<D>& lanes,
+                     std::vector<SortKey>& keys) {
+  const auto cell_of = [&](int d, std::size_t g, std::size_t l) {
+    return static_cast<int>(std::floor((lanes.x[d][g][l] - axes[d].origin) / axes[d].h + stencil_shift));
+  };
+  TileBox<D> box;
+  Index<D> high;
+  box.low.fill(std::numeric_limits<int>::max()), high.fill(std::numeric_limits<int>::min());
+  const auto each = [&](auto visit) {
+    for (std::size_t g = 0; g < lanes.groups(); ++g)
+      for (std::size_t l = 0; l < octet_size && lanes.id[g][l] >= 0; ++l) visit(g, l);
+  };
+  each([&](std::size_t g, std::size_t l) {
+    for (int d = 0; d < D; ++d) {
+      const int tile = tile_of(axes[d], cell_of(d, g, l));
+      box.low[d] = std::min(box.low[d], tile), high[d] = std::max(high[d], tile);
+    }
+  });
+  for (int d = 0; d < D; ++d) box.size[d] = high[d] - box.low[d] + 1;
+  keys.reserve(lanes.groups() * octet_size);
+  each([&](std::size_t g, std::size_t l) {
+    Index<D> tile;
+    std::uint64_t cell = 0;
+    for (int d = 0; d < D; ++d) {
+      const int c = cell_of(d, g, l);
+      tile[d] = tile_of(axes[d], c);
+      cell = cell * tile_cells + static_cast<std::uint64_t>(((c % tile_cells) + tile_cells) % tile_cells);
+    }
+    keys.push_back(
+        {box.number(tile) * power(tile_cells, D) + cell, static_cast<std::uint32_t>(g * octet_size + l)});
+  });
+  std::sort(keys.begin(), keys.end());
+  return box;
+}
+
+/// What is left of a cell's points after groups of eight makes a group of its own from here on; fewer are put
+/// together with those of other cells of the tile.
+inline constexpr std::size_t own_group = 5;
+
+/// Slots that make up each group, -1 for what fills it up.
+using GroupSlots = std::array<std::int32_t, octet_size>;
+
+/// Groups of one cell's points first, of several cells' points at the end. Returns how many the latter are.
+inline std::size_t form_groups(const SortKey* first, const SortKey* last, std::vector<GroupSlots>& groups) {
+  std::vector<std::int32_t> left;
+  const auto add = [&](const auto* from, std::size_t n, auto slot) {
+    GroupSlots group;
+    group.fill(-1);
+    for (std::size_t l = 0; l < n; ++l) group[l] = slot(from[l]);
+    groups.push_back(group);
+  };
+  const auto of_key = [](const SortKey& key) { return static_cast<std::int32_t>(key.slot); };
+  while (first != last) {
+    const SortKey* end =
+        std::find_if(first, last, [&](const SortKey& key) { return key.cell != first->cell; });
+    for (std::size_t n;
+         (n = std::min<std::size_t>(octet_size, static_cast<std::size_t>(end - first))) >= own_group;
+         first += n)
+      add(first, n, of_key);
+    for (; first != end; ++first) left.push_back(of_key(*first));
+  }
+  const std::size_t before = groups.size();
+  for (std::size_t i = 0; i < left.size(); i += octet_size)
+    add(&left[i], std::min<std::size_t>(octet_size, left.size() - i), [](std::int32_t slot) { return slot; });
+  return groups.size() - before;
+}
+
+/// Brings what an array keeps of the points into the groups. What fills up a group stands where its first
+/// point does, so that its weights are finite. `scratch` has the old array afterwards.
+inline void permute(const std::vector<GroupSlots>& groups, bool zero_filled, std::vector<Octet>& array,
+                    std::vector<Octet>& scratch) {
+  if (array.empty()) return;
+  scratch.reserve(array.capacity());
+  scratch.resize(groups.size());
+  for (std::size_t g = 0; g < groups.size(); ++g)
+    for (std::size_t l = 0; l < octet_size; ++l) {
+      const bool real = groups[g][l] >= 0;
+      const auto slot = static_cast<std::size_t>(groups[g][real ? l : 0]);
+      scratch[g][l] = real || !zero_filled ? array[slot / octet_size][slot % octet_size] : 0.0;
+    }
+  array.swap(scratch);
+}
+
+template <int D>
+void permute_points(const std::vector<GroupSlots>& groups, LanePoints<D>& lanes) {
+  std::vector<std::vector<Octet>*> arrays;
+  for_each_array<D>(lanes, true, true, [&](std::vector<Octet>& array, auto) { arrays.push_back(&array); });
+#pragma omp parallel
+  {
+    std::vector<Octet> scratch;
+#pragma omp for schedule(dynamic)
+    for (std::size_t i = 0; i < arrays.size(); ++i)
+      permute(groups, arrays[i] == &lanes.mass || arrays[i] == &lanes.V0, *arrays[i], scratch);
+  }
+  std::vector<std::array<std::int32_t, octet_size>> id(groups.size());
+  for (std::size_t g = 0; g < groups.size(); ++g)
+    for (std::size_t l = 0; l < octet_size; ++l) {
+      const std::int32_t slot = groups[g][l];
+      id[g][l] = slot < 0 ? -1
+                          : lanes.id[static_cast<std::size_t>(slot) / octet_size]
+                                    [static_cast<std::size_t>(slot) % octet_size];
+    }
+  lanes.id = std::move(id);
+}
+
+/// Brings the points back into a periodic axis.
+template <int D>
+void wrap_points(const std::array<Axis, D>& axes, LanePoints<D>& lanes) {
+  for (int d = 0; d < D; ++d)
+    if (axes[d].periodic)
+      for (Octet& x : lanes.x[d]) x -= axes[d].length() * floor((x - axes[d].origin) / axes[d].length());
+}
+
+}  // namespace detail
+
+/// Tiles of the points, and how many of their groups are of points of several cells.
+template <int D>
+struct SortedTiles {
+  std::vector<Tile<D>> tiles;
+  std::size_t mixed = 0;
+};
+
+/// Sorts the points by tile and cell into groups of eight. `stencil_shift`: 0 where a point's stencil begins
+/// with its cell, 1/2 where it is that of the nearest corner (GIMP).
+template <int D>
+SortedTiles<D> sort_into_tiles(const std::array<Axis, D>& axes, double stencil_shift, LanePoints<D>& lanes) {
+  detail::wrap_points<D>(axes, lanes);
+  std::vector<detail::SortKey> keys;
+  const auto box = detail::sort_keys<D>(axes, stencil_shift, lanes, keys);
+  SortedTiles<D> sorted;
+  std::vector<detail::GroupSlots> groups;
+  groups.reserve(lanes.groups() + lanes.groups() / 4);
+  const auto tile_number = [](const detail::SortKey& key) { return key.cell / power(tile_cells, D); };
+  for (const detail::SortKey *first = keys.data(), *last = first + keys.size(); first != last;) {
+    const std::uint64_t number = tile_number(*first);
+    const detail::SortKey* end =
+        std::find_if(first, last, [&](const detail::SortKey& key) { return tile_number(key) != number; });
+    Tile<D> tile{.at = box.tile(number), .first_group = static_cast<int>(groups.size())};
+    sorted.mixed += detail::form_groups(first, end, groups);
+    tile.last_group = static_cast<int>(groups.size());
+    sorted.tiles.push_back(tile);
+    first = end;
+  }
+  keys = {};
+  detail::permute_points<D>(groups, lanes);
+  return sorted;
 }
 
 }  // namespace tremie

@@ -18,25 +18,28 @@ namespace detail {
 /// step may add half a cell.
 inline constexpr double drift_allowed = 0.45;
 
+/// Sorting takes as long as this many passes over points that are no longer with those of their cell, more
+/// than over those that are.
+inline constexpr double passes_for_sorting = 4.0;
+
 template <class Space>
-void sort_points(Body<Space>& body, const ExplicitSettings& settings, ExplicitState<Space>& state) {
-  const bool flip = settings.transfer.flip;
+void sort_points(const ExplicitSettings& settings, ExplicitState<Space>& state) {
   constexpr int D = Space::dim;
-  lay_tiles(
-      state.grid,
-      sort_into_tiles<D>(state.grid.axes, state.shape.stencil_shift(), !flip, body.points, state.points),
-      flip);
+  auto sorted = sort_into_tiles<D>(state.grid.axes, state.shape.stencil_shift(), state.points);
+  lay_tiles(state.grid, std::move(sorted.tiles), settings.transfer.flip);
   state.drift = 0.0;
+  state.mixed_groups = static_cast<std::int64_t>(sorted.mixed);
+  state.mixed_since = 0;
   state.wall_drift = 1e300;
   ++state.sorts;
 }
 
-/// Sorts the points again if they have drifted too far. The velocities on the grid stay.
+/// Sorts the points again if they have drifted too far, or if it pays. The velocities on the grid stay.
 template <class Space>
-void sort_if_drifted(Body<Space>& body, const ExplicitSettings& settings, ExplicitState<Space>& state) {
-  if (state.drift <= drift_allowed) return;
-  write_back(state, body);
-  sort_points(body, settings, state);
+void sort_if_drifted(const ExplicitSettings& settings, ExplicitState<Space>& state) {
+  const double paid = static_cast<double>(state.mixed_since);
+  if (state.drift > drift_allowed || paid > passes_for_sorting * static_cast<double>(state.points.groups()))
+    sort_points(settings, state);
 }
 
 /// The limits of the step to come, and its length.

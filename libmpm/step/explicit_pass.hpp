@@ -6,6 +6,7 @@
 
 #include "libmpm/space/gradients.hpp"
 #include "libmpm/step/pressure_cells.hpp"
+#include "libmpm/transfer/lane_sums.hpp"
 
 namespace tremie::detail {
 
@@ -28,11 +29,26 @@ struct PassSums {
   double speed2 = 0.0;    ///< largest, squared [m^2/s^2]
   double volume = 0.0, volume_rate = 0.0, lambda = 0.0;
   bool ran_away = false;
+  std::int64_t mixed = 0;  ///< groups of points of several cells
 
   void add(const PassSums& other) {
     farthest = std::max(farthest, other.farthest), speed2 = std::max(speed2, other.speed2);
     volume += other.volume, volume_rate += other.volume_rate;
     lambda = std::max(lambda, other.lambda), ran_away = ran_away || other.ran_away;
+    mixed += other.mixed;
+  }
+};
+
+/// The same for each lane, while a tile's groups are visited.
+struct LaneSums {
+  Octet farthest = {}, speed2 = {}, volume = {}, volume_rate = {}, lambda = {};
+  OctetMask ran_away = {};
+  std::int64_t mixed = 0;
+
+  PassSums reduced() const {
+    bool away = false;
+    for (int l = 0; l < octet_size; ++l) away = away || ran_away[l] != 0;
+    return {largest(farthest), largest(speed2), sum(volume), sum(volume_rate), largest(lambda), away, mixed};
   }
 };
 
@@ -42,38 +58,59 @@ struct Fields {
   Octet v[4] = {}, dv[4] = {}, L[D][4] = {}, moment[D][4] = {};  ///< L[b][a] = dv_a/dx_b
 };
 
+template <int D>
+using Cube = typename TileGrid<D>::Buffer;
+
+/// Eight points whose stencils begin at one control.
 template <Wanted wanted, int D>
-void gather_group(const std::array<NodeLanes, TileGrid<D>::tile_nodes>& v,
-                  const std::array<NodeLanes, TileGrid<D>::tile_nodes>& dv, const Weights<D>& weights, int n,
-                  bool change, Fields<D>& fields) {
-  NodeLanes value[octet_size] = {}, slope[D][octet_size] = {}, moment[D][octet_size] = {},
-            changed[octet_size] = {};
-  for (int l = 0; l < n; ++l) {
-    const auto w = of_lane<D>(weights, l);
-    const int base = weights.base[static_cast<std::size_t>(l)];
-    const auto at = gather<D, 3, wanted>(&v[base], w);
+void gather_side_by_side(const NodeLanes* node, const Weights<D>& weights, Fields<D>& fields) {
+  for (int c = 0; c < D; ++c) {
+    const auto at = gather_together<D, wanted>(node, c, weights);
+    fields.v[c] = at.value;
+    for (int d = 0; d < D && wanted.slopes; ++d) fields.L[d][c] = at.slope[d];
+    for (int d = 0; d < D && wanted.moments; ++d) fields.moment[d][c] = at.moment[d];
+  }
+}
+
+/// n points one by one; what fills up the group is taken with the first.
+template <Wanted wanted, int D>
+void gather_one_by_one(const Cube<D>& v, const Weights<D>& weights, int n, Fields<D>& fields) {
+  NodeLanes value[octet_size], slope[D][octet_size], moment[D][octet_size];
+  for (int l = 0; l < octet_size; ++l) {
+    const int from = l < n ? l : 0;
+    const auto at =
+        gather<D, 3, wanted>(&v[weights.base[static_cast<std::size_t>(from)]], of_lane<D>(weights, from));
     value[l] = at.value;
     for (int d = 0; d < D && wanted.slopes; ++d) slope[d][l] = at.slope[d];
     for (int d = 0; d < D && wanted.moments; ++d) moment[d][l] = at.moment[d];
-    if (change) changed[l] = gather<D, 3, value_only>(&dv[base], w).value;
   }
   to_columns(value, fields.v);
   for (int d = 0; d < D && wanted.slopes; ++d) to_columns(slope[d], fields.L[d]);
   for (int d = 0; d < D && wanted.moments; ++d) to_columns(moment[d], fields.moment[d]);
-  if (change) to_columns(changed, fields.dv);
+}
+
+template <Wanted wanted, int D>
+void gather_group(const Cube<D>& v, const Weights<D>& weights, int n, Fields<D>& fields) {
+  if (weights.together)
+    gather_side_by_side<wanted, D>(&v[weights.base[0]], weights, fields);
+  else
+    gather_one_by_one<wanted, D>(v, weights, n, fields);
 }
 
 /// Reads what a pass needs. FLIP needs no moments, and a pass without stress no slopes.
 template <Pass pass, int D>
-void gather_for(const std::array<NodeLanes, TileGrid<D>::tile_nodes>& v,
-                const std::array<NodeLanes, TileGrid<D>::tile_nodes>& dv, const Weights<D>& weights, int n,
-                bool flip, Fields<D>& fields) {
+void gather_for(const Cube<D>& v, const Cube<D>& dv, const Weights<D>& weights, int n, bool flip,
+                Fields<D>& fields) {
   constexpr Wanted without{.slopes = pass.stress, .moments = false};
   constexpr Wanted with{.slopes = pass.stress, .moments = true};
   if (pass.move && !flip)
-    gather_group<with, D>(v, dv, weights, n, false, fields);
+    gather_group<with, D>(v, weights, n, fields);
   else
-    gather_group<without, D>(v, dv, weights, n, pass.move && flip, fields);
+    gather_group<without, D>(v, weights, n, fields);
+  if (!pass.move || !flip) return;
+  Fields<D> change;
+  gather_group<value_only, D>(dv, weights, n, change);
+  for (int d = 0; d < D; ++d) fields.dv[d] = change.v[d];
 }
 
 /// Deviatoric stress and its hoop part, times volume; the pressure's part is added to the stress or, with one
@@ -87,7 +124,7 @@ struct GroupStress {
 template <class Space, class Law>
 GroupStress<Space::dim> update_state(const Mix& mix, const Law& law, bool cell_pressure, double dt,
                                      const Fields<Space::dim>& fields, const Octet& cell_divergence,
-                                     LanePoints<Space::dim>& points, std::size_t g, PassSums& sums) {
+                                     LanePoints<Space::dim>& points, std::size_t g, LaneSums& sums) {
   constexpr int D = Space::dim, ns = Space::n_strain;
   Octet L[D][D], q[ns], divergence, tau_y = all_lanes(mix.tau_0);
   for (int a = 0; a < D; ++a)
@@ -102,13 +139,13 @@ GroupStress<Space::dim> update_state(const Mix& mix, const Law& law, bool cell_p
       lambda = flocculation_step(lambda, *mix.thixotropy, mix.tau_0, points.gamma_dot[g], gamma_dot, dt);
     points.gamma_dot[g] = gamma_dot;
     tau_y = (1.0 + lambda) * mix.tau_0;
-    sums.lambda = std::max(sums.lambda, largest(lambda));
+    sums.lambda = max(sums.lambda, lambda);
   }
   Octet& ln_J = points.ln_J[g];
   ln_J += dt * (cell_pressure ? cell_divergence : divergence);
   const Octet volume = points.V0[g] * exp(ln_J),
               viscosity = volume * (mix.mu + secant(law, gamma_dot, tau_y));
-  sums.volume += sum(volume), sums.volume_rate += sum(volume * gamma_dot);
+  sums.volume += volume, sums.volume_rate += volume * gamma_dot;
 
   GroupStress<D> stress;
   stress.pressure = volume * (-mix.K * ln_J);
@@ -122,7 +159,7 @@ GroupStress<Space::dim> update_state(const Mix& mix, const Law& law, bool cell_p
 template <int D>
 void move_group(const std::array<Axis, D>& axes, const Transfer& transfer, double dt,
                 const Weights<D>& weights, const Fields<D>& fields, LanePoints<D>& points, std::size_t g,
-                PassSums& sums) {
+                LaneSums& sums) {
   Octet speed2 = {};
   for (int d = 0; d < D; ++d) {
     Octet &v = points.v[d][g], &x = points.x[d][g];
@@ -133,10 +170,10 @@ void move_group(const std::array<Axis, D>& axes, const Transfer& transfer, doubl
     if (a.wall_high()) x = min(x, all_lanes(a.origin + a.length() - 1e-6 * a.h));
     speed2 += v * v;
     const Octet cells = (dt / a.h) * (fields.v[d] < 0.0 ? -fields.v[d] : fields.v[d]);
-    for (int l = 0; l < octet_size; ++l) sums.ran_away = sums.ran_away || !(cells[l] < 0.5);
-    sums.farthest = std::max(sums.farthest, largest(cells));
+    sums.ran_away |= ~(cells < 0.5);
+    sums.farthest = max(sums.farthest, cells);
   }
-  sums.speed2 = std::max(sums.speed2, largest(speed2));
+  sums.speed2 = max(sums.speed2, speed2);
   if (transfer.flip) return;
   for (int b = 0; b < D; ++b) {
     // On a wall one control has all the weight: no slope can be seen there, and none is given.
@@ -146,48 +183,34 @@ void move_group(const std::array<Axis, D>& axes, const Transfer& transfer, doubl
   }
 }
 
-/// Momentum, mass and impulses of group g to the controls.
-template <class Space>
-void scatter_group(bool momentum, bool flip, bool apart, double impulse_dt,
-                   const Weights<Space::dim>& weights, const GroupStress<Space::dim>& stress, int n,
-                   const LanePoints<Space::dim>& points, std::size_t g,
-                   std::array<NodeLanes, TileGrid<Space::dim>::tile_nodes>& sums,
-                   std::array<NodeLanes, TileGrid<Space::dim>::tile_nodes>& forces) {
+/// Momentum, mass and impulses of group g to the controls; `forces` is `sums` unless FLIP must tell them
+/// apart.
+template <Pass pass, class Space>
+void scatter_points(bool flip, bool apart, double impulse_dt, const Weights<Space::dim>& weights,
+                    const GroupStress<Space::dim>& stress, int n, const LanePoints<Space::dim>& points,
+                    std::size_t g, Cube<Space::dim>& sums, Cube<Space::dim>& forces) {
   constexpr int D = Space::dim;
-  NodeLanes value[octet_size], slope[D][octet_size], moment[D][octet_size], pull[octet_size] = {};
-  Octet column[4] = {};
-  if (momentum) {
-    for (int d = 0; d < D; ++d) column[d] = points.mass[g] * points.v[d][g];
-    column[D] = points.mass[g];
+  constexpr bool hooped = pass.stress && std::is_same_v<Space, Axisymmetric>;
+  constexpr Given momenta{.slopes = false}, impulses{.values = hooped, .moments = false};
+  constexpr Given both{.values = pass.move || hooped, .slopes = pass.stress, .moments = pass.move};
+  const Octet mass = points.mass[g];
+  Spread<D> momentum, impulse;
+  Spread<D>& forced = apart ? impulse : momentum;
+  for (Octet& value : momentum.value) value = Octet{};
+  for (Octet& value : impulse.value) value = Octet{};
+  if (pass.move) momentum.value[D] = mass;
+  for (int a = 0; a < D; ++a) {
+    if (pass.move) momentum.value[a] = mass * points.v[a][g];
+    for (int b = 0; b < D && pass.move; ++b)
+      momentum.moment[b][a] = flip ? Octet{} : mass * points.C[a * D + b][g];
+    for (int b = 0; b < D && pass.stress; ++b) forced.slope[b][a] = -impulse_dt * stress.sigma[a][b];
   }
-  Octet hoop[4] = {};
-  if (std::is_same_v<Space, Axisymmetric>) {
-    hoop[0] = -impulse_dt * stress.hoop / points.x[0][g];
-    if (!apart) column[0] += hoop[0];
-  }
-  to_rows(column, value);
-  if (apart) to_rows(hoop, pull);
-  for (int b = 0; b < D; ++b) {
-    Octet s[4] = {}, m[4] = {};
-    for (int a = 0; a < D; ++a) {
-      s[a] = -impulse_dt * stress.sigma[a][b];
-      if (momentum && !flip) m[a] = points.mass[g] * points.C[a * D + b][g];
-    }
-    to_rows(s, slope[b]);
-    to_rows(m, moment[b]);
-  }
-  for (int l = 0; l < n; ++l) {
-    const auto w = of_lane<D>(weights, l);
-    const int base = weights.base[static_cast<std::size_t>(l)];
-    NodeLanes s[D], m[D];
-    for (int d = 0; d < D; ++d) s[d] = slope[d][l], m[d] = moment[d][l];
-    const NodeLanes none[D] = {};
-    if (apart) {
-      scatter<D, 3>(&sums[base], w, value[l], none, m);
-      scatter<D, 3>(&forces[base], w, pull[l], s, none);
-    } else {
-      scatter<D, 3>(&sums[base], w, value[l], s, m);
-    }
+  if (hooped) forced.value[0] += -impulse_dt * stress.hoop / points.x[0][g];
+  if (apart) {
+    scatter_group<D, momenta>(weights, momentum, n, sums.data());
+    scatter_group<D, impulses>(weights, impulse, n, forces.data());
+  } else {
+    scatter_group<D, both>(weights, momentum, n, sums.data());
   }
 }
 
@@ -201,7 +224,7 @@ PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& 
   const Tile<D>& tile = grid.tiles[t];
   const bool flip = settings.transfer.flip, cells = settings.cell_pressure;
   const bool apart = flip && pass.move && pass.stress;  // FLIP must tell forces from momentum
-  typename TileGrid<D>::Buffer v, dv;
+  Cube<D> v, dv;
   if (pass.gather) read_blocks<D>(tile, grid.v, v);
   if (pass.gather && pass.move && flip) read_blocks<D>(tile, grid.dv, dv);
   auto& sums = grid.sums[t];
@@ -218,19 +241,22 @@ PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& 
     for (std::size_t g = first; g < last; ++g) before.add_group(points, g, cells_before[g - first]);
     before.read_divergences(v);
   }
-  PassSums reduced;
+  LaneSums reduced;
+  const StencilFrame<D> frame = stencil_frame<D>(grid.axes, state.shape, tile.at);
 
   for (std::size_t g = first; g < last; ++g) {
     const int n = filled<D>(points, g);
     Weights<D> weights;
     const auto place = [&] {
+      constexpr Wanted wanted{.slopes = pass.stress, .moments = pass.move};
       std::array<Octet, D> x;
       for (int d = 0; d < D; ++d) x[d] = points.x[d][g];
-      weigh<D>(grid.axes, state.shape, tile.at, x, weights);
+      weigh<D, wanted>(frame, x, weights);
     };
     place();
     Fields<D> fields;
     if (pass.gather) gather_for<pass, D>(v, dv, weights, n, flip, fields);
+    reduced.mixed += weights.together ? 0 : 1;
     GroupStress<D> stress;
     std::array<int, octet_size> cell{};
     if (pass.stress) {
@@ -248,11 +274,10 @@ PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& 
       if (!pass.gather || pass.move) pushed.add_group(points, g, cell);
       pushed.push(cell, n, input.impulse_dt * stress.pressure);
     }
-    scatter_group<Space>(pass.move, flip, apart, input.impulse_dt, weights, stress, n, points, g, sums,
-                         forces);
+    scatter_points<pass, Space>(flip, apart, input.impulse_dt, weights, stress, n, points, g, sums, forces);
   }
   if (pass.stress && cells) pushed.scatter_impulses(forces);
-  return reduced;
+  return reduced.reduced();
 }
 
 /// All tiles.
@@ -265,6 +290,7 @@ PassSums pass_over_points(const Mix& mix, const Law& law, const ExplicitSettings
     reduced[t] = pass_over_tile<pass, Space>(mix, law, settings, input, t, state);
   PassSums all;
   for (const PassSums& one : reduced) all.add(one);
+  state.mixed_since += std::max<std::int64_t>(0, all.mixed - state.mixed_groups);
   return all;
 }
 

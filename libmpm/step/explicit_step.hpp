@@ -16,7 +16,8 @@ ExplicitState<Space> start_explicit(Body<Space>& body, const Law& law, const Exp
   ExplicitState<Space> state;
   state.shape = shape;
   state.grid.axes = body.grid.axes;
-  detail::sort_points(body, settings, state);
+  take_points<Space::dim>(body.points, !settings.transfer.flip, state.points);
+  detail::sort_points(settings, state);
   for (double lambda : body.points.lambda) state.lambda_max = std::max(state.lambda_max, lambda);
   detail::choose_next_step(body, law, settings, state);
   const detail::PassInput input{.impulse_dt = state.next_dt};
@@ -43,7 +44,7 @@ detail::PassSums stress_last(Body<Space>& body, const Law& law, const ExplicitSe
   }
   detail::push_off_wall(wall, body.time + dt, dt, settings.wall_gap, state);
   if (flip) detail::finish_change(state);
-  detail::sort_if_drifted(body, settings, state);
+  detail::sort_if_drifted(settings, state);
 
   // Grid to points, stress, motion, points to grid.
   return detail::pass_over_points<detail::whole_pass, Space>(body.mix, law, settings, {dt, state.next_dt},
@@ -57,7 +58,7 @@ detail::PassSums stress_first(Body<Space>& body, const Law& law, const ExplicitS
                               const RigidWall<Space::dim>& wall, double dt, ExplicitState<Space>& state) {
   const bool flip = settings.transfer.flip;
   detail::velocities_from_sums(body, state, 0.0, Vec<Space::dim>::Zero());
-  detail::sort_if_drifted(body, settings, state);
+  detail::sort_if_drifted(settings, state);
   detail::PassSums sums =
       detail::pass_over_points<detail::stress_pass, Space>(body.mix, law, settings, {dt, dt}, state);
   detail::add_impulses(body, state, settings.friction_coefficient, state.grid.sums, flip, dt * body.gravity);

@@ -23,6 +23,14 @@ class PressureCells {
   PressureCells(const std::array<Axis, D>& axes, const Shape<D>& shape, const Index<D>& tile)
       : axes_(axes), shape_(shape), tile_(tile) {
     slot_.fill(-1);
+    for (int k = 0; k < power(2, D); ++k) {
+      const Index<D> o = corner<D>(k);
+      corners_[k] = NodeLanes{};
+      for (int d = 0; d < D; ++d) {
+        corner_at_[k] = (d == 0 ? 0 : corner_at_[k] * tile_span) + o[d];
+        corners_[k][d] = (o[d] ? 2.0 : -2.0) / (power(2, D) * axes[d].h);
+      }
+    }
   }
 
   /// Enters the cells of the points of group g, with their places.
@@ -30,18 +38,36 @@ class PressureCells {
     std::array<Octet, D> x;
     for (int d = 0; d < D; ++d) x[d] = points.x[d][g];
     find_pressure_cells<D>(axes_, shape_, tile_, x, cells);
+    if (shape_.kind == ShapeFunctions::gimp) {
+      for (const int cell : cells) row_of(cell);
+      return;
+    }
+    const Octet mass = points.mass[g];
+    if (in_one(cells)) {
+      Row& row = row_of(cells[0]);
+      row.weight += sum(mass);
+      for (int d = 0; d < D; ++d) row.moment[d] += sum(mass * x[d]);
+      return;
+    }
     for (int l = 0; l < octet_size; ++l) {
-      const double mass = points.mass[g][l];
-      if (mass == 0.0) continue;
+      if (mass[l] == 0.0) continue;
       Row& row = row_of(cells[static_cast<std::size_t>(l)]);
-      row.weight += mass;
-      for (int d = 0; d < D; ++d) row.moment[d] += mass * points.x[d][g][l];
+      row.weight += mass[l];
+      for (int d = 0; d < D; ++d) row.moment[d] += mass[l] * x[d][l];
     }
   }
 
   void read_divergences(const Cube& v) {
     for (int i = 0; i < count_; ++i) {
       Row& row = rows_[i];
+      if (at_corners()) {
+        const NodeLanes* node = &v[corner_base(row)];
+        NodeLanes total = {};
+        for (int k = 0; k < power(2, D); ++k) total += corners_[k] * node[corner_at_[k]];
+        row.divergence = 0.0;
+        for (int d = 0; d < D; ++d) row.divergence += total[d];
+        continue;
+      }
       with_row(row, [&](int base, const auto& weights, double x_0) {
         constexpr int width = std::remove_cvref_t<decltype(weights)>::n_controls;
         const auto at = gather<D, width, slopes_only>(&v[base], weights);
@@ -58,12 +84,21 @@ class PressureCells {
 
   /// Adds the impulses of n points, pressure times volume times step.
   void push(const std::array<int, octet_size>& cells, int points, const Octet& impulse) {
+    if (in_one(cells)) {
+      row_of(cells[0]).impulse += sum(impulse);
+      return;
+    }
     for (int l = 0; l < points; ++l) row_of(cells[static_cast<std::size_t>(l)]).impulse += impulse[l];
   }
 
   void scatter_impulses(Cube& sums) const {
     for (int i = 0; i < count_; ++i) {
       const Row& row = rows_[i];
+      if (at_corners()) {
+        NodeLanes* node = &sums[corner_base(row)];
+        for (int k = 0; k < power(2, D); ++k) node[corner_at_[k]] += row.impulse * corners_[k];
+        continue;
+      }
       with_row(row, [&](int base, const auto& weights, double x_0) {
         constexpr int width = std::remove_cvref_t<decltype(weights)>::n_controls;
         NodeLanes value = {}, slope[D] = {};
@@ -89,6 +124,23 @@ class PressureCells {
       ++count_;
     }
     return rows_[slot_[cell]];
+  }
+
+  static bool in_one(const std::array<int, octet_size>& cells) {
+    bool one = true;
+    for (const int cell : cells) one = one && cell == cells[0];
+    return one;
+  }
+
+  /// GIMP's rows are the differences of the cell's corners, the same in each cell but next to an axis.
+  bool at_corners() const {
+    return shape_.kind == ShapeFunctions::gimp && !std::is_same_v<Space, Axisymmetric>;
+  }
+  static int corner_base(const Row& row) {
+    int base = 0;
+    for (int d = 0, n = power(tile_pressure_cells, D - 1); d < D; ++d, n /= tile_pressure_cells)
+      base = base * tile_span + row.cell / n % tile_pressure_cells;
+    return base;
   }
 
   /// use(base, weights, first coordinate) at the row's place: three controls a direction for splines, the
@@ -124,6 +176,8 @@ class PressureCells {
   const Shape<D>& shape_;
   const Index<D>& tile_;
   int count_ = 0;
+  std::array<int, power(2, D)> corner_at_;
+  std::array<NodeLanes, power(2, D)> corners_;  ///< rows of divergence [1/m]
   std::array<std::int16_t, n> slot_;
   std::array<Row, n> rows_;
 };

@@ -35,45 +35,78 @@ struct Weights {
   std::array<std::array<Octet, 3>, D> w, dw, wa;
   std::array<Octet, D> inertia;  ///< sum of w times arm squared [m^2]
   std::array<int, octet_size> base;
+  bool together = false;  ///< all stencils begin at the same place
 };
 
 /// Cells of a tile in each direction that a point may have its pressure in.
 inline constexpr int tile_pressure_cells = tile_cells + 3;
 
+/// What a tile's weights need of one axis; cells and corners are counted from the tile's first.
+struct StencilAxis {
+  double h, ih, origin, first;       ///< (x - origin) ih - first is the place in cells
+  double half, inverse;              ///< GIMP: of a point's extent, and 1/(2 half)
+  bool walls;                        ///< whether one of these is in sight:
+  double low = 1e300, high = 1e300;  ///< cell (GIMP: corner) at a low and at a high wall
+};
+
+template <int D>
+struct StencilFrame {
+  ShapeFunctions kind;
+  std::array<StencilAxis, D> axis;
+};
+
+template <int D>
+StencilFrame<D> stencil_frame(const std::array<Axis, D>& axes, const Shape<D>& shape, const Index<D>& tile) {
+  StencilFrame<D> frame{.kind = shape.kind, .axis = {}};
+  for (int d = 0; d < D; ++d) {
+    const Axis& a = axes[d];
+    StencilAxis& to = frame.axis[d];
+    const double first = tile[d] * tile_cells;
+    to.h = a.h, to.ih = 1.0 / a.h, to.origin = a.origin, to.first = first;
+    to.half = shape.half[d], to.inverse = 0.5 / shape.half[d];
+    if (a.wall_low()) to.low = -first;
+    if (a.wall_high()) to.high = a.n_cells - (shape.kind == ShapeFunctions::gimp ? 0 : 1) - first;
+    const auto seen = [](double at) { return at >= -1.0 && at <= tile_cells; };
+    to.walls = seen(to.low) || seen(to.high);
+  }
+  return frame;
+}
+
 namespace detail {
 
-inline void b_spline_weights(const Axis& axis, const Octet& cell_index, const Octet& s, Octet (&w)[3],
-                             Octet (&dw)[3], Octet (&arm)[3]) {
-  const Octet one = all_lanes(1.0), half = all_lanes(0.5), t = 1.0 - s;
-  const OctetMask low = axis.wall_low() ? cell_index == 0.0 : one < 0.0;
-  const OctetMask high = axis.wall_high() ? cell_index == double(axis.n_cells - 1) : one < 0.0;
-  const Octet a = low ? one : half, b = high ? one : half;
-  const double ih = 1.0 / axis.h;
-  w[0] = a * t * t, dw[0] = (-2.0 * ih) * a * t;
-  w[2] = b * s * s, dw[2] = (2.0 * ih) * b * s;
+/// s: place in the cell.
+[[gnu::always_inline]] inline void b_spline_weights(const StencilAxis& axis, const Octet& cell,
+                                                    const Octet& s, Octet (&w)[3], Octet (&dw)[3],
+                                                    Octet (&arm)[3]) {
+  const Octet t = 1.0 - s;
+  Octet a = all_lanes(0.5), b = a;
+  if (axis.walls) a = cell == axis.low ? a + a : a, b = cell == axis.high ? b + b : b;
+  const Octet at = a * t, bs = b * s;
+  w[0] = at * t, dw[0] = (-2.0 * axis.ih) * at;
+  w[2] = bs * s, dw[2] = (2.0 * axis.ih) * bs;
   w[1] = 1.0 - w[0] - w[2], dw[1] = -dw[0] - dw[2];
-  arm[0] = axis.h * ((low ? one - 1.0 : -half) - s);
-  arm[1] = axis.h * (0.5 - s);
-  arm[2] = axis.h * ((high ? one : one + 0.5) - s);
+  arm[0] = axis.h * (a - 1.0 - s), arm[1] = axis.h * (0.5 - s), arm[2] = axis.h * (2.0 - b - s);
 }
 
 /// u: distance from the nearest corner, in cells. A point whose extent would reach beyond a wall is taken
 /// without extent: linear hats, whose control on the wall sets the velocity of the whole wall.
-inline void gimp_weights(const Axis& axis, double half, const Octet& corner_index, const Octet& u,
-                         Octet (&w)[3], Octet (&dw)[3], Octet (&arm)[3]) {
-  const Octet none = {}, one = none + 1.0;
-  const double ih = 1.0 / axis.h;
-  const OctetMask wall = (axis.wall_low() ? corner_index == 0.0 : one < 0.0) |
-                         (axis.wall_high() ? corner_index == double(axis.n_cells) : one < 0.0);
-  const OctetMask smooth = (u < half) & (u > -half) & ~wall;
-  const Octet below = half - u, above = half + u;
-  w[0] = smooth ? below * below * (0.25 / half) : max(-u, none);
-  w[2] = smooth ? above * above * (0.25 / half) : max(u, none);
-  w[1] = 1.0 - w[0] - w[2];
-  dw[0] = ih * (smooth ? below * (-0.5 / half) : (u < 0.0 ? -one : none));
-  dw[2] = ih * (smooth ? above * (0.5 / half) : (u < 0.0 ? none : one));
-  dw[1] = -dw[0] - dw[2];
-  for (int k = 0; k < 3; ++k) arm[k] = axis.h * ((k - 1) - u);
+[[gnu::always_inline]] inline void gimp_weights(const StencilAxis& axis, const Octet& corner, const Octet& u,
+                                                Octet (&w)[3], Octet (&dw)[3], Octet (&arm)[3]) {
+  constexpr double none = 1e-16;
+  Octet half = all_lanes(axis.half), inverse = all_lanes(axis.inverse);
+  if (axis.walls) {
+    const OctetMask wall = (corner == axis.low) | (corner == axis.high);
+    half = wall ? all_lanes(none) : half, inverse = wall ? all_lanes(0.5 / none) : inverse;
+  }
+  // How much of the extent lies below and above the corner, and how far from it the rest is.
+  const Octet zero = {}, whole = half + half;
+  const Octet below = min(max(half - u, zero), whole), above = min(max(half + u, zero), whole);
+  const Octet share_0 = below * inverse, share_2 = above * inverse;
+  dw[0] = -axis.ih * share_0, dw[2] = axis.ih * share_2;
+  w[0] = 0.5 * below * share_0 + max(-u - half, zero);
+  w[2] = 0.5 * above * share_2 + max(u - half, zero);
+  w[1] = 1.0 - w[0] - w[2], dw[1] = -dw[0] - dw[2];
+  arm[1] = -axis.h * u, arm[0] = arm[1] - axis.h, arm[2] = arm[1] + axis.h;
 }
 
 }  // namespace detail
@@ -91,33 +124,53 @@ void find_pressure_cells(const std::array<Axis, D>& axes, const Shape<D>& shape,
   for (int l = 0; l < octet_size; ++l) cells[static_cast<std::size_t>(l)] = static_cast<int>(cell[l]);
 }
 
-/// Weights of eight points at x in a tile. Points more than a cell outside of it are taken at its rim: the
-/// caller makes sure that there are none.
-template <int D>
-void weigh(const std::array<Axis, D>& axes, const Shape<D>& shape, const Index<D>& tile,
-           const std::array<Octet, D>& x, Weights<D>& weights) {
+/// What is summed up beside the value.
+struct Wanted {
+  bool slopes = true, moments = true;
+};
+inline constexpr Wanted slopes_and_moments{}, slopes_only{.moments = false}, moments_only{.slopes = false},
+    value_only{.slopes = false, .moments = false};
+
+/// Weights of eight points at x in a tile, as far as they are wanted. Points more than a cell outside of it
+/// are taken at its rim: the caller makes sure that there are none.
+template <int D, Wanted wanted = slopes_and_moments>
+void weigh(const StencilFrame<D>& frame, const std::array<Octet, D>& x, Weights<D>& weights) {
   Octet base = {};
   const Octet low = all_lanes(-1.0), high = all_lanes(tile_cells);
+#pragma GCC unroll 3
   for (int d = 0; d < D; ++d) {
-    const Axis& axis = axes[d];
-    const double first = tile[d] * tile_cells;
-    const Octet X = (x[d] - axis.origin) * (1.0 / axis.h) - first;
+    const StencilAxis& axis = frame.axis[d];
+    const Octet X = (x[d] - axis.origin) * axis.ih - axis.first;
     Octet w[3], dw[3], arm[3], at;
-    if (shape.kind == ShapeFunctions::gimp) {
-      at = min(max(floor(X + 0.5), low), high);
-      detail::gimp_weights(axis, shape.half[d], at + first, X - at, w, dw, arm);
+    if (frame.kind == ShapeFunctions::gimp) {
+      at = min(max(nearest(X), low), high);
+      detail::gimp_weights(axis, at, X - at, w, dw, arm);
     } else {
       at = min(max(floor(X), low), high);
-      detail::b_spline_weights(axis, at + first, X - at, w, dw, arm);
+      detail::b_spline_weights(axis, at, X - at, w, dw, arm);
     }
     base = base * tile_span + (at + 1.0);
     weights.inertia[d] = Octet{};
     for (int k = 0; k < 3; ++k) {
-      weights.w[d][k] = w[k], weights.dw[d][k] = dw[k], weights.wa[d][k] = w[k] * arm[k];
+      weights.w[d][k] = w[k];
+      if (wanted.slopes) weights.dw[d][k] = dw[k];
+      if (!wanted.moments) continue;
+      weights.wa[d][k] = w[k] * arm[k];
       weights.inertia[d] += weights.wa[d][k] * arm[k];
     }
   }
-  for (int l = 0; l < octet_size; ++l) weights.base[static_cast<std::size_t>(l)] = static_cast<int>(base[l]);
+  const OctetMask differs = base != all_lanes(base[0]);
+  std::int64_t any = 0;
+  for (int l = 0; l < octet_size; ++l) {
+    weights.base[static_cast<std::size_t>(l)] = static_cast<int>(base[l]);
+    any |= differs[l];
+  }
+  weights.together = any == 0;
+}
+template <int D>
+void weigh(const std::array<Axis, D>& axes, const Shape<D>& shape, const Index<D>& tile,
+           const std::array<Octet, D>& x, Weights<D>& weights) {
+  weigh<D>(stencil_frame<D>(axes, shape, tile), x, weights);
 }
 
 /// Weights of one point: what the sums below take. n: controls a direction.
@@ -138,13 +191,6 @@ PointWeights<D, 3> of_lane(const Weights<D>& weights, int l) {
     }
   return one;
 }
-
-/// What is summed up beside the value.
-struct Wanted {
-  bool slopes = true, moments = true;
-};
-inline constexpr Wanted slopes_and_moments{}, slopes_only{.moments = false}, moments_only{.slopes = false},
-    value_only{.slopes = false, .moments = false};
 
 /// A nodal field at a point: its value and, as wanted, its slopes and first moments, each direction factored
 /// out in turn.
@@ -202,16 +248,6 @@ template <int D, int n>
   for (int d = 0; d < D; ++d)
     for (int k = 0; k < n; ++k) along[d][k] = p.dw[d][k] * slope[d] + p.wa[d][k] * moment[d];
   scatter<D, n, 0>(node, p, along, value, NodeLanes{} + 1.0);
-}
-
-/// Rows of four (one a point) to columns of eight (one a component), and back.
-inline void to_columns(const NodeLanes (&row)[octet_size], Octet (&column)[4]) {
-  for (int c = 0; c < 4; ++c)
-    for (int l = 0; l < octet_size; ++l) column[c][l] = row[l][c];
-}
-inline void to_rows(const Octet (&column)[4], NodeLanes (&row)[octet_size]) {
-  for (int l = 0; l < octet_size; ++l)
-    row[l] = NodeLanes{column[0][l], column[1][l], column[2][l], column[3][l]};
 }
 
 }  // namespace tremie

@@ -15,10 +15,10 @@ namespace {
 
 const Papanastasiou law{5.0};
 
-/// About 14,000 points.
+/// About 14,000 points unless said otherwise.
 template <class Space>
-Body<Space> block(bool thixotropic) {
-  constexpr int D = Space::dim, cells = D == 3 ? 12 : 60;
+Body<Space> block(bool thixotropic, int cells = Space::dim == 3 ? 12 : 60) {
+  constexpr int D = Space::dim;
   const double h = 0.015, height = cells * h;
   Body<Space> body;
   body.mix = test::concrete(54.0, 35.8, 33e3);
@@ -40,7 +40,8 @@ struct Set {
   ExplicitState<Space> state;
 
   Set(bool thixotropic, bool gimp, StressUpdate stress, bool cell_pressure)
-      : body(block<Space>(thixotropic)) {
+      : Set(block<Space>(thixotropic), gimp, stress, cell_pressure) {}
+  Set(Body<Space> filled, bool gimp, StressUpdate stress, bool cell_pressure) : body(std::move(filled)) {
     settings.stress = stress;
     settings.cell_pressure = cell_pressure;
     settings.fixed_dt = 1e-5;
@@ -69,7 +70,7 @@ void law_alone(benchmark::State& run) {
   Set<Space> set(thixotropic, false, StressUpdate::last, false);
   detail::Fields<Space::dim> fields;
   fields.L[0][0] = all_lanes(0.3), fields.L[0][1] = all_lanes(0.7);
-  detail::PassSums sums;
+  detail::LaneSums sums;
   for (auto _ : run)
     for (std::size_t g = 0; g < set.state.points.groups(); ++g)
       benchmark::DoNotOptimize(detail::update_state<Space>(set.body.mix, law, false, 1e-9, fields, Octet{},
@@ -81,8 +82,7 @@ template <class Space>
 void sort_alone(benchmark::State& run) {
   Set<Space> set(true, false, StressUpdate::last, false);
   for (auto _ : run) {
-    write_back(set.state, set.body);
-    detail::sort_points(set.body, set.settings, set.state);
+    detail::sort_points(set.settings, set.state);
   }
   set.count(run);
 }
@@ -92,6 +92,15 @@ template <class Space, bool thixotropic, bool gimp, StressUpdate stress, bool ce
 void whole_step(benchmark::State& run) {
   omp_set_num_threads(static_cast<int>(run.range(0)));
   Set<Space> set(thixotropic, gimp, stress, cell_pressure);
+  for (auto _ : run) explicit_step(set.body, law, set.settings, set.state);
+  set.count(run);
+}
+
+/// range(0): cells a direction. A run of one size alone tells by its peak memory what a point needs.
+template <bool gimp, StressUpdate stress>
+void step_by_size(benchmark::State& run) {
+  omp_set_num_threads(1);
+  Set<ThreeD> set(block<ThreeD>(true, static_cast<int>(run.range(0))), gimp, stress, true);
   for (auto _ : run) explicit_step(set.body, law, set.settings, set.state);
   set.count(run);
 }
@@ -125,6 +134,8 @@ BENCHMARK(whole_step<Axisymmetric, false, false, last, false>)
 BENCHMARK(whole_step<Axisymmetric, true, false, last, true>)
     ->Name("axisymmetric/USL, splines, thixotropic")
     ->Arg(1);
+BENCHMARK(step_by_size<false, last>)->Name("3D/size, USL, splines, thixotropic")->Arg(12)->Arg(24)->Arg(48);
+BENCHMARK(step_by_size<true, first>)->Name("3D/size, USF, GIMP, thixotropic")->Arg(12)->Arg(24)->Arg(48);
 
 }  // namespace
 }  // namespace tremie

@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <set>
 
 #include "libmpm/law/lane_laws.hpp"
+#include "libmpm/points/lane_points.hpp"
 #include "libmpm/space/gradients.hpp"
-#include "libmpm/transfer/lane_stencils.hpp"
+#include "libmpm/transfer/lane_sums.hpp"
 
 namespace tremie {
 namespace {
@@ -194,6 +196,125 @@ TEST(FactoredSums, GatherAndScatterAreAdjoint) {
     for (int d = 0; d < D; ++d) right += S[d][c] * got.slope[d][c] + Q[d][c] * got.moment[d][c];
   }
   EXPECT_NEAR(left, right, 1e-12);
+}
+
+/// Eight points in neighbouring cells, or all in one, and what a tile's controls carry.
+struct EightPoints {
+  static constexpr int D = 3;
+  Weights<D> weights;
+  TileGrid<D>::Buffer v;
+  Spread<D> spread;
+
+  explicit EightPoints(bool together) {
+    std::array<Axis, D> axes;
+    for (Axis& a : axes) a = {.h = 0.1};
+    std::mt19937 random(7);
+    const double high = together ? 0.3 : 0.4;
+    const std::array<Octet, D> x = {random_lanes(random, 0.2, high), random_lanes(random, 0.2, high),
+                                    random_lanes(random, 0.2, high)};
+    weigh<D>(axes, {}, {0, 0, 0}, x, weights);
+    std::uniform_real_distribution<double> u(-1.0, 1.0);
+    for (NodeLanes& node : v) node = NodeLanes{u(random), u(random), u(random), u(random)};
+    for (Octet& value : spread.value) value = random_lanes(random, -1.0, 1.0);
+    for (int d = 0; d < D; ++d)
+      for (int c = 0; c < D; ++c)
+        spread.slope[d][c] = random_lanes(random, -0.1, 0.1),
+        spread.moment[d][c] = random_lanes(random, -9.0, 9.0);
+  }
+};
+
+// What is read side by side, and what is added for eight points at once, is what each of the eight alone
+// would read and add, to round-off: in one cell and in several.
+TEST(GroupSums, AsPointByPoint) {
+  constexpr int D = 3;
+  for (const bool together : {true, false}) {
+    EightPoints eight(together);
+    EXPECT_EQ(eight.weights.together, together);
+    TileGrid<D>::Buffer got{}, expected{};
+    scatter_group<D, Given{}>(eight.weights, eight.spread, octet_size, got.data());
+    for (int l = 0; l < octet_size; ++l) {
+      const auto w = of_lane<D>(eight.weights, l);
+      const int base = eight.weights.base[static_cast<std::size_t>(l)];
+      NodeLanes value = {}, slope[D] = {}, moment[D] = {};
+      for (int c = 0; c < 4; ++c) value[c] = eight.spread.value[c][l];
+      for (int d = 0; d < D; ++d)
+        for (int c = 0; c < D; ++c)
+          slope[d][c] = eight.spread.slope[d][c][l], moment[d][c] = eight.spread.moment[d][c][l];
+      scatter<D, 3>(&expected[base], w, value, slope, moment);
+      if (!together) continue;
+      const auto one = gather<D, 3, slopes_and_moments>(&eight.v[base], w);
+      for (int c = 0; c < D; ++c) {
+        const auto all = gather_together<D, slopes_and_moments>(&eight.v[base], c, eight.weights);
+        EXPECT_NEAR(all.value[l], one.value[c], 1e-14);
+        for (int d = 0; d < D; ++d) {
+          EXPECT_NEAR(all.slope[d][l], one.slope[d][c], 1e-12);
+          EXPECT_NEAR(all.moment[d][l], one.moment[d][c], 1e-15);
+        }
+      }
+    }
+    for (std::size_t i = 0; i < got.size(); ++i)
+      for (int c = 0; c < 4; ++c) EXPECT_NEAR(got[i][c], expected[i][c], 1e-13);
+  }
+}
+
+// Rows to columns and back; the first lane of each row is a component.
+TEST(GroupSums, RowsAndColumns) {
+  NodeLanes rows[octet_size], back[octet_size];
+  for (int l = 0; l < octet_size; ++l)
+    for (int c = 0; c < 4; ++c) rows[l][c] = 10 * l + c;
+  Octet columns[4];
+  to_columns(rows, columns);
+  to_rows(columns, back);
+  for (int l = 0; l < octet_size; ++l)
+    for (int c = 0; c < 4; ++c) {
+      EXPECT_EQ(columns[c][l], rows[l][c]);
+      EXPECT_EQ(back[l][c], rows[l][c]);
+    }
+}
+
+// Sorted points are all there once, in tiles in their order; groups of one cell's points come first, and only
+// the groups counted as mixed hold points of several cells.
+TEST(SortedPoints, GroupsOfOneCell) {
+  constexpr int D = 2;
+  std::array<Axis, D> axes;
+  for (Axis& a : axes) a = {.h = 0.1};
+  Points<D> points;
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  for (int p = 0; p < 1000; ++p) add_point<D>(points, {u(random), u(random)}, 1.0 + p, 1.0, 0.0);
+  LanePoints<D> lanes;
+  take_points<D>(points, true, lanes);
+  const auto sorted = sort_into_tiles<D>(axes, 0.0, lanes);
+  std::vector<int> seen(points.size(), 0);
+  std::size_t mixed = 0;
+  for (std::size_t t = 0; t < sorted.tiles.size(); ++t) {
+    const Tile<D>& tile = sorted.tiles[t];
+    if (t > 0) {
+      EXPECT_LT(sorted.tiles[t - 1].at, tile.at);
+    }
+    for (int g = tile.first_group; g < tile.last_group; ++g) {
+      std::set<Index<D>> cells;
+      for (int l = 0; l < octet_size; ++l) {
+        const int id = lanes.id[static_cast<std::size_t>(g)][static_cast<std::size_t>(l)];
+        if (id < 0) {
+          EXPECT_EQ(lanes.mass[static_cast<std::size_t>(g)][l], 0.0);
+          continue;
+        }
+        ++seen[static_cast<std::size_t>(id)];
+        EXPECT_EQ(lanes.mass[static_cast<std::size_t>(g)][l], 1.0 + id);
+        Index<D> cell;
+        for (int d = 0; d < D; ++d) {
+          cell[d] = static_cast<int>(std::floor(points.x[static_cast<std::size_t>(id)][d] / axes[d].h));
+          EXPECT_EQ(tile.at[d], static_cast<int>(std::floor(cell[d] / double(tile_cells))));
+        }
+        cells.insert(cell);
+      }
+      mixed += cells.size() > 1 ? 1 : 0;
+    }
+  }
+  for (const int n : seen) EXPECT_EQ(n, 1);
+  EXPECT_GT(mixed, 0u);
+  EXPECT_LE(mixed, sorted.mixed);
 }
 
 }  // namespace

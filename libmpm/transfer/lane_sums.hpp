@@ -1,0 +1,241 @@
+#pragma once
+
+// Sums over the 3^D controls of eight points at once.
+//
+// Points whose stencils begin at the same place are gathered side by side: one lane a point, a control's
+// value read once for all. Sums to the grid go point by point, two neighbouring controls in one vector of
+// eight.
+
+#include "libmpm/transfer/lane_stencils.hpp"
+#ifdef __AVX512F__
+#include <immintrin.h>
+#endif
+
+namespace tremie {
+
+/// One component of a nodal field at eight points: value, slopes and first moments in the directions from d
+/// on.
+template <int R, Wanted wanted>
+struct GatheredLanes {
+  Octet value;
+  Octet slope[wanted.slopes && R > 0 ? R : 1];
+  Octet moment[wanted.moments && R > 0 ? R : 1];
+};
+
+/// Component c at eight points whose stencils all begin at `node`; otherwise as gather() for one point.
+template <int D, Wanted wanted, int d = 0>
+[[gnu::always_inline]] inline GatheredLanes<D - d, wanted> gather_together(const NodeLanes* node, int c,
+                                                                           const Weights<D>& p) {
+  GatheredLanes<D - d, wanted> sum;
+  if constexpr (d == D) {
+    sum.value = all_lanes((*node)[c]);
+  } else {
+    constexpr int rest = D - d - 1;
+    for (int k = 0; k < 3; ++k) {
+      const auto part = gather_together<D, wanted, d + 1>(node + k * stride<D>(tile_span, d), c, p);
+      const auto add = [k](Octet& to, const Octet& w, const Octet& x) { to = k == 0 ? w * x : to + w * x; };
+      add(sum.value, p.w[d][k], part.value);
+      if constexpr (wanted.slopes) {
+        add(sum.slope[0], p.dw[d][k], part.value);
+        for (int e = 0; e < rest; ++e) add(sum.slope[e + 1], p.w[d][k], part.slope[e]);
+      }
+      if constexpr (wanted.moments) {
+        add(sum.moment[0], p.wa[d][k], part.value);
+        for (int e = 0; e < rest; ++e) add(sum.moment[e + 1], p.w[d][k], part.moment[e]);
+      }
+    }
+  }
+  return sum;
+}
+
+/// The same vector in both halves, and two vectors side by side.
+inline Octet twice(const NodeLanes& a) {
+#ifdef __AVX512F__  // one load; a shuffle would take an arithmetic unit
+  return _mm512_maskz_broadcast_f64x4(0xff, a);
+#else
+  return __builtin_shufflevector(a, a, 0, 1, 2, 3, 0, 1, 2, 3);
+#endif
+}
+inline Octet side_by_side(const NodeLanes& a, const NodeLanes& b) {
+  return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+inline Octet pair(double a, double b) { return Octet{a, a, a, a, b, b, b, b}; }
+inline NodeLanes low_half(const Octet& a) { return __builtin_shufflevector(a, a, 0, 1, 2, 3); }
+
+/// Rows of four (one a point) to columns of eight (one a component), and back.
+inline void to_columns(const NodeLanes (&row)[octet_size], Octet (&column)[4]) {
+  Octet low[2], high[2];  // components 0 and 2, 1 and 3 of points 0-3 and 4-7
+  for (int i = 0; i < 2; ++i) {
+    const NodeLanes* r = row + 4 * i;
+    const Octet even = side_by_side(r[0], r[2]);
+    const Octet odd = side_by_side(r[1], r[3]);
+    low[i] = __builtin_shufflevector(even, odd, 0, 8, 2, 10, 4, 12, 6, 14);
+    high[i] = __builtin_shufflevector(even, odd, 1, 9, 3, 11, 5, 13, 7, 15);
+  }
+  column[0] = __builtin_shufflevector(low[0], low[1], 0, 1, 4, 5, 8, 9, 12, 13);
+  column[1] = __builtin_shufflevector(high[0], high[1], 0, 1, 4, 5, 8, 9, 12, 13);
+  column[2] = __builtin_shufflevector(low[0], low[1], 2, 3, 6, 7, 10, 11, 14, 15);
+  column[3] = __builtin_shufflevector(high[0], high[1], 2, 3, 6, 7, 10, 11, 14, 15);
+}
+inline void to_rows(const Octet (&column)[4], NodeLanes (&row)[octet_size]) {
+  for (int odd = 0; odd < 2; ++odd) {
+    const Octet front = odd ? __builtin_shufflevector(column[0], column[1], 1, 9, 3, 11, 5, 13, 7, 15)
+                            : __builtin_shufflevector(column[0], column[1], 0, 8, 2, 10, 4, 12, 6, 14);
+    const Octet back = odd ? __builtin_shufflevector(column[2], column[3], 1, 9, 3, 11, 5, 13, 7, 15)
+                           : __builtin_shufflevector(column[2], column[3], 0, 8, 2, 10, 4, 12, 6, 14);
+    const Octet low = __builtin_shufflevector(front, back, 0, 1, 8, 9, 2, 3, 10, 11);
+    const Octet high = __builtin_shufflevector(front, back, 4, 5, 12, 13, 6, 7, 14, 15);
+    row[odd] = low_half(low), row[4 + odd] = low_half(high);
+    row[2 + odd] = __builtin_shufflevector(low, low, 4, 5, 6, 7);
+    row[6 + odd] = __builtin_shufflevector(high, high, 4, 5, 6, 7);
+  }
+}
+
+/// Products of the weights of all directions but the last: those of the rows of controls that a point sees.
+template <int D>
+using RowWeights = std::array<Octet, power(3, D - 1)>;
+
+template <int D>
+void multiply_rows(const Weights<D>& weights, RowWeights<D>& rows) {
+  for (int r = 0; r < power(3, D - 1); ++r) {
+    rows[r] = weights.w[0][r / power(3, D - 2)];
+    if constexpr (D == 3) rows[r] *= weights.w[1][r % 3];
+  }
+}
+
+/// What eight points add to their controls: values, and for each direction d what goes with the gradient's
+/// and with the arm's component d, one vector a component. What is not `given` is not read.
+template <int D>
+struct Spread {
+  Octet value[4], slope[D][D], moment[D][D];
+};
+
+/// What is given of a Spread.
+struct Given {
+  bool values = true, slopes = true, moments = true;
+};
+
+/// slope[d] times the gradient plus moment[d] times the arm, at the controls k of direction d.
+template <int D, Given given>
+[[gnu::always_inline]] inline void add_along(const Weights<D>& weights, const Spread<D>& spread, int d, int k,
+                                             const Octet* weight, Octet (&to)[4]) {
+  for (int c = 0; c < D; ++c) {
+    Octet along = {};
+    if constexpr (given.slopes) along = weights.dw[d][k] * spread.slope[d][c];
+    if constexpr (given.moments) along += weights.wa[d][k] * spread.moment[d][c];
+    to[c] += weight ? *weight * along : along;
+  }
+}
+
+/// What each row of controls gets before the weights of the last direction, one vector of four a point.
+template <int D, Given given>
+void carry_to_rows(const Weights<D>& weights, const Spread<D>& spread,
+                   NodeLanes (&carried)[power(3, D - 1)][octet_size]) {
+#pragma GCC unroll 3
+  for (int i = 0; i < 3; ++i) {
+    Octet first[4] = {};
+    for (int c = 0; c < 4 && given.values; ++c) first[c] = weights.w[0][i] * spread.value[c];
+    add_along<D, given>(weights, spread, 0, i, nullptr, first);
+    if constexpr (D == 2) {
+      to_rows(first, carried[i]);
+    } else {
+#pragma GCC unroll 3
+      for (int j = 0; j < 3; ++j) {
+        Octet second[4];
+        for (int c = 0; c < 4; ++c) second[c] = weights.w[1][j] * first[c];
+        add_along<D, given>(weights, spread, 1, j, &weights.w[0][i], second);
+        to_rows(second, carried[3 * i + j]);
+      }
+    }
+  }
+}
+
+/// What a group of eight brings to the last direction: along each row, and at each of the three controls.
+template <int D>
+struct CarriedRows {
+  RowWeights<D> weight;
+  NodeLanes value[power(3, D - 1)][octet_size], along[3][octet_size];
+};
+
+/// Distance of row r of a stencil from its first control in a tile's cube.
+template <int D>
+constexpr int row_offset(int r) {
+  return D == 2 ? r * tile_span : (r / 3 * tile_span + r % 3) * tile_span;
+}
+
+/// The last direction of point l: two neighbouring controls from an even one on, and the other.
+template <int D>
+struct LastDirection {
+  Octet w_pair, along_pair, along_other;
+  double w_other;
+  int pair_at, other_at;
+
+  LastDirection() = default;
+  LastDirection(const Weights<D>& weights, const CarriedRows<D>& rows, std::size_t l) {
+    const auto& w = weights.w[D - 1];
+    const int odd = weights.base[l] & 1, other = odd ? 0 : 2;
+    w_pair = pair(w[odd][l], w[odd + 1][l]), w_other = w[other][l];
+    along_pair = side_by_side(rows.along[odd][l], rows.along[odd + 1][l]);
+    along_other = twice(rows.along[other][l]);
+    pair_at = weights.base[l] + odd, other_at = weights.base[l] + other;
+  }
+};
+
+/// Row r of point l.
+template <int D>
+[[gnu::always_inline]] inline void add_row(const CarriedRows<D>& rows, const LastDirection<D>& last, int r,
+                                           std::size_t l, Octet& two, Octet& one) {
+  const Octet value = twice(rows.value[r][l]);
+  const double weight = rows.weight[r][l];
+  two = two + last.w_pair * value + weight * last.along_pair;
+  one = one + last.w_other * value + weight * last.along_other;
+}
+
+/// All points have their stencils at the same place: each control is read and written once.
+template <int D>
+void add_together(const Weights<D>& weights, const CarriedRows<D>& rows, NodeLanes* sums) {
+  LastDirection<D> last[octet_size];
+  for (std::size_t l = 0; l < octet_size; ++l) last[l] = {weights, rows, l};
+  for (int r = 0; r < power(3, D - 1); ++r) {
+    Octet& pair_at = *reinterpret_cast<Octet*>(sums + last[0].pair_at + row_offset<D>(r));
+    NodeLanes& other_at = sums[last[0].other_at + row_offset<D>(r)];
+    Octet two = pair_at, one = {};
+#pragma GCC unroll 8
+    for (std::size_t l = 0; l < octet_size; ++l) add_row<D>(rows, last[l], r, l, two, one);
+    pair_at = two, other_at += low_half(one);
+  }
+}
+
+template <int D>
+void add_one_by_one(const Weights<D>& weights, const CarriedRows<D>& rows, int n, NodeLanes* sums) {
+  for (std::size_t l = 0; l < static_cast<std::size_t>(n); ++l) {
+    const LastDirection<D> last(weights, rows, l);
+    for (int r = 0; r < power(3, D - 1); ++r) {
+      Octet& pair_at = *reinterpret_cast<Octet*>(sums + last.pair_at + row_offset<D>(r));
+      NodeLanes& other_at = sums[last.other_at + row_offset<D>(r)];
+      Octet two = pair_at, one = {};
+      add_row<D>(rows, last, r, l, two, one);
+      pair_at = two, other_at += low_half(one);
+    }
+  }
+}
+
+/// Adds what the first n of eight points spread to their controls in the tile's cube; the others spread
+/// nothing.
+template <int D, Given given>
+void scatter_group(const Weights<D>& weights, const Spread<D>& spread, int n, NodeLanes* sums) {
+  CarriedRows<D> rows;
+  multiply_rows<D>(weights, rows.weight);
+  carry_to_rows<D, given>(weights, spread, rows.value);
+  for (int k = 0; k < 3; ++k) {
+    Octet column[4] = {};
+    add_along<D, given>(weights, spread, D - 1, k, nullptr, column);
+    to_rows(column, rows.along[k]);
+  }
+  if (weights.together)
+    add_together<D>(weights, rows, sums);
+  else
+    add_one_by_one<D>(weights, rows, n, sums);
+}
+
+}  // namespace tremie
