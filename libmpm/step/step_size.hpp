@@ -31,8 +31,8 @@ double speed_of_most(const Points<D>& points, double share, Speed speed) {
   return *rank;
 }
 
-/// Local error of a step over the points [m]: backward Euler moves them by dt v_new where the trapezoidal rule has
-/// dt (v_new + v_old)/2. Root mean square of the difference.
+/// Local error of a step over the points [m]: backward Euler moves them by dt v_new where the trapezoidal
+/// rule has dt (v_new + v_old)/2. Root mean square of the difference.
 template <int D>
 double local_error(const Points<D>& points, const std::vector<Vec<D>>& v_old, double dt) {
   double sum = 0.0;
