@@ -44,6 +44,7 @@ Body<Space> filled_cone(const Scene& scene) {
 
 inline StepSettings step_settings(const Scene& scene) {
   StepSettings settings = engine::step_settings(scene.model);
+  if (scene.model.space != SpaceKind::axisymmetric) settings.time_error = 0.005;
   settings.friction_coefficient = scene.floor.coefficient;
   settings.wall_gap = 0.5 * scene.model.cell[0] / scene.model.points_per_cell[0];
   return settings;
@@ -149,7 +150,7 @@ Outcome run_in(const Scene& scene, const Law& law, const Observer& observer) {
   bool stopped = false;
   double next_frame = scene.frame_interval;
   while (!stopped && body.time < scene.duration * (1.0 - 1e-12)) {
-    settings.dt_max = std::min(scene.model.step_scale * StepSettings{}.dt_max, scene.duration - body.time);
+    settings.time_left = scene.duration - body.time;
     const bool cone_gone =
         scene.lift_speed && rim_height(scene, body.time) > outcome.series.back().height + 0.02;
     const StepReport step = implicit_step(body, law, settings, cone_gone ? RigidWall<Space::dim>{} : wall);

@@ -24,9 +24,9 @@ struct AdmmSettings {
   double over_relaxation = 1.6;  ///< rho
   double penalty = 3.0;          ///< r / mu
   // Where the linear systems are solved by iteration, in space:
-  double penalty_by_iteration = 1.0;  ///< r / mu: softer, for the systems are then better conditioned
-  double solve_reduction = 0.3;       ///< of the residual in one solve, in the energy norm
-  double solve_share = 0.5;           ///< of the tolerated mismatch (squared) that a solve may leave
+  double penalty_by_iteration = 1.5;  ///< r / mu: softer, for the systems are then better conditioned
+  double solve_reduction = 0.5;       ///< of the residual in one solve, in the energy norm
+  double solve_share = 1.0;           ///< of the tolerated mismatch (squared) that a solve may leave
   int direct_below = 3000;            ///< unknowns; smaller systems are factorised
 };
 

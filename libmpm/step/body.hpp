@@ -25,6 +25,9 @@ struct StepSettings {
   EvenOut even_out;
   std::optional<double> fixed_dt;  ///< [s]; empty: chosen at every step
   double dt_max = 0.1;             ///< [s]
+  double time_error = 0.0;         ///< a step beyond dt_max may err by so much, in cells; 0: none goes beyond
+  double dt_longest = 1.0;         ///< of those [s]
+  double time_left = 1e300;        ///< no step goes beyond it [s]
   double cfl = 0.6;                ///< largest move in a step, in cells
   double growth = 1.3;             ///< largest ratio of successive steps
   double strays = 0.0;             ///< share of the points that may be drops in the air (strays.hpp)
@@ -60,6 +63,7 @@ struct Body {
   WallVelocities<D> walls{};               ///< of the walls at the ends of the axes
   std::vector<BoundaryPoint<D>> boundary;  ///< walls inside the grid
   double time = 0.0, dt = 0.0;             ///< [s]; dt of the last step
+  double time_error = 0.0;                 ///< of the last step: its local error, if it was asked for [m]
 
   NodalState<D> nodes;    ///< of the last step, velocities at its start
   std::vector<Vec<D>> v;  ///< nodal velocities at the end of the last step [m/s]

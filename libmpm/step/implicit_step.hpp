@@ -53,7 +53,8 @@ StepReport implicit_step(Body<Space>& body, const Law& law, const StepSettings& 
   detail::update_volumes(problem, body.v, body.points);
   std::vector<double> gamma_dot;
   const double shear_rate_mean = detail::shear_rates(problem, settings, body, gamma_dot);
-  const bool even = Space::advects && settings.even_out.on;
+  const bool even = Space::advects && settings.even_out.on, measured = settings.time_error > 0.0;
+  const std::vector<Vec<D>> v_before = measured ? body.points.v : std::vector<Vec<D>>{};
   const std::vector<Vec<D>> u =
       even ? detail::evening_shift(problem, settings, gamma_dot, body) : std::vector<Vec<D>>{};
   grid_to_point(body.grid, body.v, v_old, settings.transfer, Space::advects ? dt : 0.0, body.points,
@@ -62,6 +63,7 @@ StepReport implicit_step(Body<Space>& body, const Law& law, const StepSettings& 
   if (even) shift_points<D>(body.grid, u, body.points, body.motion);
   body.time += dt;
   body.dt = dt;
+  if (measured) body.time_error = detail::local_error(body.points, v_before, dt);
 
   const auto speed = [&](std::size_t p) { return body.points.v[p].norm(); };
   return {.dt = dt,

@@ -12,14 +12,18 @@
 namespace tremie {
 
 /// Adds what walls inside the grid do to the field x.
-inline void add_bound_products(const std::vector<BoundPoint<3>>& bound,
-                               const std::vector<std::array<int, 27>>& cell_nodes, const Eigen::VectorXd& x,
-                               Eigen::VectorXd& out) {
+template <class Vector>
+void add_bound_products(const std::vector<BoundPoint<3>>& bound,
+                        const std::vector<std::array<int, 27>>& cell_nodes, const Vector& x, Vector& out) {
+  using Scalar = typename Vector::Scalar;
+  constexpr int stride = node_stride<Scalar>;
   for (const BoundPoint<3>& b : bound) {
     Vec<3> u = Vec<3>::Zero();
-    for (int k = 0; k < 27; ++k) u += b.N[k] * x.segment<3>(3 * cell_nodes[b.cell][k]);
+    for (int k = 0; k < 27; ++k)
+      u += b.N[k] * x.template segment<3>(stride * cell_nodes[b.cell][k]).template cast<double>();
     u = b.stiffness * u;
-    for (int k = 0; k < 27; ++k) out.segment<3>(3 * cell_nodes[b.cell][k]) += b.N[k] * u;
+    for (int k = 0; k < 27; ++k)
+      out.template segment<3>(stride * cell_nodes[b.cell][k]) += (b.N[k] * u).template cast<Scalar>();
   }
 }
 
@@ -46,35 +50,41 @@ inline void invert_blocks(const std::vector<char>& fixed, std::vector<Mat<3, 3>>
 }
 
 /// Strain rate q at place k as ThreeD has it, and the divergence.
-inline void strain_at(const PlaceTensors& G, int k, BatchLanes (&q)[5], BatchLanes& div) {
-  const BatchLanes &xx = G.g[0][0][k], &yy = G.g[1][1][k], &zz = G.g[2][2][k];
-  const BatchLanes plane = xx + yy;
+template <class Scalar>
+void strain_at(const PlaceTensors<Scalar>& G, int k, Lanes<Scalar> (&q)[5], Lanes<Scalar>& div) {
+  const Lanes<Scalar>&xx = G.g[0][0][k], &yy = G.g[1][1][k], &zz = G.g[2][2][k];
+  const Lanes<Scalar> plane = xx + yy;
   q[0] = xx - yy;
-  q[1] = (plane - 2.0 * zz) * inv_sqrt3;
+  q[1] = (plane - Scalar(2) * zz) * static_cast<Scalar>(inv_sqrt3);
   q[2] = G.g[0][1][k] + G.g[1][0][k];
   q[3] = G.g[1][2][k] + G.g[2][1][k];
   q[4] = G.g[0][2][k] + G.g[2][0][k];
   div = plane + zz;
 }
 
-inline BatchLanes norm(const BatchLanes (&q)[5]) {
-  return (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] + q[4] * q[4]).sqrt();
+template <class Scalar>
+Lanes<Scalar> norm(const Lanes<Scalar> (&q)[5]) {
+  Lanes<Scalar> n = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] + q[4] * q[4];
+  for (int l = 0; l < batch_size; ++l) n[l] = std::sqrt(n[l]);
+  return n;
 }
 
 /// The tensor whose adjoint is that of the deviatoric stress s, with a pull p in all directions: T = s + p I.
-inline void stress_at(const BatchLanes (&s)[5], const BatchLanes& p, int k, PlaceTensors& T) {
-  const BatchLanes half = s[1] * inv_sqrt3;
+template <class Scalar>
+void stress_at(const Lanes<Scalar> (&s)[5], const Lanes<Scalar>& p, int k, PlaceTensors<Scalar>& T) {
+  const Lanes<Scalar> half = s[1] * static_cast<Scalar>(inv_sqrt3);
   T.g[0][0][k] = p + half + s[0];
   T.g[1][1][k] = p + half - s[0];
-  T.g[2][2][k] = p - 2.0 * half;
+  T.g[2][2][k] = p - Scalar(2) * half;
   T.g[0][1][k] = T.g[1][0][k] = s[2];
   T.g[1][2][k] = T.g[2][1][k] = s[3];
   T.g[0][2][k] = T.g[2][0][k] = s[4];
 }
 
 /// Volumes of a batch of cells, lane by lane; 0 where a lane has no cell.
+template <class Scalar>
 struct BatchVolumes {
-  BatchLanes V[8], inverse_cell;
+  Lanes<Scalar> V[8], inverse_cell;
 };
 
 class SpaceSystem {
@@ -84,16 +94,18 @@ class SpaceSystem {
   /// Everything that does not change within a step, and the preconditioner. False where it is not definite.
   bool prepare(YieldProblem<ThreeD>& problem, double eta);
 
-  /// A x. Prescribed components of x are zero, and those of the result too.
-  void multiply(const YieldProblem<ThreeD>& problem, const Eigen::VectorXd& x, Eigen::VectorXd& out);
-  /// x = A^-1 R as conjugate_gradients() does it, (r, P^-1 r) in watts.
-  double solve(const YieldProblem<ThreeD>& problem, Eigen::VectorXd& R, const SolveGoal& goal,
-               Eigen::VectorXd& x);
+  /// A x in single precision, four numbers a node. Prescribed components of x are zero, and those of the
+  /// result too.
+  void multiply(const YieldProblem<ThreeD>& problem, const Eigen::VectorXf& x, Eigen::VectorXf& out);
+  /// Adds A^-1 R to v as conjugate_gradients() does it, (r, P^-1 r) in watts.
+  double solve(const YieldProblem<ThreeD>& problem, const Eigen::VectorXd& R, const SolveGoal& goal,
+               std::vector<Vec<3>>& v);
   /// Mean shear rate of every cell over its places, and the volume mean of all [1/s].
   void shear_rates(const std::vector<Vec<3>>& v, std::vector<double>& of_cell, double& mean) const;
 
   CellBatches batches;
-  std::vector<BatchVolumes> volumes;
+  std::vector<BatchVolumes<double>> volumes;
+  CellForces<double> forces;  ///< that cells gave their nodes in the last pass over them
   long long products = 0;
 
  private:
@@ -106,6 +118,10 @@ class SpaceSystem {
 
   double eta_ = 0.0;
   Eigen::VectorXd diagonal_;  ///< inertia, drag and friction
+  Eigen::VectorXf free_,
+      free_diagonal_;  ///< 1 and the diagonal where nothing is prescribed, else 0; by fours
+  std::vector<BatchVolumes<float>> weights_;
+  CellForces<float> pushes_;
   PressurePreconditioner preconditioner_;
 };
 
@@ -113,14 +129,20 @@ inline void SpaceSystem::set_up(YieldProblem<ThreeD>& problem) {
   const auto& quad = problem.quadrature;
   batches.lay_out(problem.grid);
   volumes.resize(batches.n_batches());
+  weights_.resize(batches.n_batches());
+  batches.make_room(forces);
+  batches.make_room(pushes_);
 #pragma omp parallel for schedule(static)
-  for (int b = 0; b < batches.n_batches(); ++b)
+  for (int b = 0; b < batches.n_batches(); ++b) {
     for (int l = 0; l < batch_size; ++l) {
       const int c = b * batch_size + l;
       const bool there = c < batches.n_cells();
       for (int k = 0; k < 8; ++k) volumes[b].V[k][l] = there ? quad.V[c][k] : 0.0;
       volumes[b].inverse_cell[l] = there && quad.V_cell[c] > 0.0 ? 1.0 / quad.V_cell[c] : 0.0;
     }
+    for (int k = 0; k < 8; ++k) weights_[b].V[k] = volumes[b].V[k].cast<float>();
+    weights_[b].inverse_cell = volumes[b].inverse_cell.cast<float>();
+  }
 }
 
 inline bool SpaceSystem::prepare(YieldProblem<ThreeD>& problem, double eta) {
@@ -139,6 +161,13 @@ inline bool SpaceSystem::prepare(YieldProblem<ThreeD>& problem, double eta) {
     Diagonal diagonal{diagonal_};
     add_friction_stiffness_admm<3>(problem.grid, V, eta, problem.friction, diagonal);
   }
+  free_.setZero(4 * n);
+  for (int i = 0; i < n; ++i)
+    for (int d = 0; d < 3; ++d) free_[4 * i + d] = problem.fixed[3 * i + d] ? 0.0f : 1.0f;
+  free_diagonal_.setZero(4 * n);
+  for (int i = 0; i < n; ++i)
+    free_diagonal_.segment<3>(4 * i) =
+        free_.segment<3>(4 * i).cwiseProduct(diagonal_.segment<3>(3 * i).cast<float>());
   std::vector<double> stiffness(problem.grid.n_cells());
   for (int c = 0; c < problem.grid.n_cells(); ++c)
     stiffness[c] = problem.quadrature.V_cell[c] * problem.K * problem.dt;
@@ -179,9 +208,9 @@ inline std::vector<Mat<3, 3>> SpaceSystem::node_blocks(const YieldProblem<ThreeD
   return G;
 }
 
-inline void SpaceSystem::multiply(const YieldProblem<ThreeD>& problem, const Eigen::VectorXd& x,
-                                  Eigen::VectorXd& out) {
-  const double bulk = problem.K * problem.dt;
+inline void SpaceSystem::multiply(const YieldProblem<ThreeD>& problem, const Eigen::VectorXf& x,
+                                  Eigen::VectorXf& out) {
+  const auto bulk = static_cast<float>(problem.K * problem.dt), eta = static_cast<float>(eta_);
   const int n_nodes = problem.grid.n_nodes();
   ++products;
   out.resize(x.size());
@@ -189,45 +218,53 @@ inline void SpaceSystem::multiply(const YieldProblem<ThreeD>& problem, const Eig
   {
 #pragma omp for schedule(static)
     for (int b = 0; b < batches.n_batches(); ++b) {
-      PlaceTensors G;
+      PlaceTensors<float> G;
       batches.gradients(b, x.data(), G);
-      const BatchVolumes& v = volumes[b];
-      BatchLanes mean = BatchLanes::Zero();
+      const BatchVolumes<float>& v = weights_[b];
+      Lanes<float> mean = Lanes<float>::Zero();
       for (int k = 0; k < 8; ++k) mean += v.V[k] * (G.g[0][0][k] + G.g[1][1][k] + G.g[2][2][k]);
       mean *= bulk * v.inverse_cell;
       for (int k = 0; k < 8; ++k) {
-        BatchLanes q[5], div;
+        Lanes<float> q[5], div;
         strain_at(G, k, q, div);
-        const BatchLanes w = eta_ * v.V[k];
-        for (BatchLanes& s : q) s *= w;
-        stress_at(q, v.V[k] * mean, k, G);
+        const Lanes<float> w = eta * v.V[k];
+        for (Lanes<float>& s : q) s *= w;
+        stress_at<float>(q, v.V[k] * mean, k, G);
       }
-      batches.scatter(b, G);
+      batches.scatter(b, G, pushes_);
     }
 #pragma omp for schedule(static)
     for (int i = 0; i < n_nodes; ++i)
-      out.segment<3>(3 * i) =
-          diagonal_.segment<3>(3 * i).cwiseProduct(x.segment<3>(3 * i)) + batches.gathered(i);
+      out.segment<4>(4 * i) = free_diagonal_.segment<4>(4 * i).cwiseProduct(x.segment<4>(4 * i)) +
+                              free_.segment<4>(4 * i).cwiseProduct(batches.gathered(i, pushes_));
   }
+  if (problem.contact.empty() && problem.bound.empty()) return;
   const auto& cell_nodes = problem.grid.cell_nodes;
   for (const ContactPoint<3>& c : problem.contact) {
     if (!c.active) continue;
     double u = 0.0;
-    for (int k = 0; k < 27; ++k) u += c.N[k] * c.normal.dot(x.segment<3>(3 * cell_nodes[c.cell][k]));
     for (int k = 0; k < 27; ++k)
-      out.segment<3>(3 * cell_nodes[c.cell][k]) += c.stiffness * u * c.N[k] * c.normal;
+      u += c.N[k] * c.normal.dot(x.segment<3>(4 * cell_nodes[c.cell][k]).cast<double>());
+    for (int k = 0; k < 27; ++k)
+      out.segment<3>(4 * cell_nodes[c.cell][k]) += (c.stiffness * u * c.N[k] * c.normal).cast<float>();
   }
   add_bound_products(problem.bound, cell_nodes, x, out);
-  mask(problem.fixed, out);
+  out = out.cwiseProduct(free_);
 }
 
-inline double SpaceSystem::solve(const YieldProblem<ThreeD>& problem, Eigen::VectorXd& R,
-                                 const SolveGoal& goal, Eigen::VectorXd& x) {
-  return conjugate_gradients([&](const Eigen::VectorXd& p, Eigen::VectorXd& Ap) { multiply(problem, p, Ap); },
-                             [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
-                               preconditioner_.apply(batches, problem.grid, r, z);
-                             },
-                             goal, R, x);
+inline double SpaceSystem::solve(const YieldProblem<ThreeD>& problem, const Eigen::VectorXd& R,
+                                 const SolveGoal& goal, std::vector<Vec<3>>& v) {
+  const int n = problem.grid.n_nodes();
+  Eigen::VectorXf r = Eigen::VectorXf::Zero(4 * n), x;
+  for (int i = 0; i < n; ++i) r.segment<3>(4 * i) = R.segment<3>(3 * i).cast<float>();
+  const double left =
+      conjugate_gradients([&](const Eigen::VectorXf& p, Eigen::VectorXf& Ap) { multiply(problem, p, Ap); },
+                          [&](const Eigen::VectorXf& rest, Eigen::VectorXf& z) {
+                            preconditioner_.apply(batches, problem.grid, rest, z);
+                          },
+                          goal, r, x);
+  for (int i = 0; i < n; ++i) v[i] += x.segment<3>(4 * i).cast<double>();
+  return left;
 }
 
 inline void SpaceSystem::shear_rates(const std::vector<Vec<3>>& v, std::vector<double>& of_cell,
@@ -236,13 +273,13 @@ inline void SpaceSystem::shear_rates(const std::vector<Vec<3>>& v, std::vector<d
   std::vector<double> sum(batches.n_batches()), volume(batches.n_batches());
 #pragma omp parallel for schedule(static)
   for (int b = 0; b < batches.n_batches(); ++b) {
-    PlaceTensors G;
+    PlaceTensors<double> G;
     batches.gradients(b, v.data()->data(), G);
-    BatchLanes total = BatchLanes::Zero(), weighted = total, V = total;
+    Lanes<double> total = Lanes<double>::Zero(), weighted = total, V = total;
     for (int k = 0; k < 8; ++k) {
-      BatchLanes q[5], div;
+      Lanes<double> q[5], div;
       strain_at(G, k, q, div);
-      const BatchLanes rate = norm(q);
+      const Lanes<double> rate = norm(q);
       total += rate;
       weighted += volumes[b].V[k] * rate;
       V += volumes[b].V[k];

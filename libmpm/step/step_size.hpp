@@ -31,11 +31,30 @@ double speed_of_most(const Points<D>& points, double share, Speed speed) {
   return *rank;
 }
 
+/// Local error of a step over the points [m]: backward Euler moves them by dt v_new where the trapezoidal
+/// rule has dt (v_new + v_old)/2. Root mean square of the difference.
+template <int D>
+double local_error(const Points<D>& points, const std::vector<Vec<D>>& v_old, double dt) {
+  double sum = 0.0;
+  for (std::size_t p = 0; p < points.size(); ++p) sum += (points.v[p] - v_old[p]).squaredNorm();
+  return 0.5 * dt * std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, points.size())));
+}
+
+/// The longest step: dt_max, or longer where that keeps the local error, which grows with dt^2, small enough.
+template <class Space>
+double longest_dt(const Body<Space>& body, const StepSettings& settings) {
+  const double allowed = settings.time_error * body.grid.cell_size_min();
+  if (body.dt == 0.0 || body.time_error == 0.0) return settings.dt_max;
+  return std::clamp(body.dt * std::sqrt(allowed / body.time_error), settings.dt_max,
+                    std::max(settings.dt_max, settings.dt_longest));
+}
+
 /// Largest step that keeps every point's move, gravity's pull included, within settings.cfl cells.
 template <class Space>
 double choose_dt(const Body<Space>& body, const StepSettings& settings) {
   if (settings.fixed_dt) return *settings.fixed_dt;
-  double dt = body.dt > 0.0 ? std::min(settings.dt_max, settings.growth * body.dt) : settings.dt_max;
+  double dt = longest_dt(body, settings);
+  if (body.dt > 0.0) dt = std::min(dt, settings.growth * body.dt);
   for (int d = 0; d < Space::dim && Space::advects; ++d) {
     const double v = speed_of_most(body.points, settings.strays, [&](std::size_t p) {
       return std::abs(body.motion.rate(body.points.x[p], body.points.v[p])[d]);
@@ -46,7 +65,7 @@ double choose_dt(const Body<Space>& body, const StepSettings& settings) {
     const double g = std::abs(body.gravity[d]);
     if (body.dt == 0.0 && g > 0.0) dt = std::min(dt, 0.25 * std::sqrt(reach / g));
   }
-  return dt;
+  return std::min(dt, settings.time_left);
 }
 
 }  // namespace tremie::detail

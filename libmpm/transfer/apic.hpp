@@ -12,6 +12,7 @@
 #include "libmpm/grid/active_grid.hpp"
 #include "libmpm/points/points.hpp"
 #include "libmpm/space/motion.hpp"
+#include "libmpm/transfer/space_stencil.hpp"
 
 namespace tremie {
 
@@ -54,6 +55,19 @@ struct PointStencil {
       // On a wall one spline is 1 and the others 0: no slope can be seen there, and none is given.
       inverse_inertia[d] = inertia > 1e-12 * axes[d].h * axes[d].h ? 1.0 / inertia : 0.0;
     }
+  }
+  /// The splines with their moments about the point, or with their slopes.
+  SpaceWeights with_arms() const {
+    SpaceWeights w;
+    for (int d = 0; d < D; ++d)
+      for (int k = 0; k < 3; ++k) w.N[d][k] = one[d].N[k], w.slope[d][k] = one[d].N[k] * arm[d][k];
+    return w;
+  }
+  SpaceWeights with_slopes() const {
+    SpaceWeights w;
+    for (int d = 0; d < D; ++d)
+      for (int k = 0; k < 3; ++k) w.N[d][k] = one[d].N[k], w.slope[d][k] = one[d].dN[k];
+    return w;
   }
   double N(const Index<D>& o) const {
     double n = 1.0;
@@ -116,27 +130,71 @@ void gather_to_nodes(const ActiveGrid<D>& grid, const std::vector<std::array<Vec
     if (nodes.mass[i] > 0.0) nodes.v[i] /= nodes.mass[i];
 }
 
+namespace detail {
+
+/// Momenta and masses that the points of a cell give its controls.
+template <int D>
+void cell_momenta(const ActiveGrid<D>& grid, const Points<D>& points, int c,
+                  std::array<Vec<D + 1>, power(3, D)>& local) {
+  const auto xi = control_positions<D>(grid.axes, grid.cell_index[c]);
+  for (auto& sum : local) sum.setZero();
+  for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
+    const int p = grid.order[i];
+    const PointStencil<D> st(grid.axes, grid.cell_index[c], xi, points.x[p]);
+    const Mat<D, D>& C = points.C[p];
+    for (int k = 0; k < power(3, D); ++k) {
+      const Index<D> o = local_offset<D>(k);
+      const double m = points.mass[p] * st.N(o);
+      local[k].template head<D>() += m * (points.v[p] + C * st.arms(o));
+      local[k][D] += m;
+    }
+  }
+}
+inline void cell_momenta(const ActiveGrid<3>& grid, const Points<3>& points, int c,
+                         std::array<Vec<4>, 27>& local) {
+  const auto xi = control_positions<3>(grid.axes, grid.cell_index[c]);
+  CellQuads sum{};
+  for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
+    const int p = grid.order[i];
+    const PointStencil<3> st(grid.axes, grid.cell_index[c], xi, points.x[p]);
+    const double m = points.mass[p];
+    std::array<Quad, 3> slope;
+    for (int d = 0; d < 3; ++d) slope[d] = m * to_quad(points.C[p].col(d));
+    spread(st.with_arms(), m * to_quad(points.v[p], 1.0), slope, sum);
+  }
+  for (std::size_t k = 0; k < 27; ++k) local[k] << to_vec(sum[k]), sum[k][3];
+}
+
+/// What the controls of a cell say of the place of a point: velocity and, column by column, its moments about
+/// it.
+template <int D>
+void velocity_at(const ActiveGrid<D>& grid, const PointStencil<D>& st, const std::vector<Vec<D>>& v, int c,
+                 Vec<D>& vp, Mat<D, D>& moment) {
+  vp.setZero(), moment.setZero();
+  for (int k = 0; k < power(3, D); ++k) {
+    const Index<D> o = local_offset<D>(k);
+    const Vec<D> Nv = st.N(o) * v[grid.cell_nodes[c][k]];
+    vp += Nv;
+    moment += Nv * st.arms(o).transpose();
+  }
+}
+inline void velocity_at(const ActiveGrid<3>& grid, const PointStencil<3>& st, const std::vector<Vec<3>>& v,
+                        int c, Vec<3>& vp, Mat<3, 3>& moment) {
+  Quad value;
+  std::array<Quad, 3> slope;
+  contract(of_cell(grid, v, c), st.with_arms(), value, slope);
+  vp = to_vec(value);
+  for (int d = 0; d < 3; ++d) moment.col(d) = to_vec(slope[d]);
+}
+
+}  // namespace detail
+
 /// Point to grid: nodal masses and velocities, momentum and angular momentum kept.
 template <int D>
 void point_to_grid(const ActiveGrid<D>& grid, const Points<D>& points, NodalState<D>& nodes) {
-  constexpr int n = power(3, D);
-  std::vector<std::array<Vec<D + 1>, n>> local(grid.cell_index.size());
+  std::vector<std::array<Vec<D + 1>, power(3, D)>> local(grid.cell_index.size());
 #pragma omp parallel for schedule(static)
-  for (int c = 0; c < grid.n_cells(); ++c) {
-    const auto xi = detail::control_positions<D>(grid.axes, grid.cell_index[c]);
-    for (int k = 0; k < n; ++k) local[c][k].setZero();
-    for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
-      const int p = grid.order[i];
-      const detail::PointStencil<D> st(grid.axes, grid.cell_index[c], xi, points.x[p]);
-      const Mat<D, D>& C = points.C[p];
-      for (int k = 0; k < n; ++k) {
-        const Index<D> o = local_offset<D>(k);
-        const double m = points.mass[p] * st.N(o);
-        local[c][k].template head<D>() += m * (points.v[p] + C * st.arms(o));
-        local[c][k][D] += m;
-      }
-    }
-  }
+  for (int c = 0; c < grid.n_cells(); ++c) detail::cell_momenta(grid, points, c, local[c]);
   gather_to_nodes<D>(grid, local, nodes);
 }
 
@@ -157,15 +215,10 @@ void grid_to_point(const ActiveGrid<D>& grid, const std::vector<Vec<D>>& v, cons
     for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
       const int p = grid.order[i];
       const detail::PointStencil<D> st(grid.axes, grid.cell_index[c], xi, points.x[p]);
-      Vec<D> vp = Vec<D>::Zero(), vp_old = Vec<D>::Zero();
-      Mat<D, D> moment = Mat<D, D>::Zero();
-      for (int k = 0; k < power(3, D); ++k) {
-        const Index<D> o = local_offset<D>(k);
-        const Vec<D> Nv = st.N(o) * v[grid.cell_nodes[c][k]];
-        vp += Nv;
-        moment += Nv * st.arms(o).transpose();
-        if (transfer.flip) vp_old += st.N(o) * v_old[grid.cell_nodes[c][k]];
-      }
+      Vec<D> vp, vp_old = Vec<D>::Zero();
+      Mat<D, D> moment, unused;
+      detail::velocity_at(grid, st, v, c, vp, moment);
+      if (transfer.flip) detail::velocity_at(grid, st, v_old, c, vp_old, unused);
       points.C[p] =
           transfer.flip ? Mat<D, D>(Mat<D, D>::Zero()) : Mat<D, D>(moment * st.inverse_inertia.asDiagonal());
       points.v[p] = transfer.flip ? Vec<D>(vp + transfer.flip_blend * (points.v[p] - vp_old)) : vp;
@@ -189,9 +242,11 @@ void shear_rate_at_points(const ActiveGrid<Space::dim>& grid, const std::vector<
       const int p = grid.order[i];
       const detail::PointStencil<D> st(grid.axes, grid.cell_index[c], xi, points.x[p]);
       if constexpr (D == 3) {
-        Mat<3, 3> L = Mat<3, 3>::Zero();
-        for (int k = 0; k < 27; ++k)
-          L += v[grid.cell_nodes[c][k]] * st.gradient(local_offset<3>(k)).transpose();
+        detail::Quad value;
+        std::array<detail::Quad, 3> slope;
+        detail::contract(detail::of_cell(grid, v, c), st.with_slopes(), value, slope);
+        Mat<3, 3> L;
+        for (int d = 0; d < 3; ++d) L.col(d) = detail::to_vec(slope[d]);
         const Mat<3, 3> rate = L + L.transpose();  // 2 D
         gamma_dot[p] = std::sqrt(0.5 * (rate.squaredNorm() - rate.trace() * rate.trace() / 3.0));
       } else {

@@ -44,9 +44,12 @@ inline std::vector<Vec<3>> even_out_in_space(const YieldProblem<ThreeD>& problem
   add_bound_blocks(bound, grid.cell_nodes, G);
   invert_blocks(fixed, G);
   PressurePreconditioner preconditioner;
-  if (!preconditioner.build(grid, system.batches, b, std::move(G), cells.stiffness)) return u;
+  if (!preconditioner.build(grid, system.batches, b, G, cells.stiffness)) return u;
+  Eigen::VectorXf r4 = Eigen::VectorXf::Zero(4 * grid.n_nodes()), z4;
   const auto precondition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
-    preconditioner.apply(system.batches, grid, r, z);
+    for (int i = 0; i < grid.n_nodes(); ++i) r4.segment<3>(4 * i) = r.segment<3>(3 * i).cast<float>();
+    preconditioner.apply(system.batches, grid, r4, z4);
+    for (int i = 0; i < grid.n_nodes(); ++i) z.segment<3>(3 * i) = z4.segment<3>(4 * i).cast<double>();
   };
   Eigen::VectorXd x;
   conjugate_gradients(multiply, precondition, {.reduction = 1e-6, .most = 50}, R, x);

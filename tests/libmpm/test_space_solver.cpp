@@ -94,14 +94,16 @@ TEST(SpaceSolver, GradientsAndTheirAdjoint) {
   activate(body.grid, body.points);
   CellBatches batches;
   batches.lay_out(body.grid);
+  CellForces<double> forces;
+  batches.make_room(forces);
   const int n = body.grid.n_nodes();
   Eigen::VectorXd v(3 * n), sum = Eigen::VectorXd::Zero(3 * n);
   for (int i = 0; i < 3 * n; ++i) v[i] = std::sin(1.7 * i);
   double worst = 0.0, work_on_gradients = 0.0;
   for (int b = 0; b < batches.n_batches(); ++b) {
-    PlaceTensors G;
+    PlaceTensors<double> G;
     batches.gradients(b, v.data(), G);
-    batches.scatter(b, G);
+    batches.scatter(b, G, forces);
     for (int c = b * batch_size; c < std::min((b + 1) * batch_size, body.grid.n_cells()); ++c)
       for (int k = 0; k < 8; ++k) {
         const Stencil<3> st = stencil<3>(body.grid.axes, body.grid.cell_index[c], gauss_place<3>(k));
@@ -113,7 +115,7 @@ TEST(SpaceSolver, GradientsAndTheirAdjoint) {
         work_on_gradients += L.squaredNorm();
       }
   }
-  for (int i = 0; i < n; ++i) sum.segment<3>(3 * i) = batches.gathered(i);
+  for (int i = 0; i < n; ++i) sum.segment<3>(3 * i) = batches.gathered(i, forces);
   EXPECT_LE(worst, 1e-11 * 100.0);  // gradients are of the order 1/h = 100 1/s
   EXPECT_NEAR(sum.dot(v) / work_on_gradients, 1.0, 1e-12);
 }
