@@ -38,10 +38,24 @@ inline constexpr double no_stress = 1e-3;
 /// Hardly any place of a test shears faster for long [1/s].
 inline constexpr double fastest_rate = 100.0;
 
-/// Squares of the primal and dual mismatch and of the stress scale, weighted by volume.
+/// A rate at which the concrete is at rest [1/s]: half a millimetre a second over half a decimetre.
+inline constexpr double rate_at_rest = 0.01;
+
+/// Squares of the primal and dual mismatch and of the stress scale, of the rates and of what they miss,
+/// weighted by volume.
 struct Mismatch {
-  double primal = 0.0, dual = 0.0, scale = 0.0;
-  bool within(double tolerance) const { return std::max(primal, dual) <= tolerance * tolerance * scale; }
+  double primal = 0.0, dual = 0.0, scale = 0.0, missed = 0.0, rate = 0.0, volume = 0.0;
+
+  void add(const Mismatch& m) {
+    primal += m.primal, dual += m.dual, scale += m.scale;
+    missed += m.missed, rate += m.rate, volume += m.volume;
+  }
+  /// In the stresses, and in the rates to a tenth: where the yield stress dwarfs r times the rate, the whole
+  /// rate could be missed within a tolerance on the stress.
+  bool within(double tolerance) const {
+    return std::max(primal, dual) <= tolerance * tolerance * scale &&
+           std::sqrt(missed) <= 0.1 * std::sqrt(rate) + rate_at_rest * std::sqrt(volume);
+  }
 };
 
 template <class Space, class Law>
@@ -66,11 +80,14 @@ Mismatch update_duals(const YieldProblem<Space>& problem, const Law& law, const 
       part[c].primal += V * (r * (q - d_new)).squaredNorm();
       part[c].dual += V * (r * (d_new - d)).squaredNorm();
       part[c].scale += V * std::pow(tau_y + problem.mu * q.norm() + no_stress, 2);
+      part[c].missed += V * (q - d_new).squaredNorm();
+      part[c].rate += V * q.squaredNorm();
+      part[c].volume += V;
       s = a - r * d_new;
       d = d_new;
     }
   Mismatch sum;
-  for (const Mismatch& m : part) sum.primal += m.primal, sum.dual += m.dual, sum.scale += m.scale;
+  for (const Mismatch& m : part) sum.add(m);
   return sum;
 }
 
