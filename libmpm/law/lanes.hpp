@@ -76,10 +76,10 @@ inline Octet exp(const Octet& x) {
 /// (1 - e^-x)/x for x >= 0, 1 at x = 0, to 1e-15 relative.
 inline Octet mean_decay(const Octet& x) {
   // Below 1/2 the difference loses digits; there the series' first term left out is 5e-17.
-  const Octet series = detail::polynomial(
-      x, {1.0, -0.5, 1.0 / 6.0, -1.0 / 24.0, 1.0 / 120.0, -1.0 / 720.0, 1.0 / 5040.0, -1.0 / 40320.0,
-          1.0 / 362880.0, -1.0 / 3628800.0, 1.0 / 39916800.0, -1.0 / 479001600.0, 1.0 / 6227020800.0,
-          -1.0 / 87178291200.0});
+  const Octet series =
+      detail::polynomial(x, {1.0, -0.5, 1.0 / 6.0, -1.0 / 24.0, 1.0 / 120.0, -1.0 / 720.0, 1.0 / 5040.0,
+                             -1.0 / 40320.0, 1.0 / 362880.0, -1.0 / 3628800.0, 1.0 / 39916800.0,
+                             -1.0 / 479001600.0, 1.0 / 6227020800.0, -1.0 / 87178291200.0});
   const Octet direct = (1.0 - exp(-x)) / max(x, all_lanes(0.5));
   return x < 0.5 ? series : direct;
 }

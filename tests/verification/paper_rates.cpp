@@ -1,7 +1,7 @@
 // How much of the paper's shear rates is in how they are taken: Mix A in the paper's scheme, its mean shear
 // rate by several definitions in the same flow, at the peak and summed up over time.
 //
-//   paper_rates [cell in mm] [rest in s] [seconds]
+//   paper_rates [cell in mm] [rest in s] [seconds] [share of FLIP; 0: APIC]
 
 #include <fmt/format.h>
 #include <omp.h>
@@ -141,8 +141,9 @@ Rates rates_of(const Body<ThreeD>& body, const std::vector<Mat<D, D>>& L) {
   return r;
 }
 
-void print_rates(double cell, double rest, double seconds) {
-  const Scene scene = paper_scene(cell, rest);
+void print_rates(double cell, double rest, double seconds, double flip) {
+  Scene scene = paper_scene(cell, rest);
+  if (flip > 0.0) scene.model.transfer = TransferKind::flip, scene.model.flip_blend = flip;
   Body<ThreeD> body = filled_cone<ThreeD>(scene);
   const ExplicitSettings settings = explicit_settings(scene);
   RigidWall<D> wall;
@@ -160,8 +161,8 @@ void print_rates(double cell, double rest, double seconds) {
     const Rates now = rates_of(body, L);
     for (int d = 0; d < definitions; ++d) peak[d] = std::max(peak[d], now[d]), total[d] += interval * now[d];
   }
-  fmt::print("| {:.0f} mm cells, rest {:.0f} s, {:.0f} s | peak 1/s | summed up over time |\n|---|---|---|\n",
-             1e3 * cell, rest, seconds);
+  fmt::print("| {:.0f} mm cells, rest {:.0f} s, {} s, {} | peak 1/s | summed up over time |\n|---|---|---|\n",
+             1e3 * cell, rest, seconds, flip > 0.0 ? "FLIP" : "APIC");
   for (int d = 0; d < definitions; ++d) fmt::print("| {} | {:.2f} | {:.2f} |\n", names[d], peak[d], total[d]);
 }
 
@@ -171,5 +172,5 @@ void print_rates(double cell, double rest, double seconds) {
 int main(int argc, char** argv) {
   omp_set_num_threads(1);
   const auto value = [&](int i, double fallback) { return i < argc ? std::atof(argv[i]) : fallback; };
-  tremie::slump_flow::print_rates(1e-3 * value(1, 20.0), value(2, 0.0), value(3, 1.0));
+  tremie::slump_flow::print_rates(1e-3 * value(1, 20.0), value(2, 0.0), value(3, 1.0), value(4, 0.0));
 }
