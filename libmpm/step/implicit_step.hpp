@@ -28,16 +28,20 @@ StepReport implicit_step(Body<Space>& body, const Law& law, const StepSettings& 
   body.v = body.nodes.v;
 
   // The step's convex problem and its solution, the velocities at the end of the step. One that does not
-  // converge is tried again over half the time.
+  // converge is tried again over half the time; so is a long one in which something starts to fall.
   const std::vector<Vec<D>> v_old = body.nodes.v;
   const Duals<Space> guess = body.duals;
   std::optional<YieldProblem<Space>> posed;
   SolveReport solve;
   double dt = detail::choose_dt(body, settings);
-  for (int attempt = 0; attempt < (settings.fixed_dt ? 1 : most_attempts) && !solve.converged; ++attempt) {
+  bool good = false;
+  for (int attempt = 0; attempt < (settings.fixed_dt ? 1 : most_attempts) && !good; ++attempt) {
     if (attempt > 0) dt *= 0.5, body.duals = guess;
     detail::pose(body, settings, wall, v_old, old_nodes, dt, posed);
     solve = detail::solve_step(*posed, law, settings, body);
+    const bool falls =
+        !settings.fixed_dt && dt > settings.dt_max && detail::starts_to_fall(body, settings, dt);
+    good = solve.converged && !falls;
   }
   const YieldProblem<Space>& problem = *posed;
   if (detail::runs_away(body, settings.strays, dt)) {

@@ -105,7 +105,8 @@ class SpaceSystem {
 
   CellBatches batches;
   std::vector<BatchVolumes<double>> volumes;
-  CellForces<double> forces;  ///< that cells gave their nodes in the last pass over them
+  CellForces<double> forces;              ///< that cells gave their nodes in the last pass over them
+  PressurePreconditioner preconditioner;  ///< of the last prepare(); free for others between solves
   long long products = 0;
 
  private:
@@ -122,7 +123,6 @@ class SpaceSystem {
       free_diagonal_;  ///< 1 and the diagonal where nothing is prescribed, else 0; by fours
   std::vector<BatchVolumes<float>> weights_;
   CellForces<float> pushes_;
-  PressurePreconditioner preconditioner_;
 };
 
 inline void SpaceSystem::set_up(YieldProblem<ThreeD>& problem) {
@@ -171,7 +171,7 @@ inline bool SpaceSystem::prepare(YieldProblem<ThreeD>& problem, double eta) {
   std::vector<double> stiffness(problem.grid.n_cells());
   for (int c = 0; c < problem.grid.n_cells(); ++c)
     stiffness[c] = problem.quadrature.V_cell[c] * problem.K * problem.dt;
-  return preconditioner_.build(problem.grid, batches, problem.quadrature.b, node_blocks(problem), stiffness);
+  return preconditioner.build(problem.grid, batches, problem.quadrature.b, node_blocks(problem), stiffness);
 }
 
 /// Inverse blocks of D at the nodes. A node's own viscous block is V eta (|g|^2 I + g g'/3) with its gradient
@@ -260,7 +260,7 @@ inline double SpaceSystem::solve(const YieldProblem<ThreeD>& problem, const Eige
   const double left =
       conjugate_gradients([&](const Eigen::VectorXf& p, Eigen::VectorXf& Ap) { multiply(problem, p, Ap); },
                           [&](const Eigen::VectorXf& rest, Eigen::VectorXf& z) {
-                            preconditioner_.apply(batches, problem.grid, rest, z);
+                            preconditioner.apply(batches, problem.grid, rest, z);
                           },
                           goal, r, x);
   for (int i = 0; i < n; ++i) v[i] += x.segment<3>(4 * i).cast<double>();

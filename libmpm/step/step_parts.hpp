@@ -9,6 +9,7 @@
 
 #include "libmpm/contact/rigid_wall.hpp"
 #include "libmpm/step/body.hpp"
+#include "libmpm/step/step_size.hpp"
 
 namespace tremie::detail {
 
@@ -82,6 +83,7 @@ void apply_blocks(const ActiveGrid<D>& grid, std::vector<char>& fixed, std::vect
 template <class Space>
 void update_volumes(const YieldProblem<Space>& problem, const std::vector<Vec<Space::dim>>& v,
                     Points<Space::dim>& points) {
+#pragma omp parallel for schedule(static)
   for (int c = 0; c < problem.grid.n_cells(); ++c) {
     const double d_ln_J = problem.dt * divergence(problem, v, c);
     for (int i = problem.grid.cell_begin[c]; i < problem.grid.cell_begin[c + 1]; ++i)
@@ -94,6 +96,7 @@ template <class Space>
 void update_flocculation(const Body<Space>& body, double dt, Points<Space::dim>& points) {
   std::vector<double> gamma_dot;
   shear_rate_at_points<Space>(body.grid, body.v, points, gamma_dot);
+#pragma omp parallel for schedule(static)
   for (std::size_t p = 0; p < points.size(); ++p)
     points.lambda[p] = flocculation_step(points.lambda[p], *body.mix.thixotropy, body.mix.tau_0,
                                          points.gamma_dot[p], gamma_dot[p], dt);
@@ -288,11 +291,11 @@ SolveReport solve_step(YieldProblem<Space>& problem, const Law& law, const StepS
   return solve;
 }
 
-/// Whether the step would carry concrete a hundred cells or to nowhere: more of it than the share that may be
+/// Whether the step would carry concrete so many cells or to nowhere: more of it than the share that may be
 /// drops in the air. Nodes with next to no mass do not count: what they do moves no point.
 template <class Space>
-bool runs_away(const Body<Space>& body, double drops, double dt) {
-  const double reach = 100.0 * body.grid.cell_size_min();
+bool runs_away(const Body<Space>& body, double drops, double dt, double cells = 100.0) {
+  const double reach = cells * body.grid.cell_size_min();
   double heaviest = 0.0, total = 0.0, gone = 0.0;
   for (double m : body.nodes.mass) heaviest = std::max(heaviest, m), total += m;
   for (std::size_t i = 0; i < body.v.size(); ++i) {
@@ -301,6 +304,13 @@ bool runs_away(const Body<Space>& body, double drops, double dt) {
     if (Space::advects && m > 1e-3 * heaviest && body.v[i].norm() * dt > reach) gone += m;
   }
   return gone > drops * total;
+}
+
+/// Whether a long step carries more than some drops beyond a cell, or anything beyond ten: the speeds that it
+/// was chosen for say nothing of what comes loose in it.
+template <class Space>
+bool starts_to_fall(const Body<Space>& body, const StepSettings& settings, double dt) {
+  return runs_away(body, drops, dt, 1.0) || runs_away(body, settings.strays, dt, 10.0);
 }
 
 }  // namespace tremie::detail

@@ -26,8 +26,8 @@ class TwoEndedCholesky {
     n_ = n;
     below_ = (bandwidth + block - 1) / block * block;
     const int blocks = std::max(0, n - below_) / block;
-    ends_[0].reset(blocks - blocks / 2, below_);
-    ends_[1].reset(blocks / 2, below_);
+#pragma omp parallel for schedule(static, 1)
+    for (int e = 0; e < 2; ++e) ends_[e].reset(e == 0 ? blocks - blocks / 2 : blocks / 2, below_);
     middle_.setZero(n - ends_[0].size() - ends_[1].size(), n - ends_[0].size() - ends_[1].size());
   }
   /// Adds to the entry (i, j), i >= j. Threads may add to different entries.

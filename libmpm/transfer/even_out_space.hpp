@@ -43,7 +43,7 @@ inline std::vector<Vec<3>> even_out_in_space(const YieldProblem<ThreeD>& problem
   };
   add_bound_blocks(bound, grid.cell_nodes, G);
   invert_blocks(fixed, G);
-  PressurePreconditioner preconditioner;
+  PressurePreconditioner& preconditioner = system.preconditioner;  // its room: the step's solve is done
   if (!preconditioner.build(grid, system.batches, b, G, cells.stiffness)) return u;
   Eigen::VectorXf r4 = Eigen::VectorXf::Zero(4 * grid.n_nodes()), z4;
   const auto precondition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
