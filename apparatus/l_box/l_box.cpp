@@ -9,6 +9,7 @@ namespace {
 constexpr double reading_length = 0.02;  // over which the depths are averaged [m]
 constexpr double drops = 0.005;          // share of the points that may fall off the column's walls
 constexpr double share_of_time = 0.01;   // largest step, in the time since the start of the lift
+constexpr double longest_step = 0.3;     // [s]: in longer ones thin films run away
 
 /// Coordinates: x from the back of the column, y from the floor; the gate stands at x = column_length.
 Body<PlaneStrain> filled_column(const Scene& scene) {
@@ -81,6 +82,15 @@ double front_of(const Points<2>& points, double gate, double cell) {
   return std::max(0.0, x[i] - gate);
 }
 
+/// Depth over [low, high] that the volume below the channel's ceiling has, whatever holes the points leave.
+double depth_by_volume(const Points<2>& points, double low, double high, double ceiling) {
+  double volume = 0.0;
+  for (std::size_t p = 0; p < points.size(); ++p)
+    if (points.x[p][0] >= low && points.x[p][0] < high && points.x[p][1] < ceiling)
+      volume += points.volume(p);
+  return volume / (high - low);
+}
+
 Sample read(const Body<PlaneStrain>& body, const Scene& scene, const StepReport& step) {
   const Box& box = scene.box;
   const double end = box.column_length + box.channel_length;
@@ -124,11 +134,14 @@ void read_results(const Body<PlaneStrain>& body, const Scene& scene, std::option
   r.flocculation_mean_end = last.flocculation_mean;
   const Box& box = scene.box;
   const double step = 2.0 * body.grid.axes[0].h;
-  for (double x = 0.0; x < box.channel_length - 0.5 * step; x += step)
-    r.profile.push_back({x + 0.5 * step, depth(body.points, box.column_length + x,
-                                               box.column_length + x + step, body.grid.axes[1].h)});
   r.volume_in_channel = 0.0;
-  for (const auto& [x, h] : r.profile) r.volume_in_channel += h * step;
+  for (double x = 0.0; x < box.channel_length - 0.5 * step; x += step) {
+    const double low = box.column_length + x, high = low + step;
+    r.profile.push_back({x + 0.5 * step, depth(body.points, low, high, body.grid.axes[1].h)});
+    const double h = depth_by_volume(body.points, low, high, box.channel_height);
+    r.profile_by_volume.push_back({x + 0.5 * step, h});
+    r.volume_in_channel += h * step;
+  }
 }
 
 template <class Law>
@@ -136,6 +149,8 @@ Outcome run_plane(const Scene& scene, const Law& law, const Observer& observer) 
   Body<PlaneStrain> body = filled_column(scene);
   StepSettings settings = engine::step_settings(scene.model);
   if (!scene.model.time_step) settings.strays = drops;
+  settings.fitted_places = true;   // what hangs on the column's walls is thinner than a cell
+  settings.moving_surface = true;  // without it steps of tenths of a second carry a fluid past its level
   settings.alternating_viscosity = scene.alternating_viscosity;
   if (scene.model.space == SpaceKind::plane_with_side_walls) settings.side_wall_distance = scene.box.width;
   const double start_mass = engine::total_mass(body.points);
@@ -148,9 +163,8 @@ Outcome run_plane(const Scene& scene, const Law& law, const Observer& observer) 
   double next_frame = scene.frame_interval;
   while (!stopped && body.time < scene.duration * (1.0 - 1e-12)) {
     // The films on the column's walls drain ever more slowly: so may the steps go.
-    settings.dt_max =
-        std::min(scene.model.step_scale * std::max(StepSettings{}.dt_max, share_of_time * body.time),
-                 scene.duration - body.time);
+    const double longest = std::clamp(share_of_time * body.time, StepSettings{}.dt_max, longest_step);
+    settings.dt_max = std::min(scene.model.step_scale * longest, scene.duration - body.time);
     body.boundary = front_wall(scene, body.time);
     const StepReport step = implicit_step(body, law, settings);
     engine::count_step(body, step, outcome.checks, outcome.cost);

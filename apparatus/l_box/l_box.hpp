@@ -21,9 +21,12 @@ struct Box {
   double width = 0.20;
 };
 
+/// So stiff that a column of 0.6 m compresses by less than 0.2 % under its own weight [Pa]: rho g H / 2 K.
+inline constexpr double default_bulk_modulus = 5e6;
+
 /// A checked scene, SI units.
 struct Scene {
-  Mix mix;
+  Mix mix = {.K = default_bulk_modulus, .thixotropy = {}};
   Box box;
   double rest = 60.0;                       ///< in the column, before the gate is lifted [s]
   double duration = 60.0;                   ///< of the flow, at most [s]
@@ -58,8 +61,9 @@ struct Results {
   std::optional<double> t200, t400;         ///< front 200 and 400 mm from the gate [s]
   std::optional<double> stopped_at;         ///< [s]
   std::optional<double> flocculation_mean_start, flocculation_mean_end;
-  std::vector<std::array<double, 2>> profile;  ///< distance from the gate and depth at the end [m]
-  double volume_in_channel = 0.0;              ///< at the end, a metre of width [m^2]
+  std::vector<std::array<double, 2>> profile;            ///< distance from the gate and depth at the end [m]
+  std::vector<std::array<double, 2>> profile_by_volume;  ///< the same from the volume over each place
+  double volume_in_channel = 0.0;                        ///< at the end, a metre of width [m^2]
 };
 
 struct Outcome {

@@ -90,7 +90,7 @@ void check_cells(const Values& values, const l_box::Scene& scene) {
 ApparatusKeys l_box_keys() {
   ApparatusKeys keys{.name = "l_box",
                      .help = "The L-box test of EN 12350-10.",
-                     .schema = mix_sections(),
+                     .schema = mix_sections("5 MPa"),
                      .presets = {},
                      .settle = settle};
   keys.schema.push_back(box_section());

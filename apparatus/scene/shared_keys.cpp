@@ -34,7 +34,7 @@ const Words<ShapeKind> shape_words{{"b_spline", ShapeKind::b_spline}, {"gimp", S
 const Words<PressureKind> pressure_words{{"cell", PressureKind::cell}, {"point", PressureKind::point}};
 const Words<TransferKind> transfer_words{{"apic", TransferKind::apic}, {"flip", TransferKind::flip}};
 
-Section material_section() {
+Section material_section(const std::string& bulk_modulus) {
   return {
       .name = "mix",
       .help = "The concrete. In place of the table: mix = \"mix_a\", a name from reference_data/mixes.",
@@ -55,7 +55,7 @@ Section material_section() {
           {.name = "bulk_modulus",
            .dimension = Dimension::pressure,
            .range = positive,
-           .fallback = "1 MPa",
+           .fallback = bulk_modulus,
            .help = "K; or youngs_modulus and poisson_ratio"},
           {.name = "youngs_modulus",
            .dimension = Dimension::pressure,
@@ -142,7 +142,9 @@ void settle_bulk_modulus(Values& values) {
 
 }  // namespace
 
-Schema mix_sections() { return {material_section(), thixotropy_section()}; }
+Schema mix_sections(const std::string& bulk_modulus) {
+  return {material_section(bulk_modulus), thixotropy_section()};
+}
 
 void settle_mix(Values& values) {
   settle_bulk_modulus(values);

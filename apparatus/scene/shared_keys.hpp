@@ -12,8 +12,8 @@
 
 namespace tremie::scene {
 
-/// [mix] and [mix.thixotropy].
-Schema mix_sections();
+/// [mix] and [mix.thixotropy], with the default of K.
+Schema mix_sections(const std::string& bulk_modulus = "1 MPa");
 
 /// Rules of the mix: one way to give K, yield stress with thixotropy. Call it from ApparatusKeys::settle.
 void settle_mix(Values& values);

@@ -24,7 +24,8 @@ StepReport implicit_step(Body<Space>& body, const Law& law, const StepSettings& 
   activate(body.grid, body.points);
   point_to_grid(body.grid, body.points, body.nodes);
   detail::carry_duals<Space>(old_cells, body.grid, body.duals);
-  lay_out_quadrature<Space>(body.grid, body.points, body.mix.tau_0, body.mix.K, body.quadrature);
+  lay_out_quadrature<Space>(body.grid, body.points, body.mix.tau_0, body.mix.K, body.quadrature,
+                            settings.fitted_places);
   body.v = body.nodes.v;
 
   // The step's convex problem and its solution, the velocities at the end of the step. One that does not

@@ -42,6 +42,7 @@ double energy(const YieldProblem<Space>& problem, const Law& law, const std::vec
   }
   for (std::size_t i = 0; i < problem.drag.size(); ++i) sum += 0.5 * problem.drag[i] * v[i].squaredNorm();
   return sum + bound_energy<Space::dim>(problem.bound, problem.grid.cell_nodes, v) +
+         bound_energy<Space::dim>(problem.surface, problem.grid.cell_nodes, v) +
          contact_energy<Space::dim>(problem.contact, problem.grid.cell_nodes, v) +
          friction_energy<Space::dim>(problem.friction, v);
 }

@@ -13,6 +13,7 @@
 #include "libmpm/grid/active_grid.hpp"
 #include "libmpm/law/equation_of_state.hpp"
 #include "libmpm/points/points.hpp"
+#include "libmpm/step/fitted_places.hpp"
 
 namespace tremie {
 
@@ -57,13 +58,15 @@ struct Quadrature {
   std::vector<std::array<double, n_places>> tau_y;       ///< yield stress there [Pa]
   std::vector<double> V_cell;                            ///< sum of V [m^3]
   std::vector<double> p;                                 ///< pressure at the start of the step [Pa]
+  std::vector<std::array<Vec<D>, n_places>> place;       ///< local coordinates of the places, in a section
 
   void resize(std::size_t n) {
     B.resize(n), b.resize(n), V.resize(n), tau_y.resize(n), V_cell.resize(n), p.resize(n);
+    if (D < 3) place.resize(n);
   }
 };
 
-/// Local coordinates of Gauss place k; bit d of k set means the upper place in direction d.
+/// Local coordinates of Gauss place k of a full cell; bit d of k set means the upper place in direction d.
 template <int D>
 Vec<D> gauss_place(int k) {
   constexpr double offset = 0.28867513459481288;  // 1 / (2 sqrt 3)
@@ -178,21 +181,27 @@ inline void lay_out_kinds(const ActiveGrid<3>& grid, Quadrature<ThreeD>& quadrat
 }  // namespace detail
 
 /// Lays out the quadrature of a step: places, volumes, yield stresses tau_y = (1 + lambda) tau_0 and
-/// pressures.
+/// pressures. `fit`: the places of partly filled cells are fitted to their points (fitted_places.hpp), in a
+/// section.
 template <class Space>
 void lay_out_quadrature(const ActiveGrid<Space::dim>& grid, const Points<Space::dim>& points, double tau_0,
-                        double K, Quadrature<Space>& quadrature) {
+                        double K, Quadrature<Space>& quadrature, bool fit = false) {
   constexpr int D = Space::dim, n = power(2, D);
   quadrature.resize(grid.cell_index.size());
   if constexpr (D == 3) detail::lay_out_kinds(grid, quadrature);
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < grid.n_cells(); ++c) {
     const Index<D>& cell = grid.cell_index[c];
+    const bool inside = is_inside<D>(grid, cell), fitted = D < 3 && fit && !inside;
+    std::array<Vec<D>, n> place;
+    for (int k = 0; k < n; ++k) place[k] = gauss_place<D>(k);
+    if (fitted) place = fitted_places<Space>(grid, points, c);
+    if (D < 3) quadrature.place[c] = place;
     std::array<Stencil<D>, n> st;
     std::array<Vec<D>, n> x;
     for (int k = 0; k < n; ++k) {
-      x[k] = cell_place<D>(grid.axes, cell, gauss_place<D>(k));
-      st[k] = stencil<D>(grid.axes, cell, gauss_place<D>(k));
+      x[k] = cell_place<D>(grid.axes, cell, place[k]);
+      st[k] = stencil<D>(grid.axes, cell, place[k]);
     }
     std::array<double, n> structure;
     detail::add_up_points<Space>(grid, points, c, x, quadrature.V[c], structure);
@@ -201,9 +210,14 @@ void lay_out_quadrature(const ActiveGrid<Space::dim>& grid, const Points<Space::
     for (int k = 0; k < n; ++k)  // where no point is near, as in the rest of the cell
       quadrature.tau_y[c][k] =
           tau_0 * (quadrature.V[c][k] > 0.0 ? structure[k] / quadrature.V[c][k] : all_structure / all_V);
+    if (fitted) {
+      double section = 0.0;
+      for (int k = 0; k < n; ++k) section += quadrature.V[c][k] / Space::measure(x[k]);
+      for (int k = 0; k < n; ++k) quadrature.V[c][k] = section / n * Space::measure(x[k]);
+    }
     // Inside the body a cell is full: with counted volumes the pressure would push whenever a point crosses
     // into a cell.
-    if (is_inside<D>(grid, cell)) quadrature.V[c] = detail::full_volumes<Space>(grid.axes, x);
+    if (inside) quadrature.V[c] = detail::full_volumes<Space>(grid.axes, x);
     detail::lay_out_rows<Space>(st, x, c, quadrature);
     quadrature.p[c] = detail::mean_pressure(grid, points, K, c);
   }

@@ -9,6 +9,7 @@
 
 #include "libmpm/contact/rigid_wall.hpp"
 #include "libmpm/step/body.hpp"
+#include "libmpm/step/free_surface.hpp"
 #include "libmpm/step/step_size.hpp"
 
 namespace tremie::detail {
@@ -220,7 +221,7 @@ void add_side_walls(double W, YieldProblem<Space>& problem) {
   std::vector<double> V(grid.node_index.size(), 0.0), limit(grid.node_index.size(), 0.0);
   for (int c = 0; c < grid.n_cells(); ++c)
     for (int k = 0; k < power(2, D); ++k) {
-      const Stencil<D> st = stencil<D>(grid.axes, grid.cell_index[c], gauss_place<D>(k));
+      const Stencil<D> st = stencil<D>(grid.axes, grid.cell_index[c], problem.quadrature.place[c][k]);
       for (int i = 0; i < power(3, D); ++i) {
         V[grid.cell_nodes[c][i]] += st.N[i] * problem.quadrature.V[c][k];
         limit[grid.cell_nodes[c][i]] +=
@@ -265,12 +266,14 @@ void pose(Body<Space>& body, const StepSettings& settings, const RigidWall<Space
   body.v = v_old;
   for (std::size_t i = 0; i < v_old.size(); ++i) body.nodes.v[i] = v_old[i] + dt * body.gravity;
   posed.emplace(YieldProblem<Space>{
-      body.grid, body.quadrature, body.nodes, dt, body.mix.mu, body.mix.K, {}, {}, {}, {}, {}});
+      body.grid, body.quadrature, body.nodes, dt, body.mix.mu, body.mix.K, {}, {}, {}, {}, {}, {}});
   posed->zeta = settings.alternating_viscosity * body.mix.mu;
   apply_flat_walls<D>(body.grid, body.walls, posed->fixed, posed->friction, body.v);
   apply_blocks<D>(body.grid, posed->fixed, body.v);
   if (settings.side_wall_distance > 0.0) add_side_walls(settings.side_wall_distance, *posed);
   posed->bound = find_bound_points(body.grid, body.nodes, body.boundary, dt, settings.boundary_stiffness);
+  if constexpr (D == 2)
+    if (settings.moving_surface) posed->surface = surface_of_pool(body, dt);
   carry_friction<Space>(body.friction, old_nodes, body.grid, posed->friction);
   posed->contact = find_contact(body.grid, body.points, wall, body.time + dt, dt, settings.wall_gap,
                                 settings.wall_penalty);

@@ -44,6 +44,7 @@ struct YieldProblem {
   std::vector<ContactPoint<D>> contact;   ///< moving rigid walls
   std::vector<FrictionNode<D>> friction;  ///< Coulomb friction on flat walls, yield drag of side walls
   std::vector<BoundPoint<D>> bound;       ///< walls inside the grid
+  std::vector<BoundPoint<D>> surface;     ///< head of the moving free surface, in a section
   std::vector<double> drag;               ///< viscous drag of side walls, a node each [kg/s]; empty: none
   double zeta = 0.0;                      ///< [Pa s], plane strain alone
 };
@@ -111,6 +112,7 @@ Eigen::VectorXd residual(const YieldProblem<Space>& problem, const std::vector<V
     for (int i = 0; i < n_local; ++i) R.segment<D>(grid.cell_nodes[c][i] * D) += local[c][i];
   add_contact_forces<D>(problem.contact, grid.cell_nodes, v, R);
   add_bound_forces<D>(problem.bound, grid.cell_nodes, v, R);
+  add_bound_forces<D>(problem.surface, grid.cell_nodes, v, R);
   return R;
 }
 
@@ -156,6 +158,7 @@ void assemble(const YieldProblem<Space>& problem, Tangent tangent, BlockSystem<S
                               (problem.drag.empty() ? 0.0 : problem.drag[i]));
   add_contact_stiffness<D>(problem.contact, system);
   add_bound_stiffness<D>(problem.bound, system);
+  add_bound_stiffness<D>(problem.surface, system);
 }
 
 }  // namespace tremie

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 namespace tremie::lbox_reference {
@@ -42,6 +43,31 @@ inline Profile at_the_volume_of(const std::vector<std::array<double, 2>>& measur
     (of_form < sum ? low : high) = profile.h2;
   }
   return {tau_0, width, end, 0.5 * (low + high)};
+}
+
+/// Concrete that falls off the column's walls lands within a depth of the gate and may stand there above the
+/// profile: a heap on a deep bed of yield stress tau_0 is a strip on a cohesive ground, which bears (2 + pi)
+/// tau_0. Depth of such a heap [m].
+inline double heap_that_is_borne(double tau_0) { return (2.0 + std::numbers::pi) * tau_0 / rho_g; }
+
+/// Where the closed form is to hold: from a depth behind the gate on [m].
+inline constexpr double heap_ends = 0.1;
+
+/// The part of a profile from heap_ends on.
+inline std::vector<std::array<double, 2>> beyond_the_heap(const std::vector<std::array<double, 2>>& profile) {
+  std::vector<std::array<double, 2>> part;
+  for (const auto& station : profile)
+    if (station[0] > heap_ends) part.push_back(station);
+  return part;
+}
+
+/// How far the mean depth before heap_ends is above the closed form [m].
+inline double heap(const std::vector<std::array<double, 2>>& profile, const Profile& form) {
+  double sum = 0.0;
+  int n = 0;
+  for (const auto& [x, h] : profile)
+    if (x < heap_ends) sum += h - form.depth(x), ++n;
+  return sum / n;
 }
 
 /// Relative errors of a measured profile: root mean square of its stations, and the worst of their means over

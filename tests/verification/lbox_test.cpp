@@ -22,19 +22,25 @@ l_box::Scene on_coarse_cells(double tau_0, bool side_walls) {
 
 class RestProfile : public testing::TestWithParam<bool> {};
 
-// Within 4 % over any 100 mm, at the volume in the channel; cells of 10 mm have 3 % (slow_test.cpp). What is
-// left are drops (a station of two cells scatters by 2 %) and the normal stress of the plug, 1 %.
+// From 100 mm behind the gate on within 3 % over any 100 mm, at the volume there. What is left are drops (a
+// station of two cells scatters by 2 %) and the normal stress of the plug, 1 %. Nearer to the gate the films
+// fall from the column's walls: no higher than a bed of this yield stress bears, to within a row of points.
 TEST_P(RestProfile, IsTheClosedForms) {
   const bool side_walls = GetParam();
   for (double tau_0 : {15.0, 50.0}) {
     const auto outcome = l_box::run(on_coarse_cells(tau_0, side_walls));
-    const auto& profile = outcome.results.profile;
-    const auto form = lbox_reference::at_the_volume_of(profile, tau_0, side_walls ? 0.2 : 0.0, 0.7);
-    const auto error = lbox_reference::error_of(profile, form);
-    std::printf("%g Pa%s: error %.1f %% rms, worst of 100 mm %.1f %%, ratio %.3f, closed form %.3f\n", tau_0,
-                side_walls ? ", side walls" : "", 100 * error.rms, 100 * error.worst,
-                outcome.results.passing_ratio.value_or(0.0), form.depth(0.69) / form.depth(-0.01));
-    EXPECT_LE(error.worst, 0.04);
+    const auto& profile = outcome.results.profile_by_volume;
+    const auto part = lbox_reference::beyond_the_heap(profile);
+    const auto form = lbox_reference::at_the_volume_of(part, tau_0, side_walls ? 0.2 : 0.0, 0.7);
+    const auto error = lbox_reference::error_of(part, form);
+    const double heap = lbox_reference::heap(profile, form);
+    std::printf(
+        "%g Pa%s: error %.1f %% rms, worst of 100 mm %.1f %%, heap %.1f mm, ratio %.3f, closed form %.3f\n",
+        tau_0, side_walls ? ", side walls" : "", 100 * error.rms, 100 * error.worst, 1e3 * heap,
+        outcome.results.passing_ratio.value_or(0.0), form.depth(0.69) / form.depth(-0.01));
+    EXPECT_LE(error.worst, 0.03);
+    EXPECT_LE(heap, lbox_reference::heap_that_is_borne(tau_0) + 0.005);
+    EXPECT_GE(heap, -0.005);
     EXPECT_LE(std::abs(outcome.checks.volume_change), 0.002);
     EXPECT_EQ(outcome.checks.unconverged_steps, 0);
     EXPECT_EQ(outcome.checks.points_lost, 0);
@@ -43,11 +49,29 @@ TEST_P(RestProfile, IsTheClosedForms) {
 INSTANTIATE_TEST_SUITE_P(Modes, RestProfile, testing::Bool(),
                          [](const auto& which) { return which.param ? "WithSideWalls" : "Plane"; });
 
-// 5000 Pa holds the column: a slump of tau_0 / rho g = 212 mm and more would be needed to leave it.
+// Without yield stress the profile is level: within 1.5 % over any 100 mm (the study has 1 % on 10 mm cells).
+class Level : public testing::TestWithParam<bool> {};
+TEST_P(Level, AFluidEndsLevel) {
+  const auto outcome = l_box::run(on_coarse_cells(0.0, GetParam()));
+  const auto& profile = outcome.results.profile;
+  const auto error =
+      lbox_reference::error_of(profile, lbox_reference::at_the_volume_of(profile, 0.0, 0.0, 0.7));
+  std::printf("level: worst of 100 mm %.2f %%, ratio %.3f\n", 100 * error.worst,
+              outcome.results.passing_ratio.value_or(0.0));
+  EXPECT_LE(error.worst, 0.015);
+  EXPECT_TRUE(outcome.checks.reasons.empty());
+}
+INSTANTIATE_TEST_SUITE_P(Modes, Level, testing::Bool(),
+                         [](const auto& which) { return which.param ? "WithSideWalls" : "Plane"; });
+
+// 5000 Pa holds the column: a slump of tau_0 / rho g = 212 mm and more would be needed to leave it. K is such
+// that its own weight compresses it by less than 0.2 %.
 TEST(LBox, AStiffConcreteReachesNothing) {
   auto scene = on_coarse_cells(5000.0, false);
   scene.duration = 5.0;
-  const auto results = l_box::run(scene).results;
+  const auto outcome = l_box::run(scene);
+  const auto& results = outcome.results;
+  EXPECT_LE(std::abs(outcome.checks.volume_change), 0.002);
   EXPECT_FALSE(results.h2 || results.passing_ratio || results.t200 || results.t400);
   EXPECT_NEAR(results.h1, 0.6, 0.02);
 }
