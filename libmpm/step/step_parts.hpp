@@ -297,7 +297,7 @@ SolveReport solve_step(YieldProblem<Space>& problem, const Law& law, const StepS
 /// Whether the step would carry concrete so many cells or to nowhere: more of it than the share that may be
 /// drops in the air. Nodes with next to no mass do not count: what they do moves no point.
 template <class Space>
-bool runs_away(const Body<Space>& body, double drops, double dt, double cells = 100.0) {
+bool runs_away(const Body<Space>& body, double share, double dt, double cells = 100.0) {
   const double reach = cells * body.grid.cell_size_min();
   double heaviest = 0.0, total = 0.0, gone = 0.0;
   for (double m : body.nodes.mass) heaviest = std::max(heaviest, m), total += m;
@@ -306,7 +306,7 @@ bool runs_away(const Body<Space>& body, double drops, double dt, double cells = 
     const double m = body.nodes.mass[i];
     if (Space::advects && m > 1e-3 * heaviest && body.v[i].norm() * dt > reach) gone += m;
   }
-  return gone > drops * total;
+  return gone > share * total;
 }
 
 /// Whether a long step carries more than some drops beyond a cell, or anything beyond ten: the speeds that it
