@@ -51,7 +51,8 @@ TEST(Slow, TheLBoxRestsOnItsClosedForm) {
     }
 }
 
-// Without yield stress the box fills level in both modes, and stays so: a ratio of 1 within 1 %.
+// Without yield stress the box fills level in both modes, and stays so: a ratio of 1, of readings over 20 mm
+// each that scatter by 1 %.
 TEST(Slow, AFluidLevelsInTheLBox) {
   for (bool side_walls : {false, true}) {
     l_box::Scene scene;
@@ -63,7 +64,7 @@ TEST(Slow, AFluidLevelsInTheLBox) {
     scene.model.points_per_cell = {16, 4};
     const l_box::Outcome outcome = l_box::run(scene);
     EXPECT_EQ(outcome.checks.unconverged_steps, 0);
-    EXPECT_NEAR(outcome.results.passing_ratio.value_or(0.0), 1.0, 0.01);
+    EXPECT_NEAR(outcome.results.passing_ratio.value_or(0.0), 1.0, 0.015);
   }
 }
 
