@@ -62,7 +62,7 @@ double speed_on_a_slope(double degrees) {
   body.grid.axes[2] = {.h = 0.025, .low = FaceKind::friction};
   fill_box(body, Vec<3>(Vec<3>::Zero()), Vec<3>(0.1, 0.1, 0.05), 2,
            [&](const Vec<3>& x) { return 2400.0 * 9.81 * std::cos(theta) * (0.05 - x[2]); });
-  StepSettings settings = by_iteration(1e-3, 0.01);
+  StepSettings settings = by_iteration(1e-5, 0.01);
   settings.friction_coefficient = 0.4;
   int unconverged = 0;
   for (int i = 0; i < 25; ++i) unconverged += !implicit_step(body, ExactBingham{}, settings).converged;
