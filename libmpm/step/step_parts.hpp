@@ -272,7 +272,7 @@ void pose(Body<Space>& body, const StepSettings& settings, const RigidWall<Space
   apply_blocks<D>(body.grid, posed->fixed, body.v);
   if (settings.side_wall_distance > 0.0) add_side_walls(settings.side_wall_distance, *posed);
   posed->bound = find_bound_points(body.grid, body.nodes, body.boundary, dt, settings.boundary_stiffness);
-  if constexpr (D == 2)
+  if constexpr (D == 2 && requires { Space::up; })
     if (settings.moving_surface) posed->surface = surface_of_pool(body, dt);
   carry_friction<Space>(body.friction, old_nodes, body.grid, posed->friction);
   posed->contact = find_contact(body.grid, body.points, wall, body.time + dt, dt, settings.wall_gap,
