@@ -71,8 +71,8 @@ Estimate estimate(const Scene& scene) {
     return e;
   }
   const StepSettings settings = step_settings(scene);
-  // The collapse runs at about sqrt(g H) for 0.4 s at the CFL limit, the rest of the flow at the largest step,
-  // or 2.5 times that on average where the local error lets it grow.
+  // The collapse runs at about sqrt(g H) for 0.4 s at the CFL limit, the rest of the flow at the largest
+  // step, or 2.5 times that on average where the local error lets it grow.
   const double speed = std::sqrt(gravity * scene.cone.height);
   const double collapse = 0.4 * speed / (settings.cfl * std::min(scene.model.cell[0], scene.model.cell[1]));
   const double later = (settings.time_error > 0.0 ? 2.5 : 1.0) * settings.dt_max;
