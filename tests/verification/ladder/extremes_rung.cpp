@@ -37,7 +37,7 @@ std::string in_a_table(std::string text) {
 }  // namespace
 
 Rung extremes_rung(Depth depth) {
-  const double limit = depth == Depth::full ? 20.0 : 2.0;
+  const double limit = depth == Depth::full ? 120.0 : 2.0;
   std::vector<Extreme> cases = extremes();
   if (depth == Depth::quick) {  // every seventh
     std::vector<Extreme> some;

@@ -1,5 +1,5 @@
-// Rung 2: lambda by the per-point update, by forward Euler and by CVODE, against closed forms and CVODE at
-// its finest tolerance.
+// Rung 2: lambda by the per-point update, by forward Euler, CVODE and ARKODE, against closed forms and CVODE
+// at its finest tolerance.
 
 #include <fmt/format.h>
 
@@ -43,7 +43,8 @@ Case history_case(const std::string& name, const std::string& title, const study
            .series = {{"update of the points", {}},
                       {"forward Euler (for comparison)", {}},
                       {"CVODE", {}},
-                      {"update along the history", {}}},
+                      {"update along the history", {}},
+                      {"ARKODE", {}}},
            .bounds = {}};
   const auto reference = flocculation_ode(c.history, c.thixotropy, study::tau_0, c.lambda_0, c.times).lambda;
   for (double dt : {0.2, 0.1, 0.05, 0.02, 0.01, 1e-3, 1e-4}) {
@@ -64,6 +65,8 @@ Case history_case(const std::string& name, const std::string& title, const study
                                   {tolerance, 0.01 * tolerance})
               .lambda;
         }));
+    one.series[4].runs.push_back(measure(fmt::format("tolerance {:g}", tolerance), 0.0, reference, c.lambda_0,
+                                         [&] { return study::by_arkode(c, tolerance, false); }));
   }
   return one;
 }
