@@ -6,8 +6,9 @@ target_compile_options(tremie_flags INTERFACE
   -fno-math-errno
   # Eight doubles are passed between inlined functions alone, never over a binary interface.
   -Wno-psabi
-  # g++ 12 reports these two inside Eigen's and the standard library's inlined code.
-  $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized -Wno-array-bounds>)
+  # g++ 12 reports these inside Eigen's and the standard library's inlined code.
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized -Wno-array-bounds
+                             -Wno-aggressive-loop-optimizations>)
 
 if(TREMIE_NATIVE AND NOT TREMIE_SANITIZE)
   target_compile_options(tremie_flags INTERFACE -march=native)
