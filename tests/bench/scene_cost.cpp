@@ -24,7 +24,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double shorter = 0.25, longer = 0.75;  // of flow [s]
+constexpr double shorter = 0.05, longer = 0.15;  // of flow [s]
 
 std::string output_of(const std::string& command) {
   FILE* pipe = popen(command.c_str(), "r");

@@ -29,19 +29,24 @@ TEST(Slow, MixAComesToRest) {
   EXPECT_NEAR(1e3 * outcome.results.spread / 557.5, 1.0, 0.015);
 }
 
+/// 30 Pa s on cells of 10 mm, after 180 s.
+l_box::Outcome at_rest_in_the_l_box(double tau_0, bool side_walls) {
+  l_box::Scene scene;
+  scene.mix.tau_0 = tau_0;
+  scene.mix.mu = 30.0;
+  scene.duration = 180.0;
+  scene.model.space = side_walls ? SpaceKind::plane_with_side_walls : SpaceKind::plane;
+  scene.model.cell = {0.01, 0.01};
+  scene.model.points_per_cell = {16, 4};
+  return l_box::run(scene);
+}
+
 // The L-box at rest on cells of 10 mm: the closed form within 3 % over any 100 mm, in both modes
 // (lbox_test.cpp says where).
 TEST(Slow, TheLBoxRestsOnItsClosedForm) {
   for (bool side_walls : {false, true})
     for (double tau_0 : {15.0, 50.0}) {
-      l_box::Scene scene;
-      scene.mix.tau_0 = tau_0;
-      scene.mix.mu = 30.0;
-      scene.duration = 180.0;
-      scene.model.space = side_walls ? SpaceKind::plane_with_side_walls : SpaceKind::plane;
-      scene.model.cell = {0.01, 0.01};
-      scene.model.points_per_cell = {16, 4};
-      const l_box::Outcome outcome = l_box::run(scene);
+      const l_box::Outcome outcome = at_rest_in_the_l_box(tau_0, side_walls);
       const auto profile = lbox_reference::beyond_the_heap(outcome.results.profile_by_volume);
       const auto form = lbox_reference::at_the_volume_of(profile, tau_0, side_walls ? 0.2 : 0.0, 0.7);
       const auto error = lbox_reference::error_of(profile, form);
@@ -55,14 +60,7 @@ TEST(Slow, TheLBoxRestsOnItsClosedForm) {
 // each that scatter by 1 %.
 TEST(Slow, AFluidLevelsInTheLBox) {
   for (bool side_walls : {false, true}) {
-    l_box::Scene scene;
-    scene.mix.tau_0 = 0.0;
-    scene.mix.mu = 30.0;
-    scene.duration = 180.0;
-    scene.model.space = side_walls ? SpaceKind::plane_with_side_walls : SpaceKind::plane;
-    scene.model.cell = {0.01, 0.01};
-    scene.model.points_per_cell = {16, 4};
-    const l_box::Outcome outcome = l_box::run(scene);
+    const l_box::Outcome outcome = at_rest_in_the_l_box(0.0, side_walls);
     EXPECT_EQ(outcome.checks.unconverged_steps, 0);
     EXPECT_NEAR(outcome.results.passing_ratio.value_or(0.0), 1.0, 0.015);
   }
