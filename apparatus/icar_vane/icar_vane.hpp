@@ -76,8 +76,9 @@ struct ProfilePoint {
 struct Results {
   double torque_peak = 0.0, torque_end = 0.0, torque_wall_end = 0.0, torque_power_end = 0.0;  ///< [N m]
   std::optional<ReinerRiwlin> reiner_riwlin = {};  ///< from a flow curve, as the instrument would report it
-  std::optional<double> static_yield_stress_apparent = {},
-                        dynamic_yield_stress_apparent = {};  ///< equation (6) [Pa]
+  /// Equation (6) at the peak and at the end of a constant speed [Pa]. A flow curve tells nothing of the
+  /// static one, and its dynamic one is Reiner-Riwlin's.
+  std::optional<double> static_yield_stress_apparent = {}, dynamic_yield_stress_apparent = {};
   std::optional<double> flocculation_apparent_start = {}, alpha_apparent = {};
   double shear_rate_nominal =
       0.0;                    ///< 2 Omega / (1 - R_i^2/R_o^2), which alpha_apparent was divided by [1/s]

@@ -120,12 +120,16 @@ void read_instrument(const Scene& scene, Outcome& outcome) {
   for (const Sample& s : outcome.series)
     if (std::abs(s.torque) > std::abs(r.torque_peak)) r.torque_peak = s.torque;
   average_end(outcome.series, r);
-  r.static_yield_stress_apparent = shear_stress_at(scene.vane.radius, std::abs(r.torque_peak), instrument);
-  r.dynamic_yield_stress_apparent = shear_stress_at(scene.vane.radius, std::abs(r.torque_end), instrument);
   r.shear_rate_nominal = newtonian_shear_rate(angular_speed(std::abs(scene.speed)), instrument);
   r.flow_curve = flow_curve(scene, outcome.series);
   r.reiner_riwlin = reported_bingham(r.flow_curve, instrument);
-  if (!scene.speeds.empty() || scene.speed == 0.0) return;
+  if (!scene.speeds.empty()) {
+    if (r.reiner_riwlin) r.dynamic_yield_stress_apparent = r.reiner_riwlin->yield_stress;
+    return;
+  }
+  r.static_yield_stress_apparent = shear_stress_at(scene.vane.radius, std::abs(r.torque_peak), instrument);
+  r.dynamic_yield_stress_apparent = shear_stress_at(scene.vane.radius, std::abs(r.torque_end), instrument);
+  if (scene.speed == 0.0) return;
   if (scene.with_reference)
     r.torque_couette_reference = std::copysign(couette_reference(scene, instrument), scene.speed);
   read_decay(outcome);

@@ -87,6 +87,8 @@ TEST_F(Apparatus, VaneFlowCurve) {
           "--set test.hold_time='0.3 s' --set test.average_time='0.1 s' --set model.cell='5 mm'")["results"];
   EXPECT_GT(results["reiner_riwlin"]["yield_stress_Pa"], 0.0);
   EXPECT_GT(results["reiner_riwlin"]["plastic_viscosity_Pa_s"], 0.0);
+  EXPECT_EQ(results["dynamic_yield_stress_apparent_Pa"], results["reiner_riwlin"]["yield_stress_Pa"]);
+  EXPECT_TRUE(results["static_yield_stress_apparent_Pa"].is_null());
   const std::string curve = file("flow_curve.csv");
   EXPECT_TRUE(curve.starts_with("speed_rev_per_s,torque_N_m\n0.4,")) << curve;
   EXPECT_NE(curve.find("\n0.1,"), std::string::npos) << curve;
