@@ -7,6 +7,7 @@
 #include "rheometer/reiner_riwlin.hpp"
 #include "rheometer/thixotropic_couette.hpp"
 #include "tests/verification/ladder/ladder.hpp"
+#include "tests/verification/vane_finite_elements.hpp"
 
 namespace tremie::verification {
 namespace {
@@ -107,8 +108,54 @@ Case decay(Depth depth) {
   return one;
 }
 
+/// Steady torque on blades of 3 mm against the finite elements'.
+Run blade_error(icar_vane::Scene scene, double cell_mm, double reference) {
+  const double start = cpu_seconds();
+  scene.model.cell = {1e-3 * cell_mm, 1e-3 * cell_mm};
+  const auto outcome = icar_vane::run(scene);
+  return {fmt::format("{:g} mm", cell_mm), cell_mm, std::abs(outcome.results.torque_end / reference - 1.0),
+          cpu_seconds() - start};
+}
+
+Case blades(Depth depth) {
+  Case one{.name = "blades",
+           .title = "Steady torque on four blades, plane section, 0.25 rev/s",
+           .equation = "div σ = 0 around blades of 3 mm in a container of 143 mm",
+           .reference =
+               "finite elements in polar coordinates, quadratic velocities, the regularisation taken to its "
+               "limit (vane_finite_elements.hpp)",
+           .norm = "relative error of the torque",
+           .series = {},
+           .bounds = {}};
+  struct Fluid {
+    const char* name;
+    double tau_0;
+    YieldKind yield;
+  };
+  for (const Fluid& fluid : {Fluid{"Newtonian", 0.0, YieldKind::exact},
+                             {"Mix A, exact yield by ADMM", 54.0, YieldKind::exact},
+                             {"Mix A, Papanastasiou m = 100 s by Newton", 54.0, YieldKind::papanastasiou}}) {
+    icar_vane::Scene scene = scene_of({fluid.tau_0, 35.8}, 0.25, 10.0);
+    scene.model.space = SpaceKind::plane;
+    scene.model.points_per_cell = {3, 3};
+    scene.model.yield = fluid.yield;
+    scene.model.regularisation = 100.0;
+    scene.duration = 1.0;
+    const double reference = finite_element_torque(blade_flow_of(scene, 16));
+    Series series{fluid.name, {}};
+    for (double cell : {10.0, 5.0, 2.5}) {
+      if (cell == 2.5 && depth == Depth::quick) break;
+      series.runs.push_back(blade_error(scene, cell, reference));
+    }
+    one.bounds.push_back(
+        {.what = series.scheme + ": error at 5 mm", .value = series.runs[1].error, .limit = 0.01});
+    one.series.push_back(std::move(series));
+  }
+  return one;
+}
+
 }  // namespace
 
-Rung couette_rung(Depth depth) { return {5, "Couette flow", {steady(depth), decay(depth)}}; }
+Rung couette_rung(Depth depth) { return {5, "Couette flow", {steady(depth), decay(depth), blades(depth)}}; }
 
 }  // namespace tremie::verification
