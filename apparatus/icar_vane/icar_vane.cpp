@@ -6,10 +6,8 @@
 namespace tremie::icar_vane {
 namespace {
 
-constexpr double start_up = 0.1;     // in which the vane reaches a new speed [s]
 constexpr double largest_dt = 0.02;  // resolves the decay: lambda follows the flow by one step [s]
 constexpr double reach = 1.2;  // of a step, in cells: points move along arcs, without error in a whole turn
-constexpr double first_dt = 1e-3;  // after a change of speed [s]
 
 /// A speed held for a time.
 struct Stage {
@@ -87,8 +85,7 @@ Outcome run_section(const Scene& scene, const Section& section, const Law& law, 
     while (body.time < stage_end * (1.0 - 1e-12) && outcome.status == Status::completed) {
       const double left = stage_end - body.time;
       settings.dt_max = left / std::ceil(left / (scene.model.step_scale * largest_dt) - 1e-9);
-      const double ramp = std::clamp((body.time + first_dt - stage_start) / start_up, 0.0, 1.0);
-      const double speed = last_speed + ramp * (stage.speed - last_speed);
+      const double speed = last_speed + start_up(body.time - stage_start) * (stage.speed - last_speed);
       section.turn(body, angular(speed));
       const StepReport step = implicit_step(body, law, settings);
       turned += angular(speed) * step.dt;

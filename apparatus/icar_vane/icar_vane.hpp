@@ -3,6 +3,7 @@
 // The ICAR vane rheometer: a vane turning in a container of concrete, the torque that it takes, and what the
 // instrument would report from that torque beside what was put in.
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <functional>
@@ -42,6 +43,12 @@ struct Scene {
   int threads = 1;
   bool with_reference = true;  ///< read torque_couette_reference; no scene key, for runs that are coarser
 };
+
+inline constexpr double start_up_time = 0.1;  ///< in which the vane reaches a new speed, evenly [s]
+inline constexpr double first_dt = 1e-3;      ///< the first step after a change of speed [s]
+
+/// Share of a change of speed that the vane has made in the step that begins so long after it [s].
+inline double start_up(double time) { return std::clamp((time + first_dt) / start_up_time, 0.0, 1.0); }
 
 /// One line of timeseries.csv. Torques [N m] about the axis, of the vane's whole height.
 struct Sample {

@@ -68,7 +68,7 @@ double couette_reference(const Scene& scene, const Instrument& instrument) {
     bingham.tau_0 = static_yield_stress(lambda, bingham.tau_0);
     return reiner_riwlin(bingham, omega, instrument).torque;
   }
-  flow.omega = omega;
+  flow.omega_of_time = [omega](double time) { return omega * start_up(time); };
   const double times[] = {0.0, scene.duration};
   return thixotropic_couette(flow, times, instrument).torque.back();
 }
