@@ -29,9 +29,14 @@ Body<Space> filled_cone(const Scene& scene) {
   body.mix = scene.mix;
   body.gravity[up] = -gravity;
   const auto [h, h_up] = scene.model.cell;
-  const bool axis_or_symmetry = D == 2 || is_quarter(scene);
+  // Explicit steps have no mirrored splines: their planes of symmetry are slippery walls.
+  const FaceKind plane =
+      scene.model.scheme == SchemeKind::implicit ? FaceKind::symmetry : FaceKind::free_slip;
   for (int d = 0; d < up; ++d)
-    body.grid.axes[d] = {.h = h, .low = axis_or_symmetry ? FaceKind::free_slip : FaceKind::open};
+    body.grid.axes[d] = {.h = h,
+                         .low = D == 2              ? FaceKind::free_slip
+                                : is_quarter(scene) ? plane
+                                                    : FaceKind::open};
   body.grid.axes[up] = {.h = h_up, .low = engine::face_of(scene.floor.contact)};
   const auto [n, n_up] = scene.model.points_per_cell;
   if constexpr (D == 2)

@@ -54,6 +54,15 @@ struct Block {
   std::function<Vec<D>(const Vec<D>& x)> velocity;  ///< of the block at x [m/s]
 };
 
+/// An active node behind a plane of symmetry: its velocity is that of node `of`, component by component times
+/// `sign`. It is no unknown of its own.
+template <int D>
+struct MirrorNode {
+  int node, of;
+  Vec<D> sign;
+  bool operator==(const MirrorNode&) const = default;
+};
+
 template <int D>
 struct ActiveGrid {
   static constexpr int n_local = power(3, D);  ///< nodes seen by a cell
@@ -67,6 +76,7 @@ struct ActiveGrid {
   std::vector<int> order;            ///< point numbers sorted by cell, ties in point order
   std::vector<Index<D>> node_index;  ///< control index of each active node
   IndexMap<D> cell_map, node_map;    ///< index -> active number
+  std::vector<MirrorNode<D>> mirrors;
 
   int n_cells() const { return static_cast<int>(cell_index.size()); }
   int n_nodes() const { return static_cast<int>(node_index.size()); }
@@ -208,6 +218,23 @@ void number_nodes(ActiveGrid<D>& grid) {
       grid.cell_nodes[c][k] = grid.node_map.value[grid.node_map.offset(control(grid.cell_index[c], k))];
 }
 
+template <int D>
+void find_mirrors(ActiveGrid<D>& grid) {
+  grid.mirrors.clear();
+  for (int i = 0; i < grid.n_nodes(); ++i) {
+    MirrorNode<D> m{i, i, Vec<D>::Ones()};
+    Index<D> j = grid.node_index[i];
+    for (int d = 0; d < D; ++d) {
+      const int of = grid.axes[d].mirrored(j[d]);
+      if (of == j[d]) continue;
+      j[d] = of;
+      m.sign[d] = -1.0;
+    }
+    m.of = grid.node_map.at(j);  // active too: every cell that sees the one sees the other
+    if (m.of != i) grid.mirrors.push_back(m);
+  }
+}
+
 }  // namespace detail
 
 /// Finds the active cells and nodes and sorts the points by cell. Points must be finite.
@@ -226,6 +253,37 @@ void activate(ActiveGrid<D>& grid, const Points<D>& points) {
   grid.cell_map.reset(low, high);
   detail::sort_points_by_cell<D>(grid, cell);
   detail::number_nodes(grid);
+  detail::find_mirrors(grid);
+}
+
+/// Nodes behind planes of symmetry take the mirrored values of those before them.
+template <int D>
+void fill_mirrors(const ActiveGrid<D>& grid, std::vector<Vec<D>>& v) {
+  for (const MirrorNode<D>& m : grid.mirrors) v[m.node] = m.sign.cwiseProduct(v[m.of]);
+}
+
+/// The adjoint: what they were given is added, mirrored, to those before them. `stride` numbers a node.
+template <int D, int stride = D, class Vector>
+void fold_mirrors(const ActiveGrid<D>& grid, Vector& R) {
+  using Scalar = typename Vector::Scalar;
+  for (const MirrorNode<D>& m : grid.mirrors) {
+    R.template segment<D>(stride * m.of) +=
+        m.sign.template cast<Scalar>().cwiseProduct(R.template segment<D>(stride * m.node));
+    R.template segment<D>(stride * m.node).setZero();
+  }
+}
+
+/// The same for matrices that couple a node with itself.
+template <int D>
+void fold_mirrors(const ActiveGrid<D>& grid, std::vector<Mat<D, D>>& block) {
+  for (const MirrorNode<D>& m : grid.mirrors)
+    block[m.of] += m.sign.asDiagonal() * block[m.node] * m.sign.asDiagonal();
+}
+
+/// The same for one number a node.
+template <int D>
+void fold_mirrors(const ActiveGrid<D>& grid, std::vector<double>& share) {
+  for (const MirrorNode<D>& m : grid.mirrors) share[m.of] += share[m.node], share[m.node] = 0.0;
 }
 
 /// The block that fills a cell, if any.

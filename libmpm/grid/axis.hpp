@@ -6,7 +6,8 @@
 // (j - 1/2) h from the origin (its Greville abscissa), except at a wall, where the knot vector is open: there
 // the end spline is interpolatory, its control sits on the wall and fixing it fixes the velocity on the whole
 // wall. A crease is a face inside the grid with the same property: the velocity may bend there, and one
-// control sits on it, one more than without.
+// control sits on it, one more than without. At a plane of symmetry the splines are those inside: the control
+// behind the plane is the mirror image of the one before it.
 
 #include <array>
 #include <cmath>
@@ -17,7 +18,8 @@ namespace tremie {
 /// What a flat wall at the end of an axis does to the concrete.
 enum class FaceKind {
   open,       ///< no wall: the grid goes on as far as there is concrete
-  free_slip,  ///< normal velocity zero; also an axis or a plane of symmetry
+  free_slip,  ///< normal velocity zero; also an axis
+  symmetry,   ///< the other half of the body is behind it, mirrored; implicit steps alone
   friction,   ///< normal velocity zero, Coulomb friction along it
   no_slip     ///< velocity zero
 };
@@ -33,6 +35,9 @@ struct Axis {
 
   bool wall_low() const { return low != FaceKind::open; }
   bool wall_high() const { return high != FaceKind::open; }
+  /// Whether the velocity is a wall's there: the end spline is interpolatory.
+  bool clamped_low() const { return wall_low() && low != FaceKind::symmetry; }
+  bool clamped_high() const { return wall_high() && high != FaceKind::symmetry; }
   double length() const { return h * n_cells; }
 
   int cell_of(double x) const {
@@ -60,8 +65,14 @@ struct Axis {
     const int n = n_cells + n_creases();
     return periodic ? ((j % n) + n) % n : j;
   }
-  bool on_low_wall(int j) const { return wall_low() && j == 0; }
-  bool on_high_wall(int j) const { return wall_high() && j == n_cells + 1 + n_creases(); }
+  bool on_low_wall(int j) const { return clamped_low() && j == 0; }
+  bool on_high_wall(int j) const { return clamped_high() && j == n_cells + 1 + n_creases(); }
+  /// The control that j, behind a plane of symmetry, is the mirror image of; j itself elsewhere.
+  int mirrored(int j) const {
+    if (low == FaceKind::symmetry && j == 0) return 1;
+    if (high == FaceKind::symmetry && j == n_cells + 1 + n_creases()) return j - 1;
+    return j;
+  }
   double control_position(int j) const {
     if (on_low_wall(j)) return origin;
     if (on_high_wall(j)) return origin + length();
@@ -81,8 +92,8 @@ struct SplineValues {
 
 /// Splines of cell c at the local coordinate s in [0, 1].
 inline SplineValues splines(const Axis& axis, int c, double s) {
-  const bool low = (axis.wall_low() && c == 0) || axis.creased(c);
-  const bool high = (axis.wall_high() && c == axis.n_cells - 1) || axis.creased(c + 1);
+  const bool low = (axis.clamped_low() && c == 0) || axis.creased(c);
+  const bool high = (axis.clamped_high() && c == axis.n_cells - 1) || axis.creased(c + 1);
   const double t = 1.0 - s, ih = 1.0 / axis.h;
   SplineValues v;
   v.N[0] = low ? t * t : 0.5 * t * t;

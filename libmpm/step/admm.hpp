@@ -97,6 +97,7 @@ std::vector<double> volumes_around_nodes(const YieldProblem<Space>& problem) {
   std::vector<double> V(problem.grid.node_index.size(), 0.0);
   for (int c = 0; c < problem.grid.n_cells(); ++c)
     for (int i : problem.grid.cell_nodes[c]) V[i] += problem.quadrature.V_cell[c] / power(3, Space::dim);
+  fold_mirrors<Space::dim>(problem.grid, V);
   return V;
 }
 
@@ -154,6 +155,7 @@ SolveReport solve_admm(YieldProblem<Space>& problem, const Law& law, const AdmmS
     mask(problem.fixed, R);
     const Eigen::VectorXd dv = system.solve(R);
     for (int i = 0; i < problem.grid.n_nodes(); ++i) v[i] += dv.segment<D>(i * D);
+    fill_mirrors<D>(problem.grid, v);
     const bool contact_changed = update_active<D>(problem.contact, problem.grid.cell_nodes, v);
     const bool friction_settled =
         update_friction_admm<D>(problem.friction, v, settings.over_relaxation, settings.tolerance);

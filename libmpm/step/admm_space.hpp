@@ -110,6 +110,7 @@ inline void residual_in_space(const YieldProblem<ThreeD>& problem, const SpaceSy
   add_contact_forces<3>(problem.contact, problem.grid.cell_nodes, v, R);
   add_bound_forces<3>(problem.bound, problem.grid.cell_nodes, v, R);
   add_friction_forces_admm<3>(problem.friction, v, R);
+  fold_mirrors<3>(problem.grid, R);
   mask(problem.fixed, R);
 }
 

@@ -22,10 +22,14 @@ class BlockSystem {
 
   /// Lays out the matrix for this grid; cheap when the grid is the one of the last call.
   void set_pattern(const ActiveGrid<D>& grid) {
-    if (grid.cell_nodes == cell_nodes_ && grid.n_nodes() == n_nodes_) return;
+    if (grid.cell_nodes == cell_nodes_ && grid.n_nodes() == n_nodes_ && grid.mirrors == mirrors_) return;
     cell_nodes_ = grid.cell_nodes;
+    mirrors_ = grid.mirrors;
     n_nodes_ = grid.n_nodes();
-    find_neighbours(grid);
+    unknown_.resize(n_nodes_);
+    for (int i = 0; i < n_nodes_; ++i) unknown_[i] = i;
+    for (const MirrorNode<D>& m : mirrors_) unknown_[m.node] = m.of;
+    find_neighbours();
     lay_out();
     number_across_the_thin_way(grid);
     analysed_ = false;
@@ -35,6 +39,7 @@ class BlockSystem {
   /// Adds a cell's matrix; rows and columns ordered local node by local node. Only its lower half is read.
   void add_cell(int cell, const CellMatrix& K) {
     const auto& nodes = cell_nodes_[cell];
+    if (!mirrors_.empty()) return add_mirrored_cell(cell, K);
     for (int a = 0; a < n_local; ++a)
       for (int b = 0; b <= a; ++b)
         add_block(nodes[a], nodes[b], K.template block<D, D>(a * D, b * D), a == b);
@@ -73,12 +78,13 @@ class BlockSystem {
 
  private:
   /// Sorted numbers of the nodes that share a cell with each node and are not before it.
-  void find_neighbours(const ActiveGrid<D>& grid) {
-    neighbours_.assign(grid.n_nodes(), {});
-    for (const auto& nodes : grid.cell_nodes)
+  void find_neighbours() {
+    neighbours_.assign(n_nodes_, {});
+    for (int i = 0; i < n_nodes_; ++i) neighbours_[i].push_back(i);
+    for (const auto& nodes : cell_nodes_)
       for (int a : nodes)
         for (int b : nodes)
-          if (b >= a) neighbours_[a].push_back(b);
+          if (unknown_[b] >= unknown_[a]) neighbours_[unknown_[a]].push_back(unknown_[b]);
     for (auto& list : neighbours_) {
       std::sort(list.begin(), list.end());
       list.erase(std::unique(list.begin(), list.end()), list.end());
@@ -142,6 +148,22 @@ class BlockSystem {
       }
     return band_.factorise();
   }
+  /// What acts on a node behind a plane of symmetry acts, mirrored, on the one before it.
+  void add_mirrored_cell(int cell, const CellMatrix& K) {
+    const auto& nodes = cell_nodes_[cell];
+    Vec<n_dof> sign = Vec<n_dof>::Ones();
+    for (int a = 0; a < n_local; ++a) {
+      if (unknown_[nodes[a]] == nodes[a]) continue;
+      const auto m = std::lower_bound(mirrors_.begin(), mirrors_.end(), nodes[a],
+                                      [](const MirrorNode<D>& one, int node) { return one.node < node; });
+      sign.template segment<D>(a * D) = m->sign;
+    }
+    const CellMatrix mirrored = sign.asDiagonal() * K * sign.asDiagonal();
+    for (int a = 0; a < n_local; ++a)
+      for (int b = 0; b <= a; ++b)
+        add_block(unknown_[nodes[a]], unknown_[nodes[b]], mirrored.template block<D, D>(a * D, b * D),
+                  a == b);
+  }
   void add_block(int row, int column, const Mat<D, D>& block, bool same_local_node) {
     // On a periodic axis of one or two cells several local nodes are one active node: both halves of the cell
     // matrix then fall on one block and both count.
@@ -163,6 +185,8 @@ class BlockSystem {
   }
 
   std::vector<std::array<int, n_local>> cell_nodes_;
+  std::vector<MirrorNode<D>> mirrors_;
+  std::vector<int> unknown_;  ///< of each node: itself, or the one that it mirrors
   std::vector<std::vector<int>> neighbours_;
   std::vector<int> diagonal_;
   int n_nodes_ = -1;

@@ -109,8 +109,8 @@ inline void CellBatches::lay_out(const ActiveGrid<3>& grid) {
       for (int d = 0; d < 3; ++d) {
         const Axis& a = grid.axes[d];
         const int i = grid.cell_index[c][d];
-        ends_[b].low[d][l] = a.wall_low() && i == 0 ? 2.0f : 1.0f;
-        ends_[b].high[d][l] = a.wall_high() && i == a.n_cells - 1 ? 2.0f : 1.0f;
+        ends_[b].low[d][l] = a.clamped_low() && i == 0 ? 2.0f : 1.0f;
+        ends_[b].high[d][l] = a.clamped_high() && i == a.n_cells - 1 ? 2.0f : 1.0f;
       }
     }
   node_begin_.assign(n_nodes_ + 1, 0);

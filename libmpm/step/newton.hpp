@@ -122,6 +122,7 @@ SolveReport solve_newton(YieldProblem<Space>& problem, const Law& law, const New
     if (!system.factorise()) return report;
     const Eigen::VectorXd dv = system.solve(R);
     for (std::size_t i = 0; i < v.size(); ++i) step[i] = dv.segment<D>(static_cast<Eigen::Index>(i) * D);
+    fill_mirrors<D>(problem.grid, step);
     detail::step_duals(problem, law, v, step, duals);
     update_friction_newton<D>(problem.friction, v, dv);
 

@@ -38,6 +38,7 @@ class PressurePreconditioner {
              Eigen::VectorXf& z);
 
  private:
+  void mirror_rows(const ActiveGrid<3>& grid);
   void number_across_the_thin_way(const ActiveGrid<3>& grid);
   template <class Use>
   void for_each_neighbour(const ActiveGrid<3>& grid, int cell, Use use) const;
@@ -179,6 +180,7 @@ inline bool PressurePreconditioner::build(const ActiveGrid<3>& grid, const CellB
   for (int c = 0; c < grid.n_cells(); ++c)
     for (int k = 0; k < 27; ++k)
       rows_[27 * c + k] << (stiffness[c] > 0.0 ? b[c][k] : Vec<3>(Vec<3>::Zero())).cast<float>(), 0.0f;
+  mirror_rows(grid);
   number_across_the_thin_way(grid);
   // Rows know their neighbours by place, which a periodic axis repeats.
   bool periodic = false, creased = false;
@@ -193,6 +195,25 @@ inline bool PressurePreconditioner::build(const ActiveGrid<3>& grid, const CellB
   by_band_ && !periodic && !creased ? fill_band_by_boxes(grid, stiffness)
                                     : fill_rows(grid, batches, stiffness);
   return !by_band_ || band_.factorise();
+}
+
+/// A cell's rows at nodes behind a plane of symmetry join those of the nodes before it, which it sees too.
+inline void PressurePreconditioner::mirror_rows(const ActiveGrid<3>& grid) {
+  if (grid.mirrors.empty()) return;
+  for (int c = 0; c < grid.n_cells(); ++c)
+    for (int k = 0; k < 27; ++k) {
+      int of = 0;
+      Eigen::Vector4f sign = Eigen::Vector4f::Ones();
+      for (int d = 0; d < 3; ++d) {
+        const int first = grid.axes[d].first_control(grid.cell_index[c][d]);
+        const int j = first + local_offset<3>(k)[d], image = grid.axes[d].mirrored(j);
+        of = 3 * of + image - first;
+        if (image != j) sign[d] = -1.0f;
+      }
+      if (of == k) continue;
+      rows_[27 * c + of] += sign.cwiseProduct(rows_[27 * c + k]);
+      rows_[27 * c + k].setZero();
+    }
 }
 
 /// p <- S^-1 p to a hundredth, by conjugate gradients on the diagonally scaled S.
@@ -261,6 +282,8 @@ inline void PressurePreconditioner::apply(const CellBatches& batches, const Acti
       z.segment<4>(4 * i) = y_.segment<4>(4 * i) - times(G_inverse_[i], push + other);
     }
   }
+  for (const MirrorNode<3>& m : grid.mirrors)
+    z.segment<3>(4 * m.node) = m.sign.cast<float>().cwiseProduct(z.segment<3>(4 * m.of));
 }
 
 }  // namespace tremie

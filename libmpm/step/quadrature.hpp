@@ -40,8 +40,8 @@ template <int D>
 unsigned char cell_kind(const std::array<Axis, D>& axes, const Index<D>& cell) {
   unsigned kind = 0;
   for (int d = 0; d < D; ++d) {
-    if (axes[d].wall_low() && cell[d] == 0) kind |= 1u << (2 * d);
-    if (axes[d].wall_high() && cell[d] == axes[d].n_cells - 1) kind |= 2u << (2 * d);
+    if (axes[d].clamped_low() && cell[d] == 0) kind |= 1u << (2 * d);
+    if (axes[d].clamped_high() && cell[d] == axes[d].n_cells - 1) kind |= 2u << (2 * d);
   }
   return static_cast<unsigned char>(kind);
 }

@@ -158,6 +158,7 @@ inline bool SpaceSystem::prepare(YieldProblem<ThreeD>& problem, double eta) {
     std::vector<double> V(n, 0.0);
     for (int c = 0; c < problem.grid.n_cells(); ++c)
       for (int i : problem.grid.cell_nodes[c]) V[i] += problem.quadrature.V_cell[c] / 27;
+    fold_mirrors<3>(problem.grid, V);
     Diagonal diagonal{diagonal_};
     add_friction_stiffness_admm<3>(problem.grid, V, eta, problem.friction, diagonal);
   }
@@ -168,6 +169,9 @@ inline bool SpaceSystem::prepare(YieldProblem<ThreeD>& problem, double eta) {
   for (int i = 0; i < n; ++i)
     free_diagonal_.segment<3>(4 * i) =
         free_.segment<3>(4 * i).cwiseProduct(diagonal_.segment<3>(3 * i).cast<float>());
+  // What a product gives a node behind a plane of symmetry is kept until it is mirrored.
+  for (const MirrorNode<3>& m : problem.grid.mirrors)
+    free_.segment<4>(4 * m.node) = free_.segment<4>(4 * m.of);
   std::vector<double> stiffness(problem.grid.n_cells());
   for (int c = 0; c < problem.grid.n_cells(); ++c)
     stiffness[c] = problem.quadrature.V_cell[c] * problem.K * problem.dt;
@@ -204,6 +208,7 @@ inline std::vector<Mat<3, 3>> SpaceSystem::node_blocks(const YieldProblem<ThreeD
     for (int k = 0; k < 27 && c.active; ++k)
       G[grid.cell_nodes[c.cell][k]] += c.stiffness * c.N[k] * c.N[k] * c.normal * c.normal.transpose();
   add_bound_blocks(problem.bound, grid.cell_nodes, G);
+  fold_mirrors(grid, G);
   invert_blocks(problem.fixed, G);
   return G;
 }
@@ -238,7 +243,7 @@ inline void SpaceSystem::multiply(const YieldProblem<ThreeD>& problem, const Eig
       out.segment<4>(4 * i) = free_diagonal_.segment<4>(4 * i).cwiseProduct(x.segment<4>(4 * i)) +
                               free_.segment<4>(4 * i).cwiseProduct(batches.gathered(i, pushes_));
   }
-  if (problem.contact.empty() && problem.bound.empty()) return;
+  if (problem.contact.empty() && problem.bound.empty()) return fold_mirrors<3, 4>(problem.grid, out);
   const auto& cell_nodes = problem.grid.cell_nodes;
   for (const ContactPoint<3>& c : problem.contact) {
     if (!c.active) continue;
@@ -250,6 +255,7 @@ inline void SpaceSystem::multiply(const YieldProblem<ThreeD>& problem, const Eig
   }
   add_bound_products(problem.bound, cell_nodes, x, out);
   out = out.cwiseProduct(free_);
+  fold_mirrors<3, 4>(problem.grid, out);
 }
 
 inline double SpaceSystem::solve(const YieldProblem<ThreeD>& problem, const Eigen::VectorXd& R,
@@ -264,6 +270,7 @@ inline double SpaceSystem::solve(const YieldProblem<ThreeD>& problem, const Eige
                           },
                           goal, r, x);
   for (int i = 0; i < n; ++i) v[i] += x.segment<3>(4 * i).cast<double>();
+  fill_mirrors<3>(problem.grid, v);
   return left;
 }
 

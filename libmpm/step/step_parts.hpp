@@ -41,12 +41,15 @@ void carry_duals(const IndexMap<Space::dim>& old_map, const ActiveGrid<Space::di
   duals = std::move(now);
 }
 
-/// Walls at the ends of the axes: which components they prescribe, and where friction acts.
+/// Walls at the ends of the axes: which components they prescribe, and where friction acts. Nodes behind a
+/// plane of symmetry are no unknowns.
 template <int D>
 void apply_flat_walls(const ActiveGrid<D>& grid, const WallVelocities<D>& walls, std::vector<char>& fixed,
                       std::vector<FrictionNode<D>>& friction, std::vector<Vec<D>>& v) {
   fixed.assign(grid.node_index.size() * D, 0);
-  for (int i = 0; i < grid.n_nodes(); ++i)
+  for (const MirrorNode<D>& m : grid.mirrors) std::fill_n(&fixed[m.node * D], D, 1);
+  for (int i = 0; i < grid.n_nodes(); ++i) {
+    if (fixed[i * D]) continue;
     for (int a = 0; a < D; ++a) {
       const Axis& axis = grid.axes[a];
       const int j = grid.node_index[i][a];
@@ -66,6 +69,7 @@ void apply_flat_walls(const ActiveGrid<D>& grid, const WallVelocities<D>& walls,
         friction.push_back(node);
       }
     }
+  }
 }
 
 /// Blocks prescribe the velocities of their nodes.
@@ -228,6 +232,8 @@ void add_side_walls(double W, YieldProblem<Space>& problem) {
             st.N[i] * problem.quadrature.V[c][k] * problem.quadrature.tau_y[c][k] * 2.0 / W;
       }
     }
+  fold_mirrors<D>(grid, V);
+  fold_mirrors<D>(grid, limit);
   problem.drag.resize(V.size());
   for (std::size_t i = 0; i < V.size(); ++i) {
     problem.drag[i] = 12.0 * problem.mu / (W * W) * V[i];
@@ -270,6 +276,7 @@ void pose(Body<Space>& body, const StepSettings& settings, const RigidWall<Space
   posed->zeta = settings.alternating_viscosity * body.mix.mu;
   apply_flat_walls<D>(body.grid, body.walls, posed->fixed, posed->friction, body.v);
   apply_blocks<D>(body.grid, posed->fixed, body.v);
+  fill_mirrors<D>(body.grid, body.v);
   if (settings.side_wall_distance > 0.0) add_side_walls(settings.side_wall_distance, *posed);
   posed->bound = find_bound_points(body.grid, body.nodes, body.boundary, dt, settings.boundary_stiffness);
   if constexpr (D == 2 && requires { Space::up; })

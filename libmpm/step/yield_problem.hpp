@@ -113,6 +113,7 @@ Eigen::VectorXd residual(const YieldProblem<Space>& problem, const std::vector<V
   add_contact_forces<D>(problem.contact, grid.cell_nodes, v, R);
   add_bound_forces<D>(problem.bound, grid.cell_nodes, v, R);
   add_bound_forces<D>(problem.surface, grid.cell_nodes, v, R);
+  fold_mirrors<D>(grid, R);
   return R;
 }
 

@@ -126,8 +126,11 @@ void gather_to_nodes(const ActiveGrid<D>& grid, const std::vector<std::array<Vec
       nodes.v[i] += local[c][k].template head<D>();
       nodes.mass[i] += local[c][k][D];
     }
+  for (const MirrorNode<D>& m : grid.mirrors) nodes.v[m.of] += m.sign.cwiseProduct(nodes.v[m.node]);
+  fold_mirrors<D>(grid, nodes.mass);
   for (int i = 0; i < grid.n_nodes(); ++i)
     if (nodes.mass[i] > 0.0) nodes.v[i] /= nodes.mass[i];
+  fill_mirrors<D>(grid, nodes.v);
 }
 
 namespace detail {

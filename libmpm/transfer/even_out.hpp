@@ -65,12 +65,14 @@ Eigen::VectorXd fill_forces(const YieldProblem<Space>& problem, const CellFill& 
     for (int i = 0; i < power(3, D); ++i)
       R.segment<D>(grid.cell_nodes[c][i] * D) +=
           cells.stiffness[c] * cells.misfill[c] * problem.quadrature.b[c][i];
+  fold_mirrors<D>(grid, R);
   fixed.assign(R.size(), 0);
   for (int i = 0; i < grid.n_nodes(); ++i)
     for (int d = 0; d < D; ++d)
       fixed[i * D + d] = grid.axes[d].on_low_wall(grid.node_index[i][d]) ||
                          grid.axes[d].on_high_wall(grid.node_index[i][d]) ||
                          block_of_node<D>(grid, grid.node_index[i]);
+  for (const MirrorNode<D>& m : grid.mirrors) std::fill_n(&fixed[m.node * D], D, 1);
   mask(fixed, R);
   return R;
 }
@@ -102,6 +104,7 @@ std::vector<Vec<Space::dim>> even_out(const YieldProblem<Space>& problem, const 
   if (!system.factorise()) return u;
   const Eigen::VectorXd solution = system.solve(R);
   for (int i = 0; i < grid.n_nodes(); ++i) u[i] = solution.segment<D>(i * D);
+  fill_mirrors<D>(grid, u);
   return u;
 }
 

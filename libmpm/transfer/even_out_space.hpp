@@ -39,9 +39,11 @@ inline std::vector<Vec<3>> even_out_in_space(const YieldProblem<ThreeD>& problem
       out.segment<3>(3 * i) = sum;
     }
     add_bound_products(bound, grid.cell_nodes, x, out);
+    fold_mirrors<3>(grid, out);
     mask(fixed, out);
   };
   add_bound_blocks(bound, grid.cell_nodes, G);
+  fold_mirrors(grid, G);
   invert_blocks(fixed, G);
   PressurePreconditioner& preconditioner = system.preconditioner;  // its room: the step's solve is done
   if (!preconditioner.build(grid, system.batches, b, G, cells.stiffness)) return u;
