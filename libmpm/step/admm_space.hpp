@@ -122,7 +122,7 @@ SolveReport solve_admm_in_space(YieldProblem<ThreeD>& problem, const Law& law, c
                                 SpaceSystem& system, std::vector<Vec<3>>& v, Duals<ThreeD>& duals) {
   const double r = detail::penalty(problem, settings.penalty_by_iteration), eta = problem.mu + r;
   SolveReport report;
-  system.set_up(problem);
+  system.set_up(problem, settings.most_band_operations);
   if (!system.prepare(problem, eta)) return report;
   std::vector<detail::BatchDuals> batch = detail::to_batches(problem, duals, system.batches.n_batches());
   auto mismatch = detail::pass_over_cells(problem, law, settings, r, v.data()->data(), false, system, batch);

@@ -89,9 +89,10 @@ struct BatchVolumes {
 
 class SpaceSystem {
  public:
-  /// Lays out the cells; `eta` is the viscosity of the system's deviatoric part [Pa s].
-  void set_up(YieldProblem<ThreeD>& problem);
-  /// Everything that does not change within a step, and the preconditioner. False where it is not definite.
+  /// Lays out the cells.
+  void set_up(YieldProblem<ThreeD>& problem, double most_band_operations);
+  /// Everything that does not change within a step, and the preconditioner; `eta` is the viscosity of the
+  /// system's deviatoric part [Pa s]. False where it is not definite.
   bool prepare(YieldProblem<ThreeD>& problem, double eta);
 
   /// A x in single precision, four numbers a node. Prescribed components of x are zero, and those of the
@@ -125,9 +126,10 @@ class SpaceSystem {
   CellForces<float> pushes_;
 };
 
-inline void SpaceSystem::set_up(YieldProblem<ThreeD>& problem) {
+inline void SpaceSystem::set_up(YieldProblem<ThreeD>& problem, double most_band_operations) {
   const auto& quad = problem.quadrature;
   batches.lay_out(problem.grid);
+  preconditioner.lay_out(problem.grid, most_band_operations);
   volumes.resize(batches.n_batches());
   weights_.resize(batches.n_batches());
   batches.make_room(forces);
@@ -175,7 +177,8 @@ inline bool SpaceSystem::prepare(YieldProblem<ThreeD>& problem, double eta) {
   std::vector<double> stiffness(problem.grid.n_cells());
   for (int c = 0; c < problem.grid.n_cells(); ++c)
     stiffness[c] = problem.quadrature.V_cell[c] * problem.K * problem.dt;
-  return preconditioner.build(problem.grid, batches, problem.quadrature.b, node_blocks(problem), stiffness);
+  return preconditioner.build(problem.grid, batches, problem.quadrature.b, node_blocks(problem), stiffness,
+                              problem.K * problem.dt / eta);
 }
 
 /// Inverse blocks of D at the nodes. A node's own viscous block is V eta (|g|^2 I + g g'/3) with its gradient

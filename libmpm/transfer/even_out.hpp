@@ -22,6 +22,9 @@ struct EvenOut {
   double rate = 1.0;  ///< share of a cell's misfill that is mended per unit of shear
 };
 
+/// kappa, in density times area of a cell.
+inline constexpr double fill_stiffness = 100.0;
+
 /// What the minimum has of each cell: kappa V_c (0: the cell is left alone) and e_c.
 struct CellFill {
   std::vector<double> stiffness, misfill;
@@ -33,7 +36,6 @@ CellFill cell_fill(const YieldProblem<Space>& problem, const Points<Space::dim>&
                    const std::vector<double>& gamma_dot, const EvenOut& settings) {
   constexpr int D = Space::dim;
   const auto& grid = problem.grid;
-  constexpr double stiffness = 100.0;
   double part = 1.0, reach2 = 0.0;
   for (const Axis& a : grid.axes) part *= 0.5 * a.h, reach2 = std::max(reach2, a.h * a.h);
   CellFill cells{std::vector<double>(gamma_dot.size(), 0.0), std::vector<double>(gamma_dot.size(), 0.0)};
@@ -49,7 +51,7 @@ CellFill cell_fill(const YieldProblem<Space>& problem, const Points<Space::dim>&
     const double misfill = volume / full - 1.0;
     if (misfill <= 0.0 && !is_inside<D>(grid, grid.cell_index[c])) continue;
     cells.misfill[c] = misfill * -std::expm1(-settings.rate * gamma_dot[c] * problem.dt);
-    cells.stiffness[c] = stiffness * reach2 * mass / volume * full;  // kappa: density times area
+    cells.stiffness[c] = fill_stiffness * reach2 * mass / volume * full;
   }
   return cells;
 }

@@ -46,7 +46,7 @@ inline std::vector<Vec<3>> even_out_in_space(const YieldProblem<ThreeD>& problem
   fold_mirrors(grid, G);
   invert_blocks(fixed, G);
   PressurePreconditioner& preconditioner = system.preconditioner;  // its room: the step's solve is done
-  if (!preconditioner.build(grid, system.batches, b, G, cells.stiffness)) return u;
+  if (!preconditioner.build(grid, system.batches, b, G, cells.stiffness, fill_stiffness)) return u;
   Eigen::VectorXf r4 = Eigen::VectorXf::Zero(4 * grid.n_nodes()), z4;
   const auto precondition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
     for (int i = 0; i < grid.n_nodes(); ++i) r4.segment<3>(4 * i) = r.segment<3>(3 * i).cast<float>();
