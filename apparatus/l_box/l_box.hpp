@@ -1,7 +1,8 @@
 #pragma once
 
-// The L-box test of EN 12350-10 in the plane along its channel: a column of concrete behind a gate, and how
-// high it stands at the end of the channel when the gate is lifted.
+// The L-box test of EN 12350-10, in the plane along its channel or in space: a column of concrete behind a
+// gate, and how high it stands at the end of the channel when the gate is lifted. Without bars or, in space,
+// with two or three in front of the gate.
 
 #include <atomic>
 #include <functional>
@@ -21,6 +22,8 @@ struct Box {
   double width = 0.20;
 };
 
+inline constexpr double bar_diameter = 0.012;  ///< [m]
+
 /// So stiff that a column of 0.6 m compresses by less than 0.2 % under its own weight [Pa]: rho g H / 2 K.
 inline constexpr double default_bulk_modulus = 5e6;
 
@@ -29,24 +32,24 @@ struct Scene {
   Mix mix = {.K = default_bulk_modulus, .thixotropy = {}};
   Box box;
   double rest = 60.0;                       ///< in the column, before the gate is lifted [s]
-  double duration = 60.0;                   ///< of the flow, at most [s]
+  double duration = 180.0;                  ///< of the flow, at most [s]
   std::optional<double> gate_speed = 0.30;  ///< [m/s]; empty: the gate is gone at once
-  int bars = 0;                             ///< 0 here; 2 or 3 need three dimensions
+  int bars = 0;                             ///< 0; 2 or 3 in space alone
   Model model;
   double frame_interval = 0.5;  ///< simulated time between frames [s]
   int threads = 1;
   /// Against velocities that alternate from node to node (libmpm/step/yield_problem.hpp), in plastic
   /// viscosities; no scene key, for studies.
   double alternating_viscosity = 100.0;
+  bool side_walls_slip = false;  ///< in space; no scene key, for studies
 };
 
 /// One line of timeseries.csv.
 struct Sample {
-  double time = 0.0;   ///< since the start of the lift [s]
-  double front = 0.0;  ///< distance of the front from the gate [m], 0 behind it
-  double h1 = 0.0;     ///< depth behind the gate, mean over 20 mm [m]
-  std::optional<double>
-      h2;  ///< depth at the channel's end, mean over 20 mm [m]; empty before the front is there
+  double time = 0.0;             ///< since the start of the lift [s]
+  double front = 0.0;            ///< distance of the front from the gate [m], 0 behind it
+  double h1 = 0.0;               ///< depth behind the gate, as reading.hpp has it [m]
+  std::optional<double> h2;      ///< depth at the channel's end [m]; empty before the front is there
   double max_speed = 0.0;        ///< [m/s]
   double shear_rate_mean = 0.0;  ///< volume mean [1/s]
   std::optional<double> flocculation_mean;
@@ -61,9 +64,8 @@ struct Results {
   std::optional<double> t200, t400;         ///< front 200 and 400 mm from the gate [s]
   std::optional<double> stopped_at;         ///< [s]
   std::optional<double> flocculation_mean_start, flocculation_mean_end;
-  std::vector<std::array<double, 2>> profile;            ///< distance from the gate and depth at the end [m]
-  std::vector<std::array<double, 2>> profile_by_volume;  ///< the same from the volume over each place
-  double volume_in_channel = 0.0;                        ///< at the end, a metre of width [m^2]
+  std::vector<std::array<double, 2>> profile;  ///< distance from the gate and depth at the end [m]
+  double volume_in_channel = 0.0;              ///< at the end, over the whole width [m^3]
 };
 
 struct Outcome {
@@ -89,6 +91,12 @@ struct Estimate {
 Outcome run(const Scene& scene, const Observer& observer = {});
 
 Estimate estimate(const Scene& scene);
+
+/// Whether the box is computed in three dimensions.
+bool in_space(const Scene& scene);
+
+/// Width of the gaps between the bars, and between them and the side walls [m].
+double gap_between_bars(const Scene& scene);
 
 /// EN 12350-10 class of a passing ratio: "PL1" (two bars) or "PL2" (three) from 0.80 on; "" below it or
 /// without bars.

@@ -25,7 +25,8 @@ std::vector<Result> results_of(const l_box::Scene& scene, const l_box::Results& 
           {"stopped_at_s", number(r.stopped_at)},
           {"flocculation_mean_start", number(r.flocculation_mean_start)},
           {"flocculation_mean_end", number(r.flocculation_mean_end)},
-          {"volume_in_channel_m3", number(r.volume_in_channel, scene.box.width)}};
+          {"volume_in_channel_m3", number(r.volume_in_channel)},
+          {"bars", number(static_cast<double>(scene.bars))}};
 }
 
 std::vector<Column> series_of(const std::vector<l_box::Sample>& s, bool thixotropic) {
@@ -99,7 +100,7 @@ std::vector<std::string> lines_for(const l_box::Scene& scene, const l_box::Resul
       fmt::format("t200            {}", seconds_or(r.t200, "never reached")),
       fmt::format("t400            {}", seconds_or(r.t400, "never reached")),
       fmt::format("stopped at      {}", seconds_or(r.stopped_at, "still moving at the end")),
-      fmt::format("in the channel  {:.2f} l", r.volume_in_channel * scene.box.width * 1e3)};
+      fmt::format("in the channel  {:.2f} l", r.volume_in_channel * 1e3)};
   add_flocculation_line(r.flocculation_mean_start, r.flocculation_mean_end, lines);
   return lines;
 }

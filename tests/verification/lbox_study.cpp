@@ -69,7 +69,7 @@ std::vector<std::array<double, 2>> row(const Case& c, std::ofstream& md, std::of
                                        std::ofstream& profiles) {
   const Run r = run(c);
   const auto& results = r.outcome.results;
-  const auto& profile = results.profile_by_volume;
+  const auto& profile = results.profile;
   const auto part = lbox_reference::beyond_the_heap(profile);
   const auto form = lbox_reference::at_the_volume_of(part, c.tau_0, c.side_walls ? 0.2 : 0.0, 0.7);
   const auto error = lbox_reference::error_of(part, form);

@@ -31,7 +31,7 @@ TEST_P(RestProfile, IsTheClosedForms) {
   const bool side_walls = GetParam();
   for (double tau_0 : {15.0, 50.0}) {
     const auto outcome = l_box::run(on_coarse_cells(tau_0, side_walls));
-    const auto& profile = outcome.results.profile_by_volume;
+    const auto& profile = outcome.results.profile;
     const auto part = lbox_reference::beyond_the_heap(profile);
     const auto form = lbox_reference::at_the_volume_of(part, tau_0, side_walls ? 0.2 : 0.0, 0.7);
     const auto error = lbox_reference::error_of(part, form);

@@ -47,7 +47,7 @@ TEST(Slow, TheLBoxRestsOnItsClosedForm) {
   for (bool side_walls : {false, true})
     for (double tau_0 : {15.0, 50.0}) {
       const l_box::Outcome outcome = at_rest_in_the_l_box(tau_0, side_walls);
-      const auto profile = lbox_reference::beyond_the_heap(outcome.results.profile_by_volume);
+      const auto profile = lbox_reference::beyond_the_heap(outcome.results.profile);
       const auto form = lbox_reference::at_the_volume_of(profile, tau_0, side_walls ? 0.2 : 0.0, 0.7);
       const auto error = lbox_reference::error_of(profile, form);
       std::printf("%g Pa%s: error %.1f %% rms, worst of 100 mm %.1f %%\n", tau_0,

@@ -20,7 +20,7 @@ Run at_rest(double cell, bool side_walls) {
   scene.model.points_per_cell = {16, 4};
   const double start = cpu_seconds();
   const l_box::Outcome outcome = l_box::run(scene);
-  const auto profile = lbox_reference::beyond_the_heap(outcome.results.profile_by_volume);
+  const auto profile = lbox_reference::beyond_the_heap(outcome.results.profile);
   const auto form = lbox_reference::at_the_volume_of(profile, tau_0, side_walls ? 0.2 : 0.0, 0.7);
   return {fmt::format("{:g} mm", 1e3 * cell), cell, lbox_reference::error_of(profile, form).worst,
           cpu_seconds() - start,

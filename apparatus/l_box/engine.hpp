@@ -1,0 +1,112 @@
+#pragma once
+
+// The L-box test in one space for one yield law: set up, step until rest, read.
+
+#include "apparatus/engine.hpp"
+#include "apparatus/l_box/l_box.hpp"
+#include "apparatus/l_box/reading.hpp"
+#include "apparatus/l_box/set_up.hpp"
+
+namespace tremie::l_box {
+
+inline constexpr double drops = 0.005;         ///< share of the points that may fall off the column's walls
+inline constexpr double share_of_time = 0.01;  ///< largest step, in the time since the start of the lift
+inline constexpr double longest_step = 0.3;    ///< [s]: in longer ones thin films run away
+
+template <class Space>
+StepSettings step_settings(const Scene& scene) {
+  StepSettings settings = engine::step_settings(scene.model);
+  if (!scene.model.time_step) settings.strays = drops;
+  settings.fitted_places = true;   // what hangs on the column's walls is thinner than a cell
+  settings.moving_surface = true;  // without it steps of tenths of a second carry a fluid past its level
+  settings.alternating_viscosity = scene.alternating_viscosity;
+  if (scene.model.space == SpaceKind::plane_with_side_walls) settings.side_wall_distance = scene.box.width;
+  return settings;
+}
+
+/// The longest step: the films on the column's walls drain ever more slowly, so may the steps go. In space
+/// gravity acts where the surface is at a step's start (libmpm/step/free_surface.hpp), and they do not grow.
+template <class Space>
+double longest_dt(const Scene& scene, double time) {
+  const double shortest = StepSettings{}.dt_max;
+  return scene.model.step_scale *
+         (Space::dim == 3 ? shortest : std::clamp(share_of_time * time, shortest, longest_step));
+}
+
+/// When the front passed a distance from the gate.
+inline std::optional<double> time_of_front(const std::vector<Sample>& series, double distance) {
+  for (std::size_t i = 1; i < series.size(); ++i) {
+    const Sample &a = series[i - 1], &b = series[i];
+    if (b.front < distance) continue;
+    return a.time + (distance - a.front) / (b.front - a.front) * (b.time - a.time);
+  }
+  return std::nullopt;
+}
+
+template <class Space>
+void read_results(const Body<Space>& body, const Scene& scene, std::optional<double> stopped_at,
+                  Outcome& outcome) {
+  const Sample &first = outcome.series.front(), &last = outcome.series.back();
+  Results& r = outcome.results;
+  r.h1 = last.h1;
+  r.h2 = last.h2;
+  if (last.h2 && last.h1 > 0.0) r.passing_ratio = *last.h2 / last.h1;
+  r.t200 = time_of_front(outcome.series, 0.2);
+  r.t400 = time_of_front(outcome.series, 0.4);
+  r.stopped_at = stopped_at;
+  r.flocculation_mean_start = first.flocculation_mean;
+  r.flocculation_mean_end = last.flocculation_mean;
+  read_profile(body, scene, r);
+}
+
+/// Cells that do not resolve the gaps say nothing of what passes them.
+inline void judge_gaps(const Scene& scene, Checks& checks) {
+  const double gap = gap_between_bars(scene), cell = scene.model.cell[0];
+  if (scene.bars > 0 && cell > 0.5 * gap * (1.0 + 1e-9))
+    checks.reasons.push_back("cells of " + std::to_string(std::lround(1e3 * cell)) +
+                             " mm do not resolve the gaps of " + std::to_string(std::lround(1e3 * gap)) +
+                             " mm between the bars: a model.cell of at most half a gap");
+}
+
+template <class Space, class Law>
+Outcome run_in(const Scene& scene, const Law& law, const Observer& observer) {
+  Body<Space> body = filled_column<Space>(scene);
+  StepSettings settings = step_settings<Space>(scene);
+  const double start_mass = engine::total_mass(body.points);
+
+  Outcome outcome;
+  outcome.series.push_back(read(body, scene, {}));
+  if (observer.on_frame) observer.on_frame(engine::frame_of(body));
+  engine::RestWatch watch;
+  bool stopped = false;
+  double next_frame = scene.frame_interval;
+  while (!stopped && body.time < scene.duration * (1.0 - 1e-12)) {
+    settings.dt_max = std::min(longest_dt<Space>(scene, body.time), scene.duration - body.time);
+    body.boundary = walls_inside<Space>(scene, body.grid.axes, body.time);
+    const StepReport step = implicit_step(body, law, settings);
+    engine::count_step(body, step, outcome.checks, outcome.cost);
+    engine::watch_fixed_step(body, scene.model, step, outcome.checks);
+    if (engine::gave_up(step, outcome.status, outcome.checks, body.time)) break;
+    outcome.series.push_back(read(body, scene, step));
+    if (observer.on_step) observer.on_step(outcome.series.back());
+    if (observer.on_frame && body.time >= next_frame) {
+      observer.on_frame(engine::frame_of(body));
+      next_frame += scene.frame_interval;
+    }
+    const bool open = !scene.gate_speed || *scene.gate_speed * body.time > scene.box.channel_height;
+    // Drops from the films on the column's walls fall long after the concrete stands.
+    stopped = watch.at_rest(open, step.bulk_speed, body.time);
+    if (observer.interrupted && *observer.interrupted) {
+      outcome.status = Status::interrupted;
+      break;
+    }
+  }
+  read_results(body, scene, stopped ? watch.slow_since : std::nullopt, outcome);
+  engine::judge(body, start_mass, outcome.checks, outcome.cost);
+  judge_gaps(scene, outcome.checks);
+  outcome.final_frame = engine::frame_of(body);
+  if (observer.on_frame) observer.on_frame(outcome.final_frame);
+  return outcome;
+}
+
+}  // namespace tremie::l_box

@@ -1,0 +1,100 @@
+#pragma once
+
+// What is read off the concrete: depths, front, profile.
+//
+// EN 12350-10 has H1 and H2 as the mean depth of the concrete behind the gate and at the channel's end. A
+// depth is the volume of what stands on the floor over its area, up to the highest row above which less than
+// half of the area is concrete: what hangs on the walls or falls through the air higher up is no depth, and
+// neither are the holes that points may leave, nor does what lies loosely on the surface count for more than
+// its volume. Where the concrete meets a wall it tells nothing: films hang down onto it in the column, and
+// the cells at the end wall never fill up. So nothing within off_the_walls of a wall is read: H1 is the mean
+// depth over the rest of the column's length, H2 that over as much before the channel's end.
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "apparatus/l_box/set_up.hpp"
+
+namespace tremie::l_box {
+
+inline constexpr double off_the_walls = 0.02;  ///< no depth is read nearer to a wall [m]
+
+/// Mean depth over [low, high] along the channel [m], of a body `width` wide, in rows of height `row`.
+template <class Space>
+double depth(const Points<Space::dim>& points, double low, double high, double row, double width) {
+  std::vector<double> fill(2, 0.0);
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    if (points.x[p][0] < low || points.x[p][0] >= high) continue;
+    const std::size_t j = static_cast<std::size_t>(std::max(0.0, points.x[p][Space::up]) / row);
+    if (j + 2 > fill.size()) fill.resize(j + 2, 0.0);
+    fill[j] += points.volume(p) / ((high - low) * width * row);
+  }
+  double sum = 0.0;
+  std::size_t j = 0;
+  for (; fill[j] >= 0.5; ++j) sum += fill[j];
+  return row * (sum + fill[j]);
+}
+
+/// The stretches over which H1 and H2 are read, in x [m].
+struct Stretch {
+  double low, high;
+};
+inline Stretch behind_the_gate(const Box& box) { return {off_the_walls, box.column_length - off_the_walls}; }
+inline Stretch at_the_end(const Box& box) {
+  const double end = box.column_length + box.channel_length - off_the_walls;
+  return {end - (box.column_length - 2.0 * off_the_walls), end};
+}
+
+/// Distance of the front from the gate: of the outermost point that has company (three others less than half
+/// a cell behind).
+template <int D>
+double front_of(const Points<D>& points, double gate, double cell) {
+  constexpr std::size_t most_strays = 500;
+  std::vector<double> x;
+  for (const auto& p : points.x) x.push_back(p[0]);
+  const std::size_t n = std::min(most_strays, x.size());
+  std::partial_sort(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(n), x.end(), std::greater<>());
+  std::size_t i = 0;
+  while (i + 4 < n && x[i] - x[i + 3] > 0.5 * cell) ++i;
+  return std::max(0.0, x[i] - gate);
+}
+
+template <class Space>
+Sample read(const Body<Space>& body, const Scene& scene, const StepReport& step) {
+  const Box& box = scene.box;
+  const double row = body.grid.axes[Space::up].h, width = computed_width(scene);
+  const auto depth_over = [&](const Stretch& s) {
+    return depth<Space>(body.points, s.low, s.high, row, width);
+  };
+  Sample s;
+  s.time = body.time;
+  s.front = front_of(body.points, box.column_length, body.grid.axes[0].h);
+  s.h1 = depth_over(behind_the_gate(box));
+  if (s.front > box.channel_length - 0.5 * off_the_walls) s.h2 = depth_over(at_the_end(box));
+  s.max_speed = step.max_speed;
+  s.shear_rate_mean = step.shear_rate_mean;
+  s.flocculation_mean = engine::mean_flocculation(body.points);
+  s.volume_change = engine::volume_change(body.points);
+  s.time_step = step.dt;
+  s.iterations = step.iterations;
+  return s;
+}
+
+/// Depths along the channel, a station every two cells, and the volume below its ceiling.
+template <class Space>
+void read_profile(const Body<Space>& body, const Scene& scene, Results& r) {
+  const Box& box = scene.box;
+  const double step = 2.0 * body.grid.axes[0].h, row = body.grid.axes[Space::up].h;
+  const double width = computed_width(scene);
+  for (double x = 0.0; x < box.channel_length - 0.5 * step; x += step)
+    r.profile.push_back({x + 0.5 * step, depth<Space>(body.points, box.column_length + x,
+                                                      box.column_length + x + step, row, width)});
+  double volume = 0.0;
+  for (std::size_t p = 0; p < body.points.size(); ++p)
+    if (body.points.x[p][0] >= box.column_length && body.points.x[p][Space::up] < box.channel_height)
+      volume += body.points.volume(p);
+  r.volume_in_channel = volume / width * box.width;
+}
+
+}  // namespace tremie::l_box

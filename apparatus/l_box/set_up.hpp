@@ -1,0 +1,123 @@
+#pragma once
+
+// The box on its grid: the filled column, the walls and bars inside the grid.
+//
+// Coordinates: x from the back of the column, up from the floor; the gate stands at x = column_length. In
+// space y runs across the channel, from its middle plane in "half", from a side wall in "full".
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "apparatus/engine.hpp"
+#include "apparatus/l_box/l_box.hpp"
+#include "libmpm/points/seed.hpp"
+
+namespace tremie::l_box {
+
+/// Width that is computed [m]; 1 in the plane, whose volumes are per metre.
+inline double computed_width(const Scene& scene) {
+  return scene.model.space == SpaceKind::half   ? 0.5 * scene.box.width
+         : scene.model.space == SpaceKind::full ? scene.box.width
+                                                : 1.0;
+}
+
+/// An axis between two walls, with cells of about `cell`.
+inline Axis between_walls(double length, double cell, FaceKind low, FaceKind high) {
+  const int n = std::max(1, static_cast<int>(std::lround(length / cell)));
+  return {.h = length / n, .low = low, .high = high, .n_cells = n};
+}
+
+/// The flow stretches the concrete along the channel alone: there points_per_cell has its first number,
+/// across the channel and up its second.
+template <class Space>
+Body<Space> filled_column(const Scene& scene) {
+  constexpr int D = Space::dim, up = Space::up;
+  const Box& box = scene.box;
+  Body<Space> body;
+  body.mix = scene.mix;
+  body.gravity[up] = -engine::gravity;
+  const auto [across, h_up] = scene.model.cell;
+  const auto [n_along, n_up] = scene.model.points_per_cell;
+  Vec<D> high;
+  high[0] = box.column_length, high[up] = box.column_height;
+  body.grid.axes[0] =
+      between_walls(box.column_length + box.channel_length, across, FaceKind::no_slip, FaceKind::no_slip);
+  body.grid.axes[up] = {.h = h_up, .low = FaceKind::no_slip};
+  if constexpr (D == 3) {
+    const FaceKind side = scene.side_walls_slip ? FaceKind::free_slip : FaceKind::no_slip;
+    const bool half = scene.model.space == SpaceKind::half;
+    high[1] = computed_width(scene);
+    body.grid.axes[1] = between_walls(high[1], across, half ? FaceKind::free_slip : side, side);
+  }
+  std::array<int, D> n;
+  for (int d = 0; d < D; ++d)
+    n[d] =
+        std::max(1, static_cast<int>(std::lround(high[d] / body.grid.axes[d].h * (d == 0 ? n_along : n_up))));
+  seed_box<Space>(
+      Vec<D>::Zero(), high, n, scene.mix.density, scene.mix.K, [](const Vec<D>&) { return true; },
+      [&](const Vec<D>& x) { return scene.mix.density * engine::gravity * (box.column_height - x[up]); },
+      body.points);
+  engine::rest(body, scene.rest);
+  return body;
+}
+
+/// Middles of the bars across the channel, from its middle plane [m]: all gaps, those at the side walls
+/// included, are as wide.
+inline std::vector<double> bar_places(const Scene& scene) {
+  std::vector<double> places;
+  const double step = gap_between_bars(scene) + bar_diameter;
+  for (int i = 0; i < scene.bars; ++i) places.push_back(step * (i - 0.5 * (scene.bars - 1)));
+  return places;
+}
+
+/// The bars right in front of the gate, as cylinders to which the concrete sticks.
+inline void add_bars(const Scene& scene, double spacing, std::vector<BoundaryPoint<3>>& points) {
+  const double R = 0.5 * bar_diameter, width = computed_width(scene);
+  const double middle = scene.model.space == SpaceKind::half ? 0.0 : 0.5 * width;
+  const int around = std::max(8, static_cast<int>(std::ceil(2.0 * std::numbers::pi * R / spacing)));
+  const int rows = static_cast<int>(std::ceil(scene.box.channel_height / spacing));
+  for (double place : bar_places(scene))
+    for (int k = 0; k < around; ++k) {
+      const double angle = 2.0 * std::numbers::pi * (k + 0.5) / around;
+      const double y = middle + place + R * std::sin(angle);
+      if (y < 0.0) continue;  // beyond the plane of symmetry
+      for (int i = 0; i < rows; ++i) {
+        BoundaryPoint<3> point;
+        point.x = {scene.box.column_length + R + R * std::cos(angle), y,
+                   (i + 0.5) * scene.box.channel_height / rows};
+        points.push_back(point);
+      }
+    }
+}
+
+/// The column's front wall above the channel, to which the concrete sticks, and what is left of the gate
+/// below it, along which it slips, half a cell between points; and the bars.
+template <class Space>
+std::vector<BoundaryPoint<Space::dim>> walls_inside(const Scene& scene,
+                                                    const std::array<Axis, Space::dim>& axes, double time) {
+  constexpr int D = Space::dim, up = Space::up;
+  const Box& box = scene.box;
+  const double spacing = 0.5 * axes[up].h;
+  const double gate = scene.gate_speed ? *scene.gate_speed * time : box.channel_height;
+  const int n = static_cast<int>(std::ceil(box.column_height / spacing));
+  const int n_across = D == 3 ? 2 * axes[1].n_cells : 1;
+  std::vector<BoundaryPoint<D>> points;
+  for (int i = 0; i < n; ++i) {
+    const double y = (i + 0.5) * spacing;
+    const bool wall = y > box.channel_height;
+    if (!wall && y < gate) continue;
+    for (int k = 0; k < n_across; ++k) {
+      BoundaryPoint<D> point;
+      point.x[0] = box.column_length, point.x[up] = y;
+      if constexpr (D == 3) point.x[1] = 0.5 * (k + 0.5) * axes[1].h;
+      if (!wall) point.normal[0] = 1.0;
+      points.push_back(point);
+    }
+  }
+  if constexpr (D == 3) add_bars(scene, 0.5 * std::min(axes[1].h, axes[up].h), points);
+  return points;
+}
+
+}  // namespace tremie::l_box
