@@ -59,13 +59,13 @@ void read_results(const Body<Space>& body, const Scene& scene, std::optional<dou
   read_profile(body, scene, r);
 }
 
-/// Cells that do not resolve the gaps say nothing of what passes them.
-inline void judge_gaps(const Scene& scene, Checks& checks) {
-  const double gap = gap_between_bars(scene), cell = scene.model.cell[0];
-  if (scene.bars > 0 && cell > 0.5 * gap * (1.0 + 1e-9))
+/// The concrete sticks to a bar in all of the cells that it stands in, which makes a bar of one cell thicker
+/// than it is, and lets the velocities behind it alternate from cell to cell.
+inline void judge_bars(const Scene& scene, Checks& checks) {
+  const double cell = scene.model.cell[0];
+  if (scene.bars > 0 && cell > 0.5 * bar_diameter * (1.0 + 1e-9))
     checks.reasons.push_back("cells of " + std::to_string(std::lround(1e3 * cell)) +
-                             " mm do not resolve the gaps of " + std::to_string(std::lround(1e3 * gap)) +
-                             " mm between the bars: a model.cell of at most half a gap");
+                             " mm do not resolve the bars of 12 mm: a model.cell of at most 6 mm");
 }
 
 template <class Space, class Law>
@@ -103,7 +103,7 @@ Outcome run_in(const Scene& scene, const Law& law, const Observer& observer) {
   }
   read_results(body, scene, stopped ? watch.slow_since : std::nullopt, outcome);
   engine::judge(body, start_mass, outcome.checks, outcome.cost);
-  judge_gaps(scene, outcome.checks);
+  judge_bars(scene, outcome.checks);
   outcome.final_frame = engine::frame_of(body);
   if (observer.on_frame) observer.on_frame(outcome.final_frame);
   return outcome;

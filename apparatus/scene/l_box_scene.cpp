@@ -33,7 +33,7 @@ Section test_section() {
                    {.name = "duration",
                     .dimension = Dimension::time,
                     .range = positive,
-                    .fallback = "60 s",
+                    .fallback = "180 s",
                     .help = "at most; a flow that has come to rest ends earlier"},
                    {.name = "gate_speed",
                     .dimension = Dimension::speed,
@@ -45,7 +45,7 @@ Section test_section() {
                     .kind = Kind::integer,
                     .range = between(0, 3),
                     .fallback = "0",
-                    .help = "0, or 2 or 3 of 12 mm in the gap (three dimensions alone)"}}};
+                    .help = "0, or 2 or 3 of 12 mm in front of the gate (three dimensions alone)"}}};
 }
 
 bool in_the_plane(const Values& values) { return values.word("model.space").starts_with("plane"); }
@@ -76,7 +76,7 @@ void check_cells(const Values& values, const l_box::Scene& scene) {
   }
   const auto [n_across, n_up] = scene.model.points_per_cell;
   const double section = box.column_length / across * n_across * box.column_height / up * n_up;
-  const double points = in_the_plane(values) ? section : section * box.width / across * n_across;
+  const double points = in_the_plane(values) ? section : section * box.width / across * n_up;
   if (points > most_points) {
     values.fail("model.cell",
                 fmt::format("makes about {:.0e} points; allowed: at most {:.0e}, by larger cells or fewer "

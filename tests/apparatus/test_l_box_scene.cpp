@@ -24,6 +24,7 @@ TEST(LBoxScene, DefaultsAreTheStandards) {
   EXPECT_EQ(s.box.channel_height, 0.15);
   EXPECT_EQ(s.box.width, 0.20);
   EXPECT_EQ(s.rest, 60.0);
+  EXPECT_EQ(s.duration, 180.0);
   EXPECT_EQ(s.gate_speed, 0.30);
   EXPECT_EQ(s.bars, 0);
   EXPECT_EQ(s.model.space, SpaceKind::plane);
@@ -58,7 +59,7 @@ TEST(LBoxScene, FaultsNameTheKey) {
 }
 
 TEST(LBoxScene, WhatHasNoEngineIsAnInputError) {
-  const Scene scene = read_text(mix_a, "a.toml", {"test.bars=3", "model.space=full"});
+  const Scene scene = read_text(mix_a, "a.toml", {"model.scheme=explicit", "model.yield=papanastasiou"});
   EXPECT_THROW(estimate(scene), InputError);
   EXPECT_THROW(run(scene), InputError);
 }

@@ -2,6 +2,7 @@
 
 // What the L-box is held against: the closed form of its profile at rest and the films on its column's walls.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -14,7 +15,7 @@ inline constexpr double rho_g = 2400.0 * 9.81;
 /// Thin-layer profile at rest against an end wall: F(h) - F(h2) = (tau_0 / rho g)(L - x), F = h^2/2 without
 /// side walls (width = 0) and (W/2)[h - (W/2) ln(1 + 2h/W)] with them.
 struct Profile {
-  double tau_0, width, end, h2;
+  double tau_0 = 0.0, width = 0.0, end = 0.0, h2 = 0.0;
 
   double F(double h) const {
     return width > 0.0 ? 0.5 * width * (h - 0.5 * width * std::log1p(2.0 * h / width)) : 0.5 * h * h;
@@ -43,6 +44,11 @@ inline Profile at_the_volume_of(const std::vector<std::array<double, 2>>& measur
     (of_form < sum ? low : high) = profile.h2;
   }
   return {tau_0, width, end, 0.5 * (low + high)};
+}
+
+/// H2/H1 of a profile, over the stretches of apparatus/l_box/reading.hpp: 60 mm long, 20 mm off the walls.
+inline double passing_ratio(const Profile& profile) {
+  return profile.depth(profile.end - 0.05) / profile.depth(-0.05);
 }
 
 /// Concrete that falls off the column's walls lands within a depth of the gate and may stand there above the

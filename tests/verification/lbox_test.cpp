@@ -3,21 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include "apparatus/l_box/l_box.hpp"
-#include "tests/verification/lbox_reference.hpp"
+#include "tests/verification/lbox_case.hpp"
 
 namespace tremie {
 namespace {
 
 l_box::Scene on_coarse_cells(double tau_0, bool side_walls) {
-  l_box::Scene scene;
-  scene.mix.tau_0 = tau_0;
-  scene.mix.mu = 30.0;
-  scene.duration = 180.0;
-  scene.model.space = side_walls ? SpaceKind::plane_with_side_walls : SpaceKind::plane;
-  scene.model.cell = {0.02, 0.02};
-  scene.model.points_per_cell = {16, 4};
-  return scene;
+  return lbox_reference::scene_of(tau_0, 0.02, side_walls);
 }
 
 class RestProfile : public testing::TestWithParam<bool> {};
@@ -30,17 +22,16 @@ class RestProfile : public testing::TestWithParam<bool> {};
 TEST_P(RestProfile, IsTheClosedForms) {
   const bool side_walls = GetParam();
   for (double tau_0 : {15.0, 50.0}) {
-    const auto outcome = l_box::run(on_coarse_cells(tau_0, side_walls));
-    const auto& profile = outcome.results.profile;
-    const auto part = lbox_reference::beyond_the_heap(profile);
-    const auto form = lbox_reference::at_the_volume_of(part, tau_0, side_walls ? 0.2 : 0.0, 0.7);
-    const auto error = lbox_reference::error_of(part, form);
-    const double heap = lbox_reference::heap(profile, form);
+    const auto scene = on_coarse_cells(tau_0, side_walls);
+    const auto outcome = l_box::run(scene);
+    const auto [form, error, heap, ratio] = lbox_reference::compare(scene, outcome);
+    const double passing = outcome.results.passing_ratio.value_or(0.0);
     std::printf(
         "%g Pa%s: error %.1f %% rms, worst of 100 mm %.1f %%, heap %.1f mm, ratio %.3f, closed form %.3f\n",
-        tau_0, side_walls ? ", side walls" : "", 100 * error.rms, 100 * error.worst, 1e3 * heap,
-        outcome.results.passing_ratio.value_or(0.0), form.depth(0.69) / form.depth(-0.01));
+        tau_0, side_walls ? ", side walls" : "", 100 * error.rms, 100 * error.worst, 1e3 * heap, passing,
+        ratio);
     EXPECT_LE(error.worst, 0.04);
+    EXPECT_NEAR(passing / ratio, 1.0, 0.05);
     EXPECT_LE(heap, lbox_reference::heap_that_is_borne(tau_0) + 0.005);
     EXPECT_GE(heap, -0.005);
     EXPECT_LE(std::abs(outcome.checks.volume_change), 0.002);
@@ -51,7 +42,9 @@ TEST_P(RestProfile, IsTheClosedForms) {
 INSTANTIATE_TEST_SUITE_P(Modes, RestProfile, testing::Bool(),
                          [](const auto& which) { return which.param ? "WithSideWalls" : "Plane"; });
 
-// Without yield stress the profile is level: within 1.5 % over any 100 mm (the study has 1 % on 10 mm cells).
+// Without yield stress the profile is level: within 2 % over any 100 mm. H1 and H2 are means over three cells
+// here, each of which is full to within a few percent: their ratio scatters by 0.02 about 1 (cells of 10 mm
+// have 0.01, slow_test.cpp).
 class Level : public testing::TestWithParam<bool> {};
 TEST_P(Level, AFluidEndsLevel) {
   const auto outcome = l_box::run(on_coarse_cells(0.0, GetParam()));
@@ -60,7 +53,8 @@ TEST_P(Level, AFluidEndsLevel) {
       lbox_reference::error_of(profile, lbox_reference::at_the_volume_of(profile, 0.0, 0.0, 0.7));
   std::printf("level: worst of 100 mm %.2f %%, ratio %.3f\n", 100 * error.worst,
               outcome.results.passing_ratio.value_or(0.0));
-  EXPECT_LE(error.worst, 0.015);
+  EXPECT_LE(error.worst, 0.02);
+  EXPECT_NEAR(outcome.results.passing_ratio.value_or(0.0), 1.0, 0.05);
   EXPECT_TRUE(outcome.checks.reasons.empty());
 }
 INSTANTIATE_TEST_SUITE_P(Modes, Level, testing::Bool(),
@@ -76,6 +70,48 @@ TEST(LBox, AStiffConcreteReachesNothing) {
   EXPECT_LE(std::abs(outcome.checks.volume_change), 0.002);
   EXPECT_FALSE(results.h2 || results.passing_ratio || results.t200 || results.t400);
   EXPECT_NEAR(results.h1, 0.6, 0.02);
+}
+
+/// 30 Pa s, 50 Pa on cells of 25 mm, a few points in each, over the first two seconds.
+l_box::Outcome over_two_seconds(SpaceKind space, bool side_walls_slip, int bars) {
+  auto scene = on_coarse_cells(50.0, false);
+  scene.model.space = space;
+  scene.model.cell = {0.025, 0.025};
+  scene.model.points_per_cell = {8, 4};
+  scene.side_walls_slip = side_walls_slip;
+  scene.bars = bars;
+  scene.duration = 2.0;
+  return l_box::run(scene);
+}
+
+// Between side walls that let it slip the concrete moves as in the plane, and half of the box as the whole.
+// The front is faster by 7 %: partly filled cells keep the places of full ones in space (fitted_places.hpp),
+// which leaves what is thin less friction.
+TEST(LBoxInSpace, IsThePlaneBetweenWallsThatSlip) {
+  const auto plane = over_two_seconds(SpaceKind::plane, false, 0);
+  for (SpaceKind space : {SpaceKind::half, SpaceKind::full}) {
+    const auto outcome = over_two_seconds(space, true, 0);
+    std::printf("front %.1f, plane %.1f mm; H1 %.1f, %.1f mm\n", 1e3 * outcome.series.back().front,
+                1e3 * plane.series.back().front, 1e3 * outcome.results.h1, 1e3 * plane.results.h1);
+    EXPECT_NEAR(outcome.series.back().front / plane.series.back().front, 1.0, 0.1);
+    EXPECT_NEAR(outcome.results.h1 / plane.results.h1, 1.0, 0.05);
+    EXPECT_LE(std::abs(outcome.checks.volume_change), 0.002);
+    EXPECT_TRUE(outcome.checks.reasons.empty());
+  }
+}
+
+// Bars hold the concrete back, three more than two; cells this large are not to be trusted with them.
+TEST(LBoxInSpace, BarsHoldTheConcreteBack) {
+  double front = 1.0, held = 0.0;
+  for (int bars : {0, 2, 3}) {
+    const auto outcome = over_two_seconds(SpaceKind::half, false, bars);
+    std::printf("%d bars: front %.1f mm, H1 %.1f mm\n", bars, 1e3 * outcome.series.back().front,
+                1e3 * outcome.results.h1);
+    EXPECT_LT(outcome.series.back().front, front);
+    EXPECT_GT(outcome.results.h1, held);
+    EXPECT_EQ(outcome.checks.reasons.empty(), bars == 0);
+    front = outcome.series.back().front, held = outcome.results.h1;
+  }
 }
 
 // Two solvers of one convex problem: the same front to 0.5 % (Newton stops at 1e-4 of the weight).

@@ -1,8 +1,7 @@
 // The long runs: the slender case on fine cells, Mix A to its rest, a fluid that levels in the L-box.
 
-#include "apparatus/l_box/l_box.hpp"
 #include "apparatus/slump_flow/slump_flow.hpp"
-#include "tests/verification/lbox_reference.hpp"
+#include "tests/verification/lbox_case.hpp"
 #include "tests/verification/slender_expectations.hpp"
 
 namespace tremie {
@@ -29,40 +28,29 @@ TEST(Slow, MixAComesToRest) {
   EXPECT_NEAR(1e3 * outcome.results.spread / 557.5, 1.0, 0.015);
 }
 
-/// 30 Pa s on cells of 10 mm, after 180 s.
-l_box::Outcome at_rest_in_the_l_box(double tau_0, bool side_walls) {
-  l_box::Scene scene;
-  scene.mix.tau_0 = tau_0;
-  scene.mix.mu = 30.0;
-  scene.duration = 180.0;
-  scene.model.space = side_walls ? SpaceKind::plane_with_side_walls : SpaceKind::plane;
-  scene.model.cell = {0.01, 0.01};
-  scene.model.points_per_cell = {16, 4};
-  return l_box::run(scene);
-}
-
 // The L-box at rest on cells of 10 mm: the closed form within 3 % over any 100 mm, in both modes
 // (lbox_test.cpp says where).
 TEST(Slow, TheLBoxRestsOnItsClosedForm) {
   for (bool side_walls : {false, true})
     for (double tau_0 : {15.0, 50.0}) {
-      const l_box::Outcome outcome = at_rest_in_the_l_box(tau_0, side_walls);
-      const auto profile = lbox_reference::beyond_the_heap(outcome.results.profile);
-      const auto form = lbox_reference::at_the_volume_of(profile, tau_0, side_walls ? 0.2 : 0.0, 0.7);
-      const auto error = lbox_reference::error_of(profile, form);
-      std::printf("%g Pa%s: error %.1f %% rms, worst of 100 mm %.1f %%\n", tau_0,
-                  side_walls ? ", side walls" : "", 100 * error.rms, 100 * error.worst);
+      const auto scene = lbox_reference::scene_of(tau_0, 0.01, side_walls);
+      const auto outcome = l_box::run(scene);
+      const auto [form, error, heap, ratio] = lbox_reference::compare(scene, outcome);
+      const double passing = outcome.results.passing_ratio.value_or(0.0);
+      std::printf("%g Pa%s: error %.1f %% rms, worst of 100 mm %.1f %%, ratio %.3f, closed form %.3f\n",
+                  tau_0, side_walls ? ", side walls" : "", 100 * error.rms, 100 * error.worst, passing,
+                  ratio);
       EXPECT_LE(error.worst, 0.03);
+      EXPECT_NEAR(passing / ratio, 1.0, 0.03);
     }
 }
 
-// Without yield stress the box fills level in both modes, and stays so: a ratio of 1, of readings over 20 mm
-// each that scatter by 1 %.
+// Without yield stress the box fills level in both modes, and stays so: a ratio of 1 within 0.01.
 TEST(Slow, AFluidLevelsInTheLBox) {
   for (bool side_walls : {false, true}) {
-    const l_box::Outcome outcome = at_rest_in_the_l_box(0.0, side_walls);
+    const auto outcome = l_box::run(lbox_reference::scene_of(0.0, 0.01, side_walls));
     EXPECT_EQ(outcome.checks.unconverged_steps, 0);
-    EXPECT_NEAR(outcome.results.passing_ratio.value_or(0.0), 1.0, 0.015);
+    EXPECT_NEAR(outcome.results.passing_ratio.value_or(0.0), 1.0, 0.01);
   }
 }
 

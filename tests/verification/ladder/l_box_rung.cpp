@@ -2,27 +2,17 @@
 
 #include <fmt/format.h>
 
-#include "apparatus/l_box/l_box.hpp"
 #include "tests/verification/ladder/ladder.hpp"
-#include "tests/verification/lbox_reference.hpp"
+#include "tests/verification/lbox_case.hpp"
 
 namespace tremie::verification {
 namespace {
 
 Run at_rest(double cell, bool side_walls) {
-  constexpr double tau_0 = 50.0;
-  l_box::Scene scene;
-  scene.mix.tau_0 = tau_0;
-  scene.mix.mu = 30.0;
-  scene.duration = 180.0;
-  scene.model.space = side_walls ? SpaceKind::plane_with_side_walls : SpaceKind::plane;
-  scene.model.cell = {cell, cell};
-  scene.model.points_per_cell = {16, 4};
+  const l_box::Scene scene = lbox_reference::scene_of(50.0, cell, side_walls);
   const double start = cpu_seconds();
   const l_box::Outcome outcome = l_box::run(scene);
-  const auto profile = lbox_reference::beyond_the_heap(outcome.results.profile);
-  const auto form = lbox_reference::at_the_volume_of(profile, tau_0, side_walls ? 0.2 : 0.0, 0.7);
-  return {fmt::format("{:g} mm", 1e3 * cell), cell, lbox_reference::error_of(profile, form).worst,
+  return {fmt::format("{:g} mm", 1e3 * cell), cell, lbox_reference::compare(scene, outcome).error.worst,
           cpu_seconds() - start,
           outcome.checks.unconverged_steps
               ? fmt::format("{} unconverged steps", outcome.checks.unconverged_steps)
