@@ -64,9 +64,8 @@ std::vector<WallPoint<Space::dim>> find_wall_points(const RigidWall<Space::dim>&
     const auto view = wall(x, time);
     if (!view || view->gap > reach) continue;
     if (weighed != g) {
-      std::array<Octet, D> places;
-      for (int d = 0; d < D; ++d) places[d] = state.points.x[d][g];
-      weigh<D>(grid.axes, state.shape, tile.at, places, weights);
+      weigh<D>(grid.axes, state.shape, tile.at, places_of<D>(state.points, static_cast<std::size_t>(g)),
+               weights);
       weighed = g;
     }
     WallPoint<D> p;

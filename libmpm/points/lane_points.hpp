@@ -28,6 +28,13 @@ struct LanePoints {
   bool thixotropic() const { return !lambda.empty(); }
 };
 
+template <int D>
+std::array<Octet, D> places_of(const LanePoints<D>& points, std::size_t group) {
+  std::array<Octet, D> x;
+  for (int d = 0; d < D; ++d) x[d] = points.x[d][group];
+  return x;
+}
+
 /// Number of real points in a group; they come first.
 template <int D>
 int filled(const LanePoints<D>& points, std::size_t group) {

@@ -39,6 +39,14 @@ struct ExplicitReport {
   double shear_rate_mean = 0.0;  ///< volume mean [1/s]
 };
 
+/// What the points in cells at walls stand for, in units of their own volume (wall_cells.hpp).
+template <int D>
+struct HoldingCells {
+  std::vector<int> of_tile;  ///< where the tile's cells are in `hold`; -1: no such wall near
+  std::vector<std::array<float, power(tile_pressure_cells, D)>> hold;  ///< numbered within the tile
+  double drift = 1e300;  ///< of the points since they were found, in cells
+};
+
 /// The body on its tiles. body.points is what it was at the last write_back.
 template <class Space>
 struct ExplicitState {
@@ -51,6 +59,7 @@ struct ExplicitState {
   double max_speed = 0.0;   ///< of the points [m/s]
   double lambda_max = 0.0;  ///< largest flocculation in a point
   StabilityLimits limits;
+  HoldingCells<D> holding;
   std::vector<std::array<int, 3>> near_wall;  ///< tile, group and lane of what may touch a rigid wall soon
   double wall_drift = 1e300;                  ///< since they were looked for [m]
   std::int64_t sorts = 0;

@@ -30,7 +30,7 @@ void sort_points(const ExplicitSettings& settings, ExplicitState<Space>& state) 
   state.drift = 0.0;
   state.mixed_groups = static_cast<std::int64_t>(sorted.mixed);
   state.mixed_since = 0;
-  state.wall_drift = 1e300;
+  state.wall_drift = state.holding.drift = 1e300;
   ++state.sorts;
 }
 

@@ -5,113 +5,10 @@
 // points at once.
 
 #include "libmpm/space/gradients.hpp"
+#include "libmpm/step/explicit_gather.hpp"
 #include "libmpm/step/pressure_cells.hpp"
-#include "libmpm/transfer/lane_sums.hpp"
 
 namespace tremie::detail {
-
-/// What a pass does. `gather`: reads velocities; `stress`: updates volume, flocculation and stress and gives
-/// the controls its impulses; `move`: updates velocities and places and gives the controls mass and momentum.
-struct Pass {
-  bool gather = true, stress = true, move = true;
-};
-inline constexpr Pass whole_pass{}, first_sums{.gather = false},
-    first_momenta{.gather = false, .stress = false}, stress_pass{.move = false}, motion_pass{.stress = false};
-
-struct PassInput {
-  double dt = 0.0;          ///< of the motion and of the state [s]
-  double impulse_dt = 0.0;  ///< of the impulses: the step that they act in [s]
-};
-
-/// Reduced over the points of a tile, then over the tiles in their order.
-struct PassSums {
-  double farthest = 0.0;  ///< largest move along an axis, in cells
-  double speed2 = 0.0;    ///< largest, squared [m^2/s^2]
-  double volume = 0.0, volume_rate = 0.0, lambda = 0.0;
-  bool ran_away = false;
-  std::int64_t mixed = 0;  ///< groups of points of several cells
-
-  void add(const PassSums& other) {
-    farthest = std::max(farthest, other.farthest), speed2 = std::max(speed2, other.speed2);
-    volume += other.volume, volume_rate += other.volume_rate;
-    lambda = std::max(lambda, other.lambda), ran_away = ran_away || other.ran_away;
-    mixed += other.mixed;
-  }
-};
-
-/// The same for each lane, while a tile's groups are visited.
-struct LaneSums {
-  Octet farthest = {}, speed2 = {}, volume = {}, volume_rate = {}, lambda = {};
-  OctetMask ran_away = {};
-  std::int64_t mixed = 0;
-
-  PassSums reduced() const {
-    bool away = false;
-    for (int l = 0; l < octet_size; ++l) away = away || ran_away[l] != 0;
-    return {largest(farthest), largest(speed2), sum(volume), sum(volume_rate), largest(lambda), away, mixed};
-  }
-};
-
-/// Grid fields at eight points.
-template <int D>
-struct Fields {
-  Octet v[4] = {}, dv[4] = {}, L[D][4] = {}, moment[D][4] = {};  ///< L[b][a] = dv_a/dx_b
-};
-
-template <int D>
-using Cube = typename TileGrid<D>::Buffer;
-
-/// Eight points whose stencils begin at one control.
-template <Wanted wanted, int D>
-void gather_side_by_side(const NodeLanes* node, const Weights<D>& weights, Fields<D>& fields) {
-  for (int c = 0; c < D; ++c) {
-    const auto at = gather_together<D, wanted>(node, c, weights);
-    fields.v[c] = at.value;
-    for (int d = 0; d < D && wanted.slopes; ++d) fields.L[d][c] = at.slope[d];
-    for (int d = 0; d < D && wanted.moments; ++d) fields.moment[d][c] = at.moment[d];
-  }
-}
-
-/// n points one by one; what fills up the group is taken with the first.
-template <Wanted wanted, int D>
-void gather_one_by_one(const Cube<D>& v, const Weights<D>& weights, int n, Fields<D>& fields) {
-  NodeLanes value[octet_size], slope[D][octet_size], moment[D][octet_size];
-  for (int l = 0; l < octet_size; ++l) {
-    const int from = l < n ? l : 0;
-    const auto at =
-        gather<D, 3, wanted>(&v[weights.base[static_cast<std::size_t>(from)]], of_lane<D>(weights, from));
-    value[l] = at.value;
-    for (int d = 0; d < D && wanted.slopes; ++d) slope[d][l] = at.slope[d];
-    for (int d = 0; d < D && wanted.moments; ++d) moment[d][l] = at.moment[d];
-  }
-  to_columns(value, fields.v);
-  for (int d = 0; d < D && wanted.slopes; ++d) to_columns(slope[d], fields.L[d]);
-  for (int d = 0; d < D && wanted.moments; ++d) to_columns(moment[d], fields.moment[d]);
-}
-
-template <Wanted wanted, int D>
-void gather_group(const Cube<D>& v, const Weights<D>& weights, int n, Fields<D>& fields) {
-  if (weights.together)
-    gather_side_by_side<wanted, D>(&v[weights.base[0]], weights, fields);
-  else
-    gather_one_by_one<wanted, D>(v, weights, n, fields);
-}
-
-/// Reads what a pass needs. FLIP needs no moments, and a pass without stress no slopes.
-template <Pass pass, int D>
-void gather_for(const Cube<D>& v, const Cube<D>& dv, const Weights<D>& weights, int n, bool flip,
-                Fields<D>& fields) {
-  constexpr Wanted without{.slopes = pass.stress, .moments = false};
-  constexpr Wanted with{.slopes = pass.stress, .moments = true};
-  if (pass.move && !flip)
-    gather_group<with, D>(v, weights, n, fields);
-  else
-    gather_group<without, D>(v, weights, n, fields);
-  if (!pass.move || !flip) return;
-  Fields<D> change;
-  gather_group<value_only, D>(dv, weights, n, change);
-  for (int d = 0; d < D; ++d) fields.dv[d] = change.v[d];
-}
 
 /// Deviatoric stress and its hoop part, times volume; the pressure's part is added to the stress or, with one
 /// row a cell, kept apart.
@@ -120,11 +17,13 @@ struct GroupStress {
   Octet sigma[D][D] = {}, hoop = {}, pressure = {};  ///< times volume [Pa m^3]
 };
 
-/// Updates volume and flocculation of group g over dt and returns its stress.
+/// Updates volume and flocculation of group g over dt and returns its stress. `hold`: the volume that its
+/// viscous part is integrated over, in units of the points' own.
 template <class Space, class Law>
 GroupStress<Space::dim> update_state(const Mix& mix, const Law& law, bool cell_pressure, double dt,
                                      const Fields<Space::dim>& fields, const Octet& cell_divergence,
-                                     LanePoints<Space::dim>& points, std::size_t g, LaneSums& sums) {
+                                     const Octet& hold, LanePoints<Space::dim>& points, std::size_t g,
+                                     LaneSums& sums) {
   constexpr int D = Space::dim, ns = Space::n_strain;
   Octet L[D][D], q[ns], divergence, tau_y = all_lanes(mix.tau_0);
   for (int a = 0; a < D; ++a)
@@ -144,7 +43,7 @@ GroupStress<Space::dim> update_state(const Mix& mix, const Law& law, bool cell_p
   Octet& ln_J = points.ln_J[g];
   ln_J += dt * (cell_pressure ? cell_divergence : divergence);
   const Octet volume = points.V0[g] * exp(ln_J),
-              viscosity = volume * (mix.mu + secant(law, gamma_dot, tau_y));
+              viscosity = hold * volume * (mix.mu + secant(law, gamma_dot, tau_y));
   sums.volume += volume, sums.volume_rate += volume * gamma_dot;
 
   GroupStress<D> stress;
@@ -214,6 +113,16 @@ void scatter_points(bool flip, bool apart, double impulse_dt, const Weights<Spac
   }
 }
 
+/// What the points of group g stand for in cells at walls; `cell`: theirs in the tile.
+template <int D>
+Octet hold_of_group(const std::array<float, power(tile_pressure_cells, D)>& hold,
+                    const std::array<int, octet_size>& cell) {
+  Octet of;
+  for (std::size_t l = 0; l < octet_size; ++l)
+    of[l] = static_cast<double>(hold[static_cast<std::size_t>(cell[l])]);
+  return of;
+}
+
 /// One tile.
 template <Pass pass, class Space, class Law>
 PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& settings,
@@ -241,6 +150,7 @@ PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& 
     for (std::size_t g = first; g < last; ++g) before.add_group(points, g, cells_before[g - first]);
     before.read_divergences(v);
   }
+  const int held = pass.stress ? state.holding.of_tile[t] : -1;
   LaneSums reduced;
   const StencilFrame<D> frame = stencil_frame<D>(grid.axes, state.shape, tile.at);
 
@@ -249,9 +159,7 @@ PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& 
     Weights<D> weights;
     const auto place = [&] {
       constexpr Wanted wanted{.slopes = pass.stress, .moments = pass.move};
-      std::array<Octet, D> x;
-      for (int d = 0; d < D; ++d) x[d] = points.x[d][g];
-      weigh<D, wanted>(frame, x, weights);
+      weigh<D, wanted>(frame, places_of<D>(points, g), weights);
     };
     place();
     Fields<D> fields;
@@ -264,7 +172,13 @@ PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& 
       if (cells && pass.gather) cell = cells_before[g - first];
       for (int l = 0; l < n && cells && pass.gather; ++l)
         divergence[l] = before.divergence(cell[static_cast<std::size_t>(l)]);
-      stress = update_state<Space>(mix, law, cells, input.dt, fields, divergence, points, g, reduced);
+      Octet hold = all_lanes(1.0);
+      if (held >= 0) {
+        if (!cells || !pass.gather)
+          find_pressure_cells<D>(grid.axes, state.shape, tile.at, places_of<D>(points, g), cell);
+        hold = hold_of_group<D>(state.holding.hold[held], cell);
+      }
+      stress = update_state<Space>(mix, law, cells, input.dt, fields, divergence, hold, points, g, reduced);
     }
     if (pass.move && pass.gather) {
       move_group<D>(grid.axes, settings.transfer, input.dt, weights, fields, points, g, reduced);

@@ -6,6 +6,7 @@
 #include "libmpm/step/explicit_nodes.hpp"
 #include "libmpm/step/explicit_parts.hpp"
 #include "libmpm/step/explicit_pass.hpp"
+#include "libmpm/step/wall_cells.hpp"
 
 namespace tremie {
 
@@ -21,6 +22,7 @@ ExplicitState<Space> start_explicit(Body<Space>& body, const Law& law, const Exp
   for (double lambda : body.points.lambda) state.lambda_max = std::max(state.lambda_max, lambda);
   detail::choose_next_step(body, law, settings, state);
   const detail::PassInput input{.impulse_dt = state.next_dt};
+  look_into_wall_cells(state);
   if (settings.stress == StressUpdate::last)
     detail::pass_over_points<detail::first_sums, Space>(body.mix, law, settings, input, state);
   else
@@ -45,6 +47,7 @@ detail::PassSums stress_last(Body<Space>& body, const Law& law, const ExplicitSe
   detail::push_off_wall(wall, body.time + dt, dt, settings.wall_gap, state);
   if (flip) detail::finish_change(state);
   detail::sort_if_drifted(settings, state);
+  look_into_wall_cells(state);
 
   // Grid to points, stress, motion, points to grid.
   return detail::pass_over_points<detail::whole_pass, Space>(body.mix, law, settings, {dt, state.next_dt},
@@ -59,6 +62,7 @@ detail::PassSums stress_first(Body<Space>& body, const Law& law, const ExplicitS
   const bool flip = settings.transfer.flip;
   detail::velocities_from_sums(body, state, 0.0, Vec<Space::dim>::Zero());
   detail::sort_if_drifted(settings, state);
+  look_into_wall_cells(state);
   detail::PassSums sums =
       detail::pass_over_points<detail::stress_pass, Space>(body.mix, law, settings, {dt, dt}, state);
   detail::add_impulses(body, state, settings.friction_coefficient, state.grid.sums, flip, dt * body.gravity);
@@ -89,6 +93,7 @@ ExplicitReport explicit_step(Body<Space>& body, const Law& law, const ExplicitSe
   report.shear_rate_mean = sums.volume > 0.0 ? sums.volume_rate / sums.volume : 0.0;
   state.lambda_max = sums.lambda;
   state.drift += sums.farthest;
+  state.holding.drift += sums.farthest;
   state.wall_drift += sums.farthest * body.grid.axes[0].h + settings.wall_speed * dt;
   return report;
 }

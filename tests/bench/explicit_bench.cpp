@@ -74,7 +74,7 @@ void law_alone(benchmark::State& run) {
   for (auto _ : run)
     for (std::size_t g = 0; g < set.state.points.groups(); ++g)
       benchmark::DoNotOptimize(detail::update_state<Space>(set.body.mix, law, false, 1e-9, fields, Octet{},
-                                                           set.state.points, g, sums));
+                                                           all_lanes(1.0), set.state.points, g, sums));
   set.count(run);
 }
 

@@ -261,6 +261,27 @@ TYPED_TEST(ExplicitSpaces, StableUpToTheLimit) {
       }
 }
 
+// Points in a cell at a wall stand for the whole cell where it is inside the body: twice their volume where
+// its lower half is empty. In the outermost cells of the body, whose extent the points alone tell, for their
+// own.
+TEST(ExplicitWalls, HollowCellsHoldAsFullOnes) {
+  omp_set_num_threads(1);
+  for (const FaceKind floor : {FaceKind::no_slip, FaceKind::friction, FaceKind::free_slip}) {
+    Body<PlaneStrain> body;
+    body.mix = concrete(54.0, 35.8);
+    body.grid.axes[0] = {.h = 0.02};
+    body.grid.axes[1] = {.h = 0.02, .low = floor};
+    fill_box<PlaneStrain>(body, {0.0, 0.01}, {0.1, 0.07}, 4);
+    const auto state = start_explicit(body, law, {}, shape_of<2>(ShapeFunctions::gimp, 0.125));
+    const detail::CellFills<PlaneStrain> fills(state);
+    for (int i = 0; i < 5; ++i) {
+      const bool inside = i > 0 && i < 4 && floor != FaceKind::free_slip;
+      EXPECT_NEAR(hold_of<PlaneStrain>(fills, body.grid.axes, {i, 0}), inside ? 2.0 : 1.0, 1e-12);
+      EXPECT_EQ(hold_of<PlaneStrain>(fills, body.grid.axes, {i, 1}), 1.0);
+    }
+  }
+}
+
 // Longer than a limit is said, and shorter is not; a step that is chosen keeps them.
 TEST(ExplicitLimits, AreToldAndKept) {
   omp_set_num_threads(1);
