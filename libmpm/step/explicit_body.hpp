@@ -39,12 +39,25 @@ struct ExplicitReport {
   double shear_rate_mean = 0.0;  ///< volume mean [1/s]
 };
 
-/// What the points in cells at walls stand for, in units of their own volume (wall_cells.hpp).
+/// A cell at a wall that holds the concrete (wall_cells.hpp).
 template <int D>
-struct HoldingCells {
-  std::vector<int> of_tile;  ///< where the tile's cells are in `hold`; -1: no such wall near
-  std::vector<std::array<float, power(tile_pressure_cells, D)>> hold;  ///< numbered within the tile
+struct HeldCell {
+  float hold;                  ///< what its points stand for, in units of their own volume
+  std::array<float, D> place;  ///< of its pressure row: as far from the wall as the points on average
+};
+template <int D>
+using HeldCells = std::array<HeldCell<D>, power(tile_pressure_cells, D)>;  ///< of a tile
+
+template <int D>
+struct Holding {
+  std::vector<int> of_tile;  ///< where the tile's cells are in `cells`; -1: no such wall near
+  std::vector<HeldCells<D>> cells;
   double drift = 1e300;  ///< of the points since they were found, in cells
+
+  const HeldCells<D>* of(int tile) const {
+    const int at = of_tile[static_cast<std::size_t>(tile)];
+    return at < 0 ? nullptr : &cells[static_cast<std::size_t>(at)];
+  }
 };
 
 /// The body on its tiles. body.points is what it was at the last write_back.
@@ -59,7 +72,7 @@ struct ExplicitState {
   double max_speed = 0.0;   ///< of the points [m/s]
   double lambda_max = 0.0;  ///< largest flocculation in a point
   StabilityLimits limits;
-  HoldingCells<D> holding;
+  Holding<D> holding;
   std::vector<std::array<int, 3>> near_wall;  ///< tile, group and lane of what may touch a rigid wall soon
   double wall_drift = 1e300;                  ///< since they were looked for [m]
   std::int64_t sorts = 0;

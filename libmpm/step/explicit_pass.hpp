@@ -113,13 +113,12 @@ void scatter_points(bool flip, bool apart, double impulse_dt, const Weights<Spac
   }
 }
 
-/// What the points of group g stand for in cells at walls; `cell`: theirs in the tile.
+/// What eight points stand for in cells at walls; `cell`: theirs in the tile.
 template <int D>
-Octet hold_of_group(const std::array<float, power(tile_pressure_cells, D)>& hold,
-                    const std::array<int, octet_size>& cell) {
+Octet hold_of_group(const HeldCells<D>& held, const std::array<int, octet_size>& cell) {
   Octet of;
   for (std::size_t l = 0; l < octet_size; ++l)
-    of[l] = static_cast<double>(hold[static_cast<std::size_t>(cell[l])]);
+    of[l] = static_cast<double>(held[static_cast<std::size_t>(cell[l])].hold);
   return of;
 }
 
@@ -142,7 +141,9 @@ PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& 
   if (apart) forces.fill(NodeLanes{});
   const auto first = static_cast<std::size_t>(tile.first_group),
              last = static_cast<std::size_t>(tile.last_group);
-  PressureCells<Space> before(grid.axes, state.shape, tile.at), after(grid.axes, state.shape, tile.at);
+  const HeldCells<D>* held = pass.stress ? state.holding.of(t) : nullptr;
+  PressureCells<Space> before(grid.axes, state.shape, tile.at, settings.stress, held),
+      after(grid.axes, state.shape, tile.at, settings.stress, held);
   PressureCells<Space>& pushed = pass.gather && pass.move ? after : before;
   static thread_local std::vector<std::array<int, octet_size>> cells_before;
   if (pass.stress && cells && pass.gather) {
@@ -150,7 +151,6 @@ PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& 
     for (std::size_t g = first; g < last; ++g) before.add_group(points, g, cells_before[g - first]);
     before.read_divergences(v);
   }
-  const int held = pass.stress ? state.holding.of_tile[t] : -1;
   LaneSums reduced;
   const StencilFrame<D> frame = stencil_frame<D>(grid.axes, state.shape, tile.at);
 
@@ -173,10 +173,10 @@ PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& 
       for (int l = 0; l < n && cells && pass.gather; ++l)
         divergence[l] = before.divergence(cell[static_cast<std::size_t>(l)]);
       Octet hold = all_lanes(1.0);
-      if (held >= 0) {
+      if (held) {
         if (!cells || !pass.gather)
           find_pressure_cells<D>(grid.axes, state.shape, tile.at, places_of<D>(points, g), cell);
-        hold = hold_of_group<D>(state.holding.hold[held], cell);
+        hold = hold_of_group<D>(*held, cell);
       }
       stress = update_state<Space>(mix, law, cells, input.dt, fields, divergence, hold, points, g, reduced);
     }

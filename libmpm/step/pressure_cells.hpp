@@ -3,12 +3,16 @@
 // One divergence and one pressure row a cell, against locking.
 //
 // All points of a cell change their volume with the divergence at one place of it, and their pressures push
-// by the same row: what a change of volume costs is what the pressure does. The place is the centre of mass
-// of the points: at the cell's own centre the row would push controls that the points hardly reach, in a cell
-// that they have just entered, by any multiple of the control's mass. (With the row at the mean place s of
-// the points, a control whose spline is s^2/2 has at least the mass of s^2/2 of them, and slope s.) And where
-// points fill the upper half of a cell alone, what they carry away is what the cell loses: with the rate at
-// the centre the cell above the floor would stay hollow.
+// by the same row: what a change of volume costs is what the pressure does.
+//
+// The place is the centre of mass of the points: at the cell's own centre the row would push controls that
+// the points hardly reach, in a cell that they have just entered, by any multiple of the control's mass.
+// (With the row at the mean place s of the points, a control whose spline is s^2/2 has at least the mass of
+// s^2/2 of them, and slope s.) GIMP's steps with the stress first read the divergence from velocities that
+// the points have brought to the grid, which know nothing of such a push: there the place is the cell's
+// centre, whose row is the same in every cell. But in a cell at a wall that holds it is as high as the points
+// on average: where they fill the upper half alone, what they carry away is what the cell loses, and with the
+// rate at the centre it would stay hollow.
 
 #include "libmpm/space/gradients.hpp"
 #include "libmpm/step/explicit_body.hpp"
@@ -22,15 +26,30 @@ class PressureCells {
   static constexpr int D = Space::dim, n = power(tile_pressure_cells, D);
   using Cube = std::array<NodeLanes, TileGrid<D>::tile_nodes>;
 
-  PressureCells(const std::array<Axis, D>& axes, const Shape<D>& shape, const Index<D>& tile)
-      : axes_(axes), shape_(shape), tile_(tile) {
+  /// `held`: the tile's cells at walls that hold, if there are any.
+  PressureCells(const std::array<Axis, D>& axes, const Shape<D>& shape, const Index<D>& tile,
+                StressUpdate stress, const HeldCells<D>* held)
+      : axes_(axes),
+        shape_(shape),
+        tile_(tile),
+        follows_(shape.kind == ShapeFunctions::b_spline || stress == StressUpdate::last),
+        held_(held) {
     slot_.fill(-1);
+    for (int d = 0; d < D; ++d) {
+      origin_[d] = axes[d].origin, per_cell_[d] = 1.0 / axes[d].h, first_[d] = tile[d] * tile_cells;
+      along_[d][d] = per_cell_[d];
+      for (int e = 0; e < D; ++e) across_[d][e] = e == d ? 0.0 : 1.0;
+    }
   }
 
   /// Enters the cells of the points of group g, with their places.
   void add_group(const LanePoints<D>& points, std::size_t g, std::array<int, octet_size>& cells) {
     const std::array<Octet, D> x = places_of<D>(points, g);
     find_pressure_cells<D>(axes_, shape_, tile_, x, cells);
+    if (!follows_) {
+      for (const int cell : cells) row_of(cell);
+      return;
+    }
     Octet column[4] = {};
     column[D] = points.mass[g];
     for (int d = 0; d < D; ++d) column[d] = column[D] * x[d];
@@ -48,6 +67,14 @@ class PressureCells {
   void read_divergences(const Cube& v) {
     for (int i = 0; i < count_; ++i) {
       Row& row = rows_[i];
+      settle(row);
+      if (at_corners(row)) {
+        NodeLanes total = {};
+        with_corners(row, [&](int at, const NodeLanes& slopes) { total += slopes * v[at]; });
+        row.divergence = 0.0;
+        for (int d = 0; d < D; ++d) row.divergence += total[d];
+        continue;
+      }
       with_row(row, [&](int base, const auto& weights, double x_0) {
         constexpr int width = std::remove_cvref_t<decltype(weights)>::n_controls;
         const auto at = gather<D, width, slopes_only>(&v[base], weights);
@@ -71,9 +98,14 @@ class PressureCells {
     for (int l = 0; l < points; ++l) row_of(cells[static_cast<std::size_t>(l)]).impulse += impulse[l];
   }
 
-  void scatter_impulses(Cube& sums) const {
+  void scatter_impulses(Cube& sums) {
     for (int i = 0; i < count_; ++i) {
-      const Row& row = rows_[i];
+      Row& row = rows_[i];
+      settle(row);
+      if (at_corners(row)) {
+        with_corners(row, [&](int at, const NodeLanes& slopes) { sums[at] += row.impulse * slopes; });
+        continue;
+      }
       with_row(row, [&](int base, const auto& weights, double x_0) {
         constexpr int width = std::remove_cvref_t<decltype(weights)>::n_controls;
         NodeLanes value = {}, slope[D] = {};
@@ -88,14 +120,15 @@ class PressureCells {
  private:
   struct Row {  // without defaults: most of a tile's cells are never entered
     int cell;
-    double divergence, impulse;
-    NodeLanes moment;  ///< mass times place, and mass
+    bool settled;
+    double divergence, impulse, x_0;
+    NodeLanes moment;  ///< mass times place, and mass; once settled, the place in the cell
   };
 
   Row& row_of(int cell) {
     if (slot_[cell] < 0) {
       slot_[cell] = static_cast<std::int16_t>(count_);
-      rows_[count_] = Row{cell, 0.0, 0.0, NodeLanes{}};
+      rows_[count_] = Row{cell, false, 0.0, 0.0, 0.0, NodeLanes{}};
       ++count_;
     }
     return rows_[slot_[cell]];
@@ -107,68 +140,110 @@ class PressureCells {
     return one;
   }
 
-  /// use(base, weights, first coordinate) at the row's place: three controls a direction, or the cell's two
-  /// corners where GIMP's points would see no other from there.
-  template <class Use>
-  void with_row(const Row& row, Use use) const {
+  static Index<D> index_of(int cell) {
     Index<D> at;
-    std::array<double, D> s;  // place in the cell
-    for (int d = D - 1, rest = row.cell; d >= 0; --d, rest /= tile_pressure_cells) {
-      at[d] = rest % tile_pressure_cells - 2;
-      const double x = (row.moment[d] / row.moment[D] - axes_[d].origin) / axes_[d].h;
-      s[d] = x - (tile_[d] * tile_cells + at[d]);
-    }
-    const double x_0 = row.moment[0] / row.moment[D];
-    if (shape_.kind == ShapeFunctions::b_spline) {
-      PointWeights<D, 3> weights{};
-      int base = 0;
-      for (int d = 0; d < D; ++d) {
-        base = base * tile_span + at[d] + 1;
-        const SplineValues one = splines(axes_[d], tile_[d] * tile_cells + at[d], s[d]);
-        for (int k = 0; k < 3; ++k) weights.w[d][k] = one.N[k], weights.dw[d][k] = one.dN[k];
-      }
-      use(base, weights, x_0);
-    } else if (corners_alone(s)) {
-      use_corners(at, s, x_0, use);
-    } else {
-      use_averaged_hats(at, s, x_0, use);
-    }
+    for (int d = D - 1; d >= 0; --d, cell /= tile_pressure_cells) at[d] = cell % tile_pressure_cells - 2;
+    return at;
   }
 
-  bool corners_alone(const std::array<double, D>& s) const {
-    bool alone = true;
-    for (int d = 0; d < D; ++d) alone = alone && s[d] >= shape_.half[d] && s[d] <= 1.0 - shape_.half[d];
-    return alone;
+  /// Finds the row's place: all points have entered.
+  void settle(Row& row) {
+    if (row.settled) return;
+    row.settled = true;
+    const Index<D> at = index_of(row.cell);
+    NodeLanes cell = first_;
+    for (int d = 0; d < D; ++d) cell[d] += at[d];
+    if (follows_) {
+      const NodeLanes x = row.moment * (1.0 / row.moment[D]);
+      row.moment = (x - origin_) * per_cell_ - cell;
+    } else {
+      row.moment += 0.5;
+      if (held_)
+        for (int d = 0; d < D; ++d) row.moment[d] = static_cast<double>((*held_)[row.cell].place[d]);
+    }
+    row.x_0 = origin_[0] + (cell[0] + row.moment[0]) * axes_[0].h;
   }
+
+  /// Whether GIMP's points would see the cell's corners alone from the row's place.
+  bool only_corners(const Row& row) const {
+    bool only = shape_.kind == ShapeFunctions::gimp;
+    for (int d = 0; d < D && follows_; ++d)
+      only = only && row.moment[d] >= shape_.half[d] && row.moment[d] <= 1.0 - shape_.half[d];
+    return only;
+  }
+  bool at_corners(const Row& row) const { return !std::is_same_v<Space, Axisymmetric> && only_corners(row); }
+
+  /// use(control, slopes in all directions) at the cell's corners.
   template <class Use>
-  void use_corners(const Index<D>& at, const std::array<double, D>& s, double x_0, Use use) const {
-    PointWeights<D, 2> weights{};
+  void with_corners(const Row& row, Use use) const {
+    const Index<D> at = index_of(row.cell);
+    NodeLanes side[D][2];  // a corner's slopes are the product of its sides in all directions
     int base = 0;
     for (int d = 0; d < D; ++d) {
       base = base * tile_span + at[d] + 2;
-      weights.w[d][0] = 1.0 - s[d], weights.w[d][1] = s[d];
-      weights.dw[d][1] = 1.0 / axes_[d].h, weights.dw[d][0] = -weights.dw[d][1];
+      const double s = row.moment[d];
+      side[d][0] = (1.0 - s) * across_[d] - along_[d];
+      side[d][1] = s * across_[d] + along_[d];
     }
-    use(base, weights, x_0);
+    for (int k = 0; k < power(2, D); ++k) {
+      int control = base;
+      NodeLanes slopes = side[0][k >> (D - 1)];
+      control += (k >> (D - 1)) * stride<D>(tile_span, 0);
+      for (int d = 1; d < D; ++d) {
+        const int up = (k >> (D - 1 - d)) & 1;
+        slopes *= side[d][up];
+        control += up * stride<D>(tile_span, d);
+      }
+      use(control, slopes);
+    }
   }
+
+  /// use(base, weights, first coordinate) at the row's place: three controls a direction, or the cell's two
+  /// corners.
   template <class Use>
-  void use_averaged_hats(const Index<D>& at, const std::array<double, D>& s, double x_0, Use use) const {
-    const StencilFrame<D> frame = stencil_frame<D>(axes_, shape_, tile_);
+  void with_row(const Row& row, Use use) const {
+    const Index<D> at = index_of(row.cell);
+    if (only_corners(row)) {
+      PointWeights<D, 2> weights{};
+      int base = 0;
+      for (int d = 0; d < D; ++d) {
+        base = base * tile_span + at[d] + 2;
+        weights.w[d][0] = 1.0 - row.moment[d], weights.w[d][1] = row.moment[d];
+        weights.dw[d][1] = per_cell_[d], weights.dw[d][0] = -per_cell_[d];
+      }
+      use(base, weights, row.x_0);
+      return;
+    }
+    const bool gimp = shape_.kind == ShapeFunctions::gimp;
     PointWeights<D, 3> weights{};
     int base = 0;
     for (int d = 0; d < D; ++d) {
-      const int corner = std::clamp(at[d] + (s[d] < 0.5 ? 0 : 1), -1, tile_cells);
-      base = base * tile_span + corner + 1;
-      Octet w[3], dw[3], arm[3];
-      gimp_weights(frame.axis[d], all_lanes(corner), all_lanes(at[d] + s[d] - corner), w, dw, arm);
-      for (int k = 0; k < 3; ++k) weights.w[d][k] = w[k][0], weights.dw[d][k] = dw[k][0];
+      const double s = row.moment[d];
+      base = base * tile_span + (gimp ? averaged_hats(d, at[d] + s, weights) : at[d] + 1);
+      if (gimp) continue;
+      const SplineValues one = splines(axes_[d], tile_[d] * tile_cells + at[d], s);
+      for (int k = 0; k < 3; ++k) weights.w[d][k] = one.N[k], weights.dw[d][k] = one.dN[k];
     }
-    use(base, weights, x_0);
+    use(base, weights, row.x_0);
+  }
+
+  /// GIMP's weights in direction d at a place in cells; returns their first control.
+  int averaged_hats(int d, double place, PointWeights<D, 3>& weights) const {
+    const StencilFrame<D> frame = stencil_frame<D>(axes_, shape_, tile_);
+    const int corner = std::clamp(static_cast<int>(std::floor(place + 0.5)), -1, tile_cells);
+    Octet w[3], dw[3], arm[3];
+    gimp_weights(frame.axis[d], all_lanes(corner), all_lanes(place - corner), w, dw, arm);
+    for (int k = 0; k < 3; ++k) weights.w[d][k] = w[k][0], weights.dw[d][k] = dw[k][0];
+    return corner + 1;
   }
 
   const std::array<Axis, D>& axes_;
   const Shape<D>& shape_;
   const Index<D>& tile_;
+  bool follows_;  ///< the rows' places are those of the points
+  const HeldCells<D>* held_;
+  NodeLanes origin_ = {}, per_cell_ = {}, first_ = {};
+  NodeLanes across_[D] = {}, along_[D] = {};  ///< ones but in direction d; 1/h in it
   int count_ = 0;
   std::array<std::int16_t, n> slot_;
   std::array<Row, n> rows_;

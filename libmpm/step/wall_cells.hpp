@@ -5,7 +5,8 @@
 // A front rolls over a floor that it sticks to, and its points never settle: half of the cells above the
 // floor stays empty, and a sum over points gives the floor that share of the concrete's resistance
 // (tests/verification/floor.md). But a cell inside the body is full, by geometry: its points' viscous and
-// yield stress is integrated over the whole cell. Pressure, mass and volume stay the points' own.
+// yield stress is integrated over the whole cell. Pressure, mass and volume stay the points' own. The
+// pressure's row moves to where the points are (pressure_cells.hpp), so that the flow fills what is hollow.
 
 #include "libmpm/step/explicit_body.hpp"
 
@@ -57,18 +58,23 @@ class CellFills {
         low_[d] = std::min(low_[d], tile.at[d] * tile_cells - 3);
         high[d] = std::max(high[d], tile.at[d] * tile_cells + tile_cells + 3);
       }
+    for (int d = 0; d < D; ++d)
+      if (axes_[d].periodic) low_[d] = 0, high[d] = axes_[d].n_cells;
     std::size_t n = 1;
     for (int d = 0; d < D; ++d) n *= static_cast<std::size_t>(size_[d] = high[d] - low_[d]);
-    fill_.assign(n, 0.0);
+    fill_.assign(n, {});
     for (const Tile<D>& tile : state.grid.tiles)
       if (near_holding_wall<D>(axes_, tile.at))
         for (int g = tile.first_group; g < tile.last_group; ++g)
           add_group(state.points, static_cast<std::size_t>(g));
   }
 
-  double at(Index<D> cell) const {
-    for (int d = 0; d < D; ++d) cell[d] = axes_[d].cell(cell[d]);
-    return fill_[number(cell)];
+  double at(const Index<D>& cell) const { return fill_[number(cell)].share; }
+
+  /// Mean distance of the points from the low face of a cell at a wall, in cells.
+  double height(const Index<D>& cell) const {
+    const Fill& of = fill_[number(cell)];
+    return of.share > 0.0 ? of.height / of.share : 0.5;
   }
 
   /// Whether all cells around one hold concrete.
@@ -87,10 +93,15 @@ class CellFills {
   }
 
  private:
+  struct Fill {
+    double share = 0.0,
+           height = 0.0;  ///< of the cell's volume; sum of share times place along the wall's axis
+  };
+
   std::size_t number(const Index<D>& cell) const {
     std::size_t n = 0;
     for (int d = 0; d < D; ++d)
-      n = n * static_cast<std::size_t>(size_[d]) + static_cast<std::size_t>(cell[d] - low_[d]);
+      n = n * static_cast<std::size_t>(size_[d]) + static_cast<std::size_t>(axes_[d].cell(cell[d]) - low_[d]);
     return n;
   }
 
@@ -98,22 +109,25 @@ class CellFills {
     const Octet volume = points.V0[g] * exp(points.ln_J[g]);
     for (std::size_t l = 0; l < octet_size && points.id[g][l] >= 0; ++l) {
       Index<D> cell;
-      Vec<D> middle;
+      Vec<D> middle, place;
       double full = 1.0;
       for (int d = 0; d < D; ++d) {
         const Axis& a = axes_[d];
-        cell[d] = static_cast<int>(std::floor((points.x[d][g][l] - a.origin) / a.h));
-        middle[d] = a.origin + (cell[d] + 0.5) * a.h;
+        const double x = (points.x[d][g][l] - a.origin) / a.h, low = std::floor(x);
+        cell[d] = static_cast<int>(low), place[d] = x - low;
+        middle[d] = a.origin + (low + 0.5) * a.h;
         full *= a.h;
-        cell[d] = std::clamp(a.cell(cell[d]), low_[d], low_[d] + size_[d] - 1);
       }
-      fill_[number(cell)] += volume[l] / (full * Space::measure(middle));
+      Fill& of = fill_[number(cell)];
+      const double share = volume[l] / (full * Space::measure(middle));
+      of.share += share;
+      of.height += share * place[held_at<D>(axes_, cell).axis];
     }
   }
 
   const std::array<Axis, D>& axes_;
   Index<D> low_, size_;
-  std::vector<double> fill_;
+  std::vector<Fill> fill_;
 };
 
 }  // namespace detail
@@ -134,25 +148,31 @@ double hold_of(const detail::CellFills<Space>& fills, const std::array<Axis, Spa
 template <class Space>
 void look_into_wall_cells(ExplicitState<Space>& state) {
   constexpr int D = Space::dim;
-  HoldingCells<D>& cells = state.holding;
-  if (cells.drift < detail::hold_drift) return;
-  cells.drift = 0.0;
-  cells.of_tile.assign(state.grid.tiles.size(), -1);
-  cells.hold.clear();
+  Holding<D>& holding = state.holding;
+  const auto& axes = state.grid.axes;
+  if (holding.drift < detail::hold_drift) return;
+  holding.drift = 0.0;
+  holding.of_tile.assign(state.grid.tiles.size(), -1);
+  holding.cells.clear();
   bool any = false;
-  for (const Axis& a : state.grid.axes) any = any || detail::holds(a.low) || detail::holds(a.high);
+  for (const Axis& a : axes) any = any || detail::holds(a.low) || detail::holds(a.high);
   if (!any) return;
   const detail::CellFills<Space> fills(state);
   for (std::size_t t = 0; t < state.grid.tiles.size(); ++t) {
     const Tile<D>& tile = state.grid.tiles[t];
-    if (!detail::near_holding_wall<D>(state.grid.axes, tile.at)) continue;
-    cells.of_tile[t] = static_cast<int>(cells.hold.size());
-    auto& hold = cells.hold.emplace_back();
+    if (!detail::near_holding_wall<D>(axes, tile.at)) continue;
+    holding.of_tile[t] = static_cast<int>(holding.cells.size());
+    HeldCells<D>& held = holding.cells.emplace_back();
     for (int k = 0; k < power(tile_pressure_cells, D); ++k) {
       Index<D> cell;
       for (int d = D - 1, rest = k; d >= 0; --d, rest /= tile_pressure_cells)
-        cell[d] = state.grid.axes[d].cell(tile.at[d] * tile_cells + rest % tile_pressure_cells - 2);
-      hold[static_cast<std::size_t>(k)] = static_cast<float>(hold_of<Space>(fills, state.grid.axes, cell));
+        cell[d] = axes[d].cell(tile.at[d] * tile_cells + rest % tile_pressure_cells - 2);
+      HeldCell<D>& one = held[static_cast<std::size_t>(k)];
+      one.hold = static_cast<float>(hold_of<Space>(fills, axes, cell));
+      one.place.fill(0.5F);
+      const detail::HeldAt wall = detail::held_at<D>(axes, cell);
+      if (wall.into != 0)
+        one.place[static_cast<std::size_t>(wall.axis)] = static_cast<float>(fills.height(cell));
     }
   }
 }
