@@ -86,11 +86,42 @@ void gather_one_by_one(const Cube<D>& v, const Weights<D>& weights, int n, Field
   for (int d = 0; d < D && wanted.moments; ++d) to_columns(moment[d], fields.moment[d]);
 }
 
+/// Points of a few cells: side by side for each place that their stencils begin at, every point kept from its
+/// own. False if there are too many such places: then nothing is read.
+template <Wanted wanted, int D>
+bool gather_by_place(const Cube<D>& v, const Weights<D>& weights, int n, Fields<D>& fields) {
+  constexpr int most_places = 3;  // as dear as one by one
+  std::array<int, most_places> place;
+  int places = 0;
+  OctetMask at = {};  // which of the places each point has
+  for (int l = 0; l < n; ++l) {
+    const int base = weights.base[static_cast<std::size_t>(l)];
+    int k = 0;
+    while (k < places && place[static_cast<std::size_t>(k)] != base) ++k;
+    if (k == most_places) return false;
+    if (k == places) place[static_cast<std::size_t>(places++)] = base;
+    at[l] = k;
+  }
+  gather_side_by_side<wanted, D>(&v[place[0]], weights, fields);
+  for (int k = 1; k < places; ++k) {
+    Fields<D> here;
+    gather_side_by_side<wanted, D>(&v[place[static_cast<std::size_t>(k)]], weights, here);
+    const OctetMask take = at == k;
+    for (int c = 0; c < D; ++c) {
+      fields.v[c] = take ? here.v[c] : fields.v[c];
+      for (int d = 0; d < D && wanted.slopes; ++d) fields.L[d][c] = take ? here.L[d][c] : fields.L[d][c];
+      for (int d = 0; d < D && wanted.moments; ++d)
+        fields.moment[d][c] = take ? here.moment[d][c] : fields.moment[d][c];
+    }
+  }
+  return true;
+}
+
 template <Wanted wanted, int D>
 void gather_group(const Cube<D>& v, const Weights<D>& weights, int n, Fields<D>& fields) {
   if (weights.together)
     gather_side_by_side<wanted, D>(&v[weights.base[0]], weights, fields);
-  else
+  else if (!gather_by_place<wanted, D>(v, weights, n, fields))
     gather_one_by_one<wanted, D>(v, weights, n, fields);
 }
 
