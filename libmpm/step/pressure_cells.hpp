@@ -68,7 +68,7 @@ class PressureCells {
     for (int i = 0; i < count_; ++i) {
       Row& row = rows_[i];
       settle(row);
-      if (at_corners(row)) {
+      if (at_corners()) {
         NodeLanes total = {};
         with_corners(row, [&](int at, const NodeLanes& slopes) { total += slopes * v[at]; });
         row.divergence = 0.0;
@@ -102,7 +102,7 @@ class PressureCells {
     for (int i = 0; i < count_; ++i) {
       Row& row = rows_[i];
       settle(row);
-      if (at_corners(row)) {
+      if (at_corners()) {
         with_corners(row, [&](int at, const NodeLanes& slopes) { sums[at] += row.impulse * slopes; });
         continue;
       }
@@ -164,14 +164,11 @@ class PressureCells {
     row.x_0 = origin_[0] + (cell[0] + row.moment[0]) * axes_[0].h;
   }
 
-  /// Whether GIMP's points would see the cell's corners alone from the row's place.
-  bool only_corners(const Row& row) const {
-    bool only = shape_.kind == ShapeFunctions::gimp;
-    for (int d = 0; d < D && follows_; ++d)
-      only = only && row.moment[d] >= shape_.half[d] && row.moment[d] <= 1.0 - shape_.half[d];
-    return only;
+  /// GIMP's rows are the slopes of the hats of the cell's corners. Averaged over an extent they would see
+  /// other controls too, but no longer add up to a uniform push along a row of points.
+  bool at_corners() const {
+    return shape_.kind == ShapeFunctions::gimp && !std::is_same_v<Space, Axisymmetric>;
   }
-  bool at_corners(const Row& row) const { return !std::is_same_v<Space, Axisymmetric> && only_corners(row); }
 
   /// use(control, slopes in all directions) at the cell's corners.
   template <class Use>
@@ -203,7 +200,7 @@ class PressureCells {
   template <class Use>
   void with_row(const Row& row, Use use) const {
     const Index<D> at = index_of(row.cell);
-    if (only_corners(row)) {
+    if (shape_.kind == ShapeFunctions::gimp) {
       PointWeights<D, 2> weights{};
       int base = 0;
       for (int d = 0; d < D; ++d) {
@@ -214,27 +211,14 @@ class PressureCells {
       use(base, weights, row.x_0);
       return;
     }
-    const bool gimp = shape_.kind == ShapeFunctions::gimp;
     PointWeights<D, 3> weights{};
     int base = 0;
     for (int d = 0; d < D; ++d) {
-      const double s = row.moment[d];
-      base = base * tile_span + (gimp ? averaged_hats(d, at[d] + s, weights) : at[d] + 1);
-      if (gimp) continue;
-      const SplineValues one = splines(axes_[d], tile_[d] * tile_cells + at[d], s);
+      base = base * tile_span + at[d] + 1;
+      const SplineValues one = splines(axes_[d], tile_[d] * tile_cells + at[d], row.moment[d]);
       for (int k = 0; k < 3; ++k) weights.w[d][k] = one.N[k], weights.dw[d][k] = one.dN[k];
     }
     use(base, weights, row.x_0);
-  }
-
-  /// GIMP's weights in direction d at a place in cells; returns their first control.
-  int averaged_hats(int d, double place, PointWeights<D, 3>& weights) const {
-    const StencilFrame<D> frame = stencil_frame<D>(axes_, shape_, tile_);
-    const int corner = std::clamp(static_cast<int>(std::floor(place + 0.5)), -1, tile_cells);
-    Octet w[3], dw[3], arm[3];
-    gimp_weights(frame.axis[d], all_lanes(corner), all_lanes(place - corner), w, dw, arm);
-    for (int k = 0; k < 3; ++k) weights.w[d][k] = w[k][0], weights.dw[d][k] = dw[k][0];
-    return corner + 1;
   }
 
   const std::array<Axis, D>& axes_;
