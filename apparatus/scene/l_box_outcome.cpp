@@ -144,7 +144,7 @@ std::vector<std::string> l_box_uses(const l_box::Scene& scene) {
   std::vector<std::string> lines{flocculation_use(scene.mix)};
   lines.push_back(scene.gate_speed ? "gate: a moving wall along which the concrete slips"
                                    : "gate: left out (test.gate_speed = \"instant\")");
-  lines.push_back(scene.bars > 0 ? fmt::format("bars: {} of 12 mm in the gap", scene.bars)
+  lines.push_back(scene.bars > 0 ? fmt::format("bars: {} of 12 mm in front of the gate", scene.bars)
                                  : "bars: left out (test.bars = 0)");
   lines.push_back(space == SpaceKind::plane ? "side walls: left out (model.space = \"plane\")"
                   : space == SpaceKind::plane_with_side_walls
