@@ -3,12 +3,12 @@
 // What is read off the concrete: depths, front, profile.
 //
 // EN 12350-10 has H1 and H2 as the mean depth of the concrete behind the gate and at the channel's end. A
-// depth is the volume of what stands on the floor over its area, up to the highest row above which less than
-// half of the area is concrete: what hangs on the walls or falls through the air higher up is no depth, and
-// neither are the holes that points may leave, nor does what lies loosely on the surface count for more than
-// its volume. Where the concrete meets a wall it tells nothing: films hang down onto it in the column, and
-// the cells at the end wall never fill up. So nothing within off_the_walls of a wall is read: H1 is the mean
-// depth over the rest of the column's length, H2 that over as much before the channel's end.
+// depth is the volume of what stands on the floor over its area, up to the highest row of cells of which at
+// least half is concrete and what lies loosely on it: what hangs on the walls or falls through the air higher
+// up is no depth, and neither are the holes that points may leave. Where the concrete meets a wall it tells
+// nothing: films hang down onto it in the column, and the cells at the end wall never fill up. So nothing
+// within off_the_walls of a wall is read: H1 is the mean depth over the rest of the column's length, H2 that
+// over as much before the channel's end.
 
 #include <algorithm>
 #include <cmath>
@@ -30,10 +30,11 @@ double depth(const Points<Space::dim>& points, double low, double high, double r
     if (j + 2 > fill.size()) fill.resize(j + 2, 0.0);
     fill[j] += points.volume(p) / ((high - low) * width * row);
   }
+  std::size_t top = fill.size() - 1;  // the last row is empty
+  while (top > 0 && fill[top - 1] < 0.5) --top;
   double sum = 0.0;
-  std::size_t j = 0;
-  for (; fill[j] >= 0.5; ++j) sum += fill[j];
-  return row * (sum + fill[j]);
+  for (std::size_t j = 0; j <= top; ++j) sum += fill[j];
+  return row * sum;
 }
 
 /// The stretches over which H1 and H2 are read, in x [m].
