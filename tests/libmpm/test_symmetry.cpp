@@ -68,7 +68,7 @@ TEST(Symmetry, QuarterIsTheWholeWithFactorisedSystems) {
 }
 
 // By iteration both are solved to the tolerance alone, 1e-5 of the stresses: 2e-5 m/s, as in
-// test_space_solver.cpp. With the splines of a slippery wall they would differ by 1e-3 m/s and more.
+// test_space_solver.cpp. With the splines of a slippery wall they would differ by 1.6e-3 m/s.
 TEST(Symmetry, QuarterIsTheWholeByIteration) {
   StepSettings settings = settings_with(0);
   settings.admm.tolerance = 1e-5;
@@ -76,10 +76,11 @@ TEST(Symmetry, QuarterIsTheWholeByIteration) {
       difference_after(3, slumping(true, FaceKind::no_slip), slumping(false, FaceKind::no_slip), settings);
   Body<ThreeD> walled = slumping(true, FaceKind::no_slip);
   for (int d = 0; d < 2; ++d) walled.grid.axes[d].low = FaceKind::free_slip;
-  const double slippery = difference_after(3, walled, slumping(false, FaceKind::no_slip), settings);
+  const double slippery =
+      difference_after(3, std::move(walled), slumping(false, FaceKind::no_slip), settings);
   std::printf("quarter and whole differ by %.1e m/s, with slippery walls by %.1e m/s\n", symmetric, slippery);
   EXPECT_LE(symmetric, 2e-5);
-  EXPECT_GE(slippery, 1e-3);
+  EXPECT_GE(slippery, 5e-4);
 }
 
 // In a plane, by Newton's method too, and with the plane of symmetry at the high end.
@@ -101,7 +102,8 @@ TEST(Symmetry, HalfIsTheWholeInAPlane) {
       fill_box(whole, Vec<2>(-0.08, 0.0), Vec<2>(0.08, 0.09), 2);
       StepSettings settings = settings_with(0);
       settings.method = method;
-      EXPECT_LE(difference_after(2, half, whole, settings), method == YieldMethod::newton ? 1e-5 : 1e-9);
+      EXPECT_LE(difference_after(2, std::move(half), std::move(whole), settings),
+                method == YieldMethod::newton ? 1e-5 : 1e-9);
     }
 }
 
@@ -109,7 +111,7 @@ TEST(Symmetry, HalfIsTheWholeInAPlane) {
 TEST(Symmetry, PressuresByIterationAgreeWithTheFactor) {
   omp_set_num_threads(1);
   for (const double K : {33e3, 1e6}) {
-    Body<ThreeD> factorised = slumping(true, FaceKind::no_slip), iterated = factorised;
+    Body<ThreeD> factorised = slumping(true, FaceKind::no_slip), iterated = slumping(true, FaceKind::no_slip);
     factorised.mix.K = iterated.mix.K = K;
     const auto start = factorised.points;
     StepSettings settings = settings_with(0), by_iteration = settings;
@@ -140,7 +142,8 @@ TEST(Symmetry, SplinesAreThoseInside) {
   for (int c = 0; c < 2; ++c)
     for (const double s : {0.0, 0.3, 1.0}) {
       const SplineValues a = splines(axis, c, s), b = splines(inside, c, s);
-      for (int k = 0; k < 3; ++k) EXPECT_EQ(a.N[k], b.N[k]), EXPECT_EQ(a.dN[k], b.dN[k]);
+      EXPECT_EQ(a.N, b.N);
+      EXPECT_EQ(a.dN, b.dN);
     }
 }
 
