@@ -49,7 +49,7 @@ Body<Space> filled_column(const Scene& scene) {
     const FaceKind side = scene.side_walls_slip ? FaceKind::free_slip : FaceKind::no_slip;
     const bool half = scene.model.space == SpaceKind::half;
     high[1] = computed_width(scene);
-    body.grid.axes[1] = between_walls(high[1], across, half ? FaceKind::free_slip : side, side);
+    body.grid.axes[1] = between_walls(high[1], across, half ? FaceKind::symmetry : side, side);
   }
   std::array<int, D> n;
   for (int d = 0; d < D; ++d)
