@@ -64,15 +64,8 @@ Case steady(Depth depth) {
   return one;
 }
 
-/// Worst relative error of the torque from 0.5 to 20 s.
-Run decay_error(double cell_mm, const CouetteDecay& reference) {
-  const double start = cpu_seconds();
-  icar_vane::Scene scene = scene_of({54.0, 35.8}, 0.25, cell_mm);
-  scene.mix.thixotropy = Thixotropy{.A_thix = 1.3, .alpha = 0.0358};
-  scene.rest = 240.0;
-  scene.duration = 20.0;
-  const auto outcome = icar_vane::run(scene);
-  const auto& s = outcome.series;
+/// Worst relative error of a run's torque from 0.5 to 20 s.
+double decay_error(const std::vector<icar_vane::Sample>& s, const CouetteDecay& reference) {
   double worst = 0.0;
   for (std::size_t k = 0, i = 1; k < reference.time.size(); ++k) {
     while (i + 1 < s.size() && s[i].time < reference.time[k]) ++i;
@@ -80,7 +73,16 @@ Run decay_error(double cell_mm, const CouetteDecay& reference) {
     const double torque = s[i - 1].torque + share * (s[i].torque - s[i - 1].torque);
     if (reference.time[k] >= 0.5) worst = std::max(worst, std::abs(torque / reference.torque[k] - 1.0));
   }
-  return {fmt::format("{:g} mm", cell_mm), cell_mm, worst, cpu_seconds() - start};
+  return worst;
+}
+
+icar_vane::Scene decay_scene(double cell_mm) {
+  icar_vane::Scene scene = scene_of({54.0, 35.8}, 0.25, cell_mm);
+  scene.mix.thixotropy = Thixotropy{.A_thix = 1.3, .alpha = 0.0358};
+  scene.rest = 240.0;
+  scene.duration = 20.0;
+  scene.with_reference = false;
+  return scene;
 }
 
 Case decay(Depth depth) {
@@ -105,8 +107,12 @@ Case decay(Depth depth) {
   const CouetteDecay started = thixotropic_couette(flow, times, {}, options);
   for (double cell : {8.0, 4.0, 2.0, 1.0}) {
     if (cell == 1.0 && depth == Depth::quick) break;
-    one.series[0].runs.push_back(decay_error(cell, started));
-    one.series[1].runs.push_back(decay_error(cell, at_once));
+    const double start = cpu_seconds();
+    const auto outcome = icar_vane::run(decay_scene(cell));
+    const double cpu = cpu_seconds() - start;
+    const std::string label = fmt::format("{:g} mm", cell);
+    one.series[0].runs.push_back({label, cell, decay_error(outcome.series, started), cpu});
+    one.series[1].runs.push_back({label, cell, decay_error(outcome.series, at_once), cpu});
   }
   for (const Series& series : one.series)
     one.bounds.push_back({.what = series.scheme + ": error at the finest cells",
