@@ -15,9 +15,9 @@ namespace tremie::detail {
 template <int D>
 struct WallPoint {
   std::array<NodeLanes*, power(3, D)> control;
-  std::array<Vec<D>, power(3, D)> share;  ///< shape value times normal, zero where a flat wall holds it
+  std::array<NodeLanes, power(3, D)> give;  ///< velocity for a unit impulse; none where a flat wall holds it
   std::array<double, power(3, D)> N;
-  Vec<D> normal;
+  NodeLanes normal = {};
   double target = 0.0;   ///< least normal velocity [m/s]
   double inertia = 0.0;  ///< 1/kg: of the controls against an impulse along the normal
 };
@@ -46,58 +46,90 @@ void look_around_wall(const RigidWall<Space::dim>& wall, double time, ExplicitSt
       }
 }
 
+/// The three controls of a stencil in one direction.
+struct Side {
+  std::array<int, 3> block, within;  ///< their parts of where a control is on the grid
+  std::array<double, 3> w;           ///< values of the shape functions
+  std::array<NodeLanes, 3> left;     ///< share of a push that flat walls leave, by component
+};
+
+template <class Space>
+Side side_of(const ExplicitState<Space>& state, const Tile<Space::dim>& tile,
+             const Weights<Space::dim>& weights, std::size_t l, int d) {
+  constexpr int D = Space::dim;
+  const Axis& a = state.grid.axes[d];
+  const int first = weights.base[l] / stride<D>(tile_span, d) % tile_span;
+  Side side;
+  for (std::size_t o = 0; o < 3; ++o) {
+    const int local = first + static_cast<int>(o), control = tile.at[d] * tile_cells - 1 + local;
+    side.block[o] = local / tile_cells * stride<D>(2, d);
+    side.within[o] = local % tile_cells * stride<D>(tile_cells, d);
+    side.w[o] = weights.w[d][o][l];
+    side.left[o] = NodeLanes{} + 1.0;
+    const bool low = a.wall_low() && control == state.shape.low_wall();
+    const bool high = a.wall_high() && control == a.n_cells + 1;
+    if (low || high) side.left[o][d] = 0.0;
+    if ((low && a.low == FaceKind::no_slip) || (high && a.high == FaceKind::no_slip))
+      side.left[o] = NodeLanes{};
+  }
+  return side;
+}
+
+/// The controls of lane l, and what a push along the normal does to them.
+template <class Space>
+void enter_controls(ExplicitState<Space>& state, const Tile<Space::dim>& tile,
+                    const Weights<Space::dim>& weights, std::size_t l, WallPoint<Space::dim>& p) {
+  constexpr int D = Space::dim;
+  Side side[D];
+  for (int d = 0; d < D; ++d) side[d] = side_of(state, tile, weights, l, d);
+  NodeLanes inertia = {};
+  for (int k = 0; k < power(3, D); ++k) {
+    const Index<D> o = local_offset<D>(k);
+    int block = 0, within = 0;
+    double N = 1.0;
+    NodeLanes share = p.normal;
+    for (int d = 0; d < D; ++d) {
+      const auto at = static_cast<std::size_t>(o[d]);
+      block += side[d].block[at], within += side[d].within[at];
+      N *= side[d].w[at], share *= side[d].left[at];
+    }
+    NodeLanes& v = state.grid.v[static_cast<std::size_t>(tile.block[block])][within];
+    p.control[k] = &v, p.N[k] = N;
+    p.give[k] = v[D] > 0.0 ? N / v[D] * share : NodeLanes{};
+    inertia += N * p.give[k] * share;
+  }
+  for (int d = 0; d < D; ++d) p.inertia += inertia[d];
+}
+
 /// The points that may touch the wall, which must see half a cell further than `gap_min`.
 template <class Space>
 std::vector<WallPoint<Space::dim>> find_wall_points(const RigidWall<Space::dim>& wall, double time, double dt,
                                                     double gap_min, ExplicitState<Space>& state) {
   constexpr int D = Space::dim;
   std::vector<WallPoint<D>> touching;
-  TileGrid<D>& grid = state.grid;
-  const double reach = gap_min + 0.1 * grid.axes[0].h;
+  const auto& axes = state.grid.axes;
+  const double reach = gap_min + 0.1 * axes[0].h;
   look_around_wall(wall, time, state);
+  touching.reserve(state.near_wall.size());
   Weights<D> weights;
   int weighed = -1;
   for (const auto& [t, g, l] : state.near_wall) {
-    const Tile<D>& tile = grid.tiles[t];
+    const Tile<D>& tile = state.grid.tiles[t];
     Vec<D> x;
     for (int d = 0; d < D; ++d) x[d] = state.points.x[d][g][l];
     const auto view = wall(x, time);
     if (!view || view->gap > reach) continue;
     if (weighed != g) {
-      weigh<D>(grid.axes, state.shape, tile.at, places_of<D>(state.points, static_cast<std::size_t>(g)),
-               weights);
+      weigh<D>(axes, state.shape, tile.at, places_of<D>(state.points, static_cast<std::size_t>(g)), weights);
       weighed = g;
     }
-    WallPoint<D> p;
-    p.normal = view->normal;
+    WallPoint<D>& p = touching.emplace_back();
+    for (int d = 0; d < D; ++d) p.normal[d] = view->normal[d];
     const double missing = gap_min - view->gap;
     p.target =
         view->normal.dot(view->velocity) + missing / (missing > 0.0 ? std::max(dt, wall_recovery) : dt);
-    for (int k = 0; k < power(3, D); ++k) {
-      const Index<D> o = local_offset<D>(k);
-      int at = weights.base[static_cast<std::size_t>(l)], block = 0, within = 0;
-      Index<D> local;
-      for (int d = D - 1; d >= 0; --d, at /= tile_span) local[d] = at % tile_span + o[d];
-      p.N[k] = 1.0;
-      for (int d = 0; d < D; ++d) {
-        p.N[k] *= weights.w[d][o[d]][l];
-        block = 2 * block + local[d] / tile_cells;
-        within = within * tile_cells + local[d] % tile_cells;
-      }
-      p.control[k] = &grid.v[static_cast<std::size_t>(tile.block[block])][within];
-      p.share[k] = p.N[k] * p.normal;
-      for (int d = 0; d < D; ++d) {
-        const Axis& a = grid.axes[d];
-        const int control = tile.at[d] * tile_cells - 1 + local[d];
-        const bool low = a.wall_low() && control == state.shape.low_wall();
-        const bool high = a.wall_high() && control == a.n_cells + 1;
-        if ((low ? a.low : a.high) == FaceKind::no_slip && (low || high)) p.share[k].setZero();
-        if (low || high) p.share[k][d] = 0.0;
-      }
-      const double mass = (*p.control[k])[D];
-      if (mass > 0.0) p.inertia += p.share[k].squaredNorm() / mass;
-    }
-    if (p.inertia > 0.0) touching.push_back(p);
+    enter_controls(state, tile, weights, static_cast<std::size_t>(l), p);
+    if (p.inertia <= 0.0) touching.pop_back();
   }
   return touching;
 }
@@ -113,17 +145,14 @@ void push_off_wall(const RigidWall<Space::dim>& wall, double time, double dt, do
   for (int sweep = 0; sweep < wall_sweeps; ++sweep)
     for (std::size_t i = 0; i < touching.size(); ++i) {
       WallPoint<D>& p = touching[i];
+      NodeLanes v = {};
+      for (int k = 0; k < power(3, D); ++k) v += p.N[k] * *p.control[k];
       double u = 0.0;
-      for (int k = 0; k < power(3, D); ++k)
-        for (int d = 0; d < D; ++d) u += p.N[k] * p.normal[d] * (*p.control[k])[d];
+      for (int d = 0; d < D; ++d) u += p.normal[d] * v[d];
       const double total = std::max(0.0, given[i] + (p.target - u) / p.inertia), more = total - given[i];
       given[i] = total;
       if (more == 0.0) continue;
-      for (int k = 0; k < power(3, D); ++k) {
-        const double mass = (*p.control[k])[D];
-        if (mass > 0.0)
-          for (int d = 0; d < D; ++d) (*p.control[k])[d] += more / mass * p.share[k][d];
-      }
+      for (int k = 0; k < power(3, D); ++k) *p.control[k] += more * p.give[k];
     }
 }
 

@@ -42,16 +42,17 @@ inline Octet flocculation_step(const Octet& lambda, const Thixotropy& t, double 
     const Octet one = all_lanes(1.0), left = d * exp(-(half * (gamma_1 - gamma_0) * decay_asymmetry(k, d)));
     return lambda * (1.0 - k * d) + built * (left < one ? left : one);
   }
-  // Gated: before and after the crossing of gamma_c at the share theta of the step.
   const Octet none = {}, gate = none + t.gamma_c;
   const OctetMask rest_0 = gamma_0 < t.gamma_c, rest_1 = gamma_1 < t.gamma_c;
   const OctetMask crosses = rest_0 ^ rest_1;
+  if (!any(crosses)) return rest_0 ? lambda + built : lambda * decay(half * (gamma_0 + gamma_1));
+  // Before and after the crossing of gamma_c at the share theta of the step.
   const Octet theta = crosses ? (gate - gamma_0) / (crosses ? gamma_1 - gamma_0 : none + 1.0) : none + 1.0;
   const Octet before = rest_0 ? built * theta : none;
   const Octet after = (crosses & rest_1) ? built * (1.0 - theta) : none;
   const Octet flow_0 = rest_0 ? none : half * theta * (gamma_0 + (crosses ? gate : gamma_1));
   const Octet flow_1 = (crosses & rest_0) ? half * (1.0 - theta) * (gate + gamma_1) : none;
-  return (lambda + before) * exp(-(flow_0 + flow_1)) + after;
+  return (lambda + before) * decay(flow_0 + flow_1) + after;
 }
 
 }  // namespace tremie

@@ -52,7 +52,7 @@ struct LaneSums {
 /// Grid fields at eight points.
 template <int D>
 struct Fields {
-  Octet v[4] = {}, dv[4] = {}, L[D][4] = {}, moment[D][4] = {};  ///< L[b][a] = dv_a/dx_b
+  Octet v[4] = {}, v_start[4] = {}, L[D][4] = {}, moment[D][4] = {};  ///< L[b][a] = dv_a/dx_b
 };
 
 template <int D>
@@ -127,7 +127,7 @@ void gather_group(const Cube<D>& v, const Weights<D>& weights, int n, Fields<D>&
 
 /// Reads what a pass needs. FLIP needs no moments, and a pass without stress no slopes.
 template <Pass pass, int D>
-void gather_for(const Cube<D>& v, const Cube<D>& dv, const Weights<D>& weights, int n, bool flip,
+void gather_for(const Cube<D>& v, const Cube<D>& v_start, const Weights<D>& weights, int n, bool flip,
                 Fields<D>& fields) {
   constexpr Wanted without{.slopes = pass.stress, .moments = false};
   constexpr Wanted with{.slopes = pass.stress, .moments = true};
@@ -136,9 +136,9 @@ void gather_for(const Cube<D>& v, const Cube<D>& dv, const Weights<D>& weights, 
   else
     gather_group<without, D>(v, weights, n, fields);
   if (!pass.move || !flip) return;
-  Fields<D> change;
-  gather_group<value_only, D>(dv, weights, n, change);
-  for (int d = 0; d < D; ++d) fields.dv[d] = change.v[d];
+  Fields<D> start;
+  gather_group<value_only, D>(v_start, weights, n, start);
+  for (int d = 0; d < D; ++d) fields.v_start[d] = start.v[d];
 }
 
 }  // namespace tremie::detail

@@ -54,24 +54,26 @@ bool touches_wall(const std::array<Axis, D>& axes, const NodeBlock<D>& block) {
   return false;
 }
 
-/// Visits every block; `update(b, k, total)` makes the velocity of control k from the sum of the tiles.
+/// Visits every control that points reach; `update(b, k, total)` makes the velocity of control k of block b
+/// from the sum of the tiles.
 template <class Space, class Update>
 void for_each_node(const Body<Space>& body, ExplicitState<Space>& state, double friction_coefficient,
                    const std::vector<typename TileGrid<Space::dim>::Buffer>& buffers, Update update) {
   constexpr int D = Space::dim;
   TileGrid<D>& grid = state.grid;
-#pragma omp parallel for schedule(static)
-  for (int b = 0; b < grid.n_blocks(); ++b) {
-    const auto total = sum_tiles<D>(grid.blocks[b], buffers);
+  for_each_share(grid, first_block_of<D>, [&](int b) {
     const bool walls = touches_wall<D>(grid.axes, grid.blocks[b]);
-    for (int k = 0; k < TileGrid<D>::block_nodes; ++k) {
-      NodeLanes& v = grid.v[b][k];
-      update(b, k, total[k]);
-      if (walls && v[D] > 0.0)
-        apply_walls<D>(grid.axes, state.shape, body.walls, friction_coefficient,
-                       control_of<D>(grid.blocks[b], k), v);
-    }
-  }
+    sum_tiles<D>(grid, b, buffers, [&](int row, const std::array<NodeLanes, tile_cells>& total) {
+      for (int i = 0; i < tile_cells; ++i) {
+        const int k = row * tile_cells + i;
+        NodeLanes& v = grid.v[b][k];
+        update(b, k, total[i]);
+        if (walls && v[D] > 0.0)
+          apply_walls<D>(grid.axes, state.shape, body.walls, friction_coefficient,
+                         control_of<D>(grid.blocks[b], k), v);
+      }
+    });
+  });
 }
 
 template <int D>
@@ -105,17 +107,10 @@ void add_impulses(const Body<Space>& body, ExplicitState<Space>& state, double f
   for_each_node(body, state, friction, impulses, [&](int b, int k, const NodeLanes& total) {
     NodeLanes& v = state.grid.v[b][k];
     const double mass = v[D];
-    if (flip) state.grid.dv[b][k] = -v;
+    if (flip) state.grid.v_start[b][k] = v;
     if (mass > 0.0) v += total / mass + pull;
     v[D] = mass;
   });
-}
-
-/// For FLIP: turns what is kept of the old velocities into the change over the step.
-template <class Space>
-void finish_change(ExplicitState<Space>& state) {
-  for (std::size_t b = 0; b < state.grid.v.size(); ++b)
-    for (std::size_t k = 0; k < state.grid.v[b].size(); ++k) state.grid.dv[b][k] += state.grid.v[b][k];
 }
 
 }  // namespace tremie::detail

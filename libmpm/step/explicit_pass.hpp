@@ -54,6 +54,30 @@ GroupStress<Space::dim> update_state(const Mix& mix, const Law& law, bool cell_p
   return stress;
 }
 
+/// 1/inertia in each direction [1/m^2], by one division. On a wall one control has all the weight: no slope
+/// can be seen there, and none is given.
+template <int D>
+std::array<Octet, D> inverse_inertia(const std::array<Axis, D>& axes, const Weights<D>& weights) {
+  std::array<Octet, D> cells;  // in cells^2
+  OctetMask seen[D];
+  Octet product = all_lanes(1.0);
+  for (int d = 0; d < D; ++d) {
+    cells[d] = weights.inertia[d] * (1.0 / (axes[d].h * axes[d].h));
+    seen[d] = cells[d] > 1e-12;
+    cells[d] = seen[d] ? cells[d] : all_lanes(1.0);
+    product *= cells[d];
+  }
+  const Octet inverse = 1.0 / product;
+  std::array<Octet, D> of;
+  for (int d = 0; d < D; ++d) {
+    Octet others = inverse * (1.0 / (axes[d].h * axes[d].h));
+    for (int e = 0; e < D; ++e)
+      if (e != d) others *= cells[e];
+    of[d] = seen[d] ? others : Octet{};
+  }
+  return of;
+}
+
 /// New velocities and places of group g.
 template <int D>
 void move_group(const std::array<Axis, D>& axes, const Transfer& transfer, double dt,
@@ -62,7 +86,7 @@ void move_group(const std::array<Axis, D>& axes, const Transfer& transfer, doubl
   Octet speed2 = {};
   for (int d = 0; d < D; ++d) {
     Octet &v = points.v[d][g], &x = points.x[d][g];
-    v = transfer.flip ? fields.v[d] + transfer.flip_blend * (v - fields.v[d] + fields.dv[d]) : fields.v[d];
+    v = transfer.flip ? fields.v[d] + transfer.flip_blend * (v - fields.v_start[d]) : fields.v[d];
     x += dt * fields.v[d];
     const Axis& a = axes[d];
     if (a.wall_low()) x = max(x, all_lanes(a.origin + 1e-6 * a.h));
@@ -74,12 +98,9 @@ void move_group(const std::array<Axis, D>& axes, const Transfer& transfer, doubl
   }
   sums.speed2 = max(sums.speed2, speed2);
   if (transfer.flip) return;
-  for (int b = 0; b < D; ++b) {
-    // On a wall one control has all the weight: no slope can be seen there, and none is given.
-    const double least = 1e-12 * axes[b].h * axes[b].h;
-    const Octet inverse = weights.inertia[b] > least ? 1.0 / weights.inertia[b] : Octet{};
-    for (int a = 0; a < D; ++a) points.C[a * D + b][g] = fields.moment[b][a] * inverse;
-  }
+  const std::array<Octet, D> inverse = inverse_inertia<D>(axes, weights);
+  for (int b = 0; b < D; ++b)
+    for (int a = 0; a < D; ++a) points.C[a * D + b][g] = fields.moment[b][a] * inverse[b];
 }
 
 /// Momentum, mass and impulses of group g to the controls; `forces` is `sums` unless FLIP must tell them
@@ -122,6 +143,15 @@ Octet hold_of_group(const HeldCells<D>& held, const std::array<int, octet_size>&
   return of;
 }
 
+/// Rows of controls that the first n points of a group reach.
+template <int D>
+TileRows rows_reached(const Weights<D>& weights, int n) {
+  TileRows rows = stencil_rows<D>(weights.base[0]);
+  for (int l = 1; l < n && !weights.together; ++l)
+    rows |= stencil_rows<D>(weights.base[static_cast<std::size_t>(l)]);
+  return rows;
+}
+
 /// One tile.
 template <Pass pass, class Space, class Law>
 PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& settings,
@@ -132,13 +162,15 @@ PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& 
   const Tile<D>& tile = grid.tiles[t];
   const bool flip = settings.transfer.flip, cells = settings.cell_pressure;
   const bool apart = flip && pass.move && pass.stress;  // FLIP must tell forces from momentum
-  Cube<D> v, dv;
-  if (pass.gather) read_blocks<D>(tile, grid.v, v);
-  if (pass.gather && pass.move && flip) read_blocks<D>(tile, grid.dv, dv);
+  Cube<D> v, v_start;
+  TileRows& rows = grid.rows[t];
+  if (pass.gather) read_blocks<D>(tile, rows, grid.v, v);
+  if (pass.gather && pass.move && flip) read_blocks<D>(tile, rows, grid.v_start, v_start);
   auto& sums = grid.sums[t];
   auto& forces = apart ? grid.forces[t] : sums;
-  sums.fill(NodeLanes{});
-  if (apart) forces.fill(NodeLanes{});
+  clear_rows<D>(rows, sums);
+  if (apart) clear_rows<D>(rows, forces);
+  rows = 0;
   const auto first = static_cast<std::size_t>(tile.first_group),
              last = static_cast<std::size_t>(tile.last_group);
   const HeldCells<D>* held = pass.stress ? state.holding.of(t) : nullptr;
@@ -163,7 +195,7 @@ PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& 
     };
     place();
     Fields<D> fields;
-    if (pass.gather) gather_for<pass, D>(v, dv, weights, n, flip, fields);
+    if (pass.gather) gather_for<pass, D>(v, v_start, weights, n, flip, fields);
     reduced.mixed += weights.together ? 0 : 1;
     GroupStress<D> stress;
     std::array<int, octet_size> cell{};
@@ -188,6 +220,7 @@ PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& 
       if (!pass.gather || pass.move) pushed.add_group(points, g, cell);
       pushed.push(cell, n, input.impulse_dt * stress.pressure);
     }
+    rows |= rows_reached<D>(weights, n);
     scatter_points<pass, Space>(flip, apart, input.impulse_dt, weights, stress, n, points, g, sums, forces);
   }
   if (pass.stress && cells) pushed.scatter_impulses(forces);
@@ -198,10 +231,11 @@ PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& 
 template <Pass pass, class Space, class Law>
 PassSums pass_over_points(const Mix& mix, const Law& law, const ExplicitSettings& settings,
                           const PassInput& input, ExplicitState<Space>& state) {
+  constexpr int D = Space::dim;
   std::vector<PassSums> reduced(state.grid.tiles.size());
-#pragma omp parallel for schedule(dynamic)
-  for (int t = 0; t < state.grid.n_tiles(); ++t)
+  for_each_share(state.grid, first_tile_of<D>, [&](int t) {
     reduced[t] = pass_over_tile<pass, Space>(mix, law, settings, input, t, state);
+  });
   PassSums all;
   for (const PassSums& one : reduced) all.add(one);
   state.mixed_since += std::max<std::int64_t>(0, all.mixed - state.mixed_groups);

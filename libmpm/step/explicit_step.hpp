@@ -45,7 +45,6 @@ detail::PassSums stress_last(Body<Space>& body, const Law& law, const ExplicitSe
     detail::velocities_from_sums(body, state, settings.friction_coefficient, pull);
   }
   detail::push_off_wall(wall, body.time + dt, dt, settings.wall_gap, state);
-  if (flip) detail::finish_change(state);
   detail::sort_if_drifted(settings, state);
   look_into_wall_cells(state);
 
@@ -67,7 +66,6 @@ detail::PassSums stress_first(Body<Space>& body, const Law& law, const ExplicitS
       detail::pass_over_points<detail::stress_pass, Space>(body.mix, law, settings, {dt, dt}, state);
   detail::add_impulses(body, state, settings.friction_coefficient, state.grid.sums, flip, dt * body.gravity);
   detail::push_off_wall(wall, body.time + dt, dt, settings.wall_gap, state);
-  if (flip) detail::finish_change(state);
   sums.add(detail::pass_over_points<detail::motion_pass, Space>(body.mix, law, settings, {dt, 0.0}, state));
   return sums;
 }

@@ -159,13 +159,8 @@ void weigh(const StencilFrame<D>& frame, const std::array<Octet, D>& x, Weights<
       weights.inertia[d] += weights.wa[d][k] * arm[k];
     }
   }
-  const OctetMask differs = base != all_lanes(base[0]);
-  std::int64_t any = 0;
-  for (int l = 0; l < octet_size; ++l) {
-    weights.base[static_cast<std::size_t>(l)] = static_cast<int>(base[l]);
-    any |= differs[l];
-  }
-  weights.together = any == 0;
+  weights.together = !any(base != all_lanes(base[0]));
+  for (int l = 0; l < octet_size; ++l) weights.base[static_cast<std::size_t>(l)] = static_cast<int>(base[l]);
 }
 template <int D>
 void weigh(const std::array<Axis, D>& axes, const Shape<D>& shape, const Index<D>& tile,

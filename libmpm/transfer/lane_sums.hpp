@@ -163,63 +163,47 @@ constexpr int row_offset(int r) {
   return D == 2 ? r * tile_span : (r / 3 * tile_span + r % 3) * tile_span;
 }
 
-/// The last direction of point l: two neighbouring controls from an even one on, and the other.
+/// Adds points first ... last - 1, whose stencils all begin where that of `first` does, to their controls:
+/// the sums stay in registers.
 template <int D>
-struct LastDirection {
-  Octet w_pair, along_pair, along_other;
-  double w_other;
-  int pair_at, other_at;
-
-  LastDirection() = default;
-  LastDirection(const Weights<D>& weights, const CarriedRows<D>& rows, std::size_t l) {
-    const auto& w = weights.w[D - 1];
-    const int odd = weights.base[l] & 1, other = odd ? 0 : 2;
-    w_pair = pair(w[odd][l], w[odd + 1][l]), w_other = w[other][l];
-    along_pair = side_by_side(rows.along[odd][l], rows.along[odd + 1][l]);
-    along_other = twice(rows.along[other][l]);
-    pair_at = weights.base[l] + odd, other_at = weights.base[l] + other;
-  }
-};
-
-/// Row r of point l.
-template <int D>
-[[gnu::always_inline]] inline void add_row(const CarriedRows<D>& rows, const LastDirection<D>& last, int r,
-                                           std::size_t l, Octet& two, Octet& one) {
-  const Octet value = twice(rows.value[r][l]);
-  const double weight = rows.weight[r][l];
-  two = two + last.w_pair * value + weight * last.along_pair;
-  one = one + last.w_other * value + weight * last.along_other;
-}
-
-/// All points have their stencils at the same place: each control is read and written once.
-template <int D>
-void add_together(const Weights<D>& weights, const CarriedRows<D>& rows, NodeLanes* sums) {
-  LastDirection<D> last[octet_size];
-  for (std::size_t l = 0; l < octet_size; ++l) last[l] = {weights, rows, l};
-  for (int r = 0; r < power(3, D - 1); ++r) {
-    Octet& pair_at = *reinterpret_cast<Octet*>(sums + last[0].pair_at + row_offset<D>(r));
-    NodeLanes& other_at = sums[last[0].other_at + row_offset<D>(r)];
-    Octet two = pair_at, one = {};
-#pragma GCC unroll 8
-    for (std::size_t l = 0; l < octet_size; ++l) add_row<D>(rows, last[l], r, l, two, one);
-    pair_at = two, other_at += low_half(one);
-  }
-}
-
-/// Points of several places. noipa: below -O3 with AVX-512 g++ 12 sees a loop here that writes to no memory,
-/// and drops the call.
-template <int D>
-[[gnu::noipa]] void add_one_by_one(const Weights<D>& weights, const CarriedRows<D>& rows, int n,
-                                   NodeLanes* sums) {
-  for (std::size_t l = 0; l < static_cast<std::size_t>(n); ++l) {
-    const LastDirection<D> last(weights, rows, l);
-    for (int r = 0; r < power(3, D - 1); ++r) {
-      Octet& pair_at = *reinterpret_cast<Octet*>(sums + last.pair_at + row_offset<D>(r));
-      NodeLanes& other_at = sums[last.other_at + row_offset<D>(r)];
-      Octet two = pair_at, one = {};
-      add_row<D>(rows, last, r, l, two, one);
-      pair_at = two, other_at += low_half(one);
+[[gnu::always_inline]] inline void add_run(const Weights<D>& weights, const CarriedRows<D>& rows,
+                                           std::size_t first, std::size_t last, NodeLanes* sums) {
+  constexpr int n = power(3, D - 1);
+  Octet two[n], one[n];
+  const int base = weights.base[first], odd = base & 1, other = odd ? 0 : 2;
+  NodeLanes* const pair_at = sums + base + odd;
+  NodeLanes* const other_at = sums + base + other;
+#pragma GCC unroll 9
+  for (int r = 0; r < n; ++r)
+    two[r] = *reinterpret_cast<const Octet*>(pair_at + row_offset<D>(r)), one[r] = Octet{};
+  const auto& w = weights.w[D - 1];
+  for (std::size_t l = first; l < last; ++l) {
+    const Octet w_pair = pair(w[odd][l], w[odd + 1][l]), w_other = all_lanes(w[other][l]);
+    const Octet along_pair = side_by_side(rows.along[odd][l], rows.along[odd + 1][l]);
+    const Octet along_other = twice(rows.along[other][l]);
+#pragma GCC unroll 9
+    for (int r = 0; r < n; ++r) {
+      const Octet value = twice(rows.value[r][l]), weight = all_lanes(rows.weight[r][l]);
+      two[r] = two[r] + w_pair * value + weight * along_pair;
+      one[r] = one[r] + w_other * value + weight * along_other;
     }
+  }
+#pragma GCC unroll 9
+  for (int r = 0; r < n; ++r) {
+    *reinterpret_cast<Octet*>(pair_at + row_offset<D>(r)) = two[r];
+    other_at[row_offset<D>(r)] += low_half(one[r]);
+  }
+}
+
+/// Points of several places, run by run of those with the same. noipa: below -O3 with AVX-512 g++ 12 sees a
+/// loop here that writes to no memory, and drops the call.
+template <int D>
+[[gnu::noipa]] void add_by_runs(const Weights<D>& weights, const CarriedRows<D>& rows, int n,
+                                NodeLanes* sums) {
+  const auto end = static_cast<std::size_t>(n);
+  for (std::size_t first = 0, last; first < end; first = last) {
+    for (last = first + 1; last < end && weights.base[last] == weights.base[first];) ++last;
+    add_run<D>(weights, rows, first, last, sums);
   }
 }
 
@@ -236,9 +220,9 @@ void scatter_group(const Weights<D>& weights, const Spread<D>& spread, int n, No
     to_rows(column, rows.along[k]);
   }
   if (weights.together)
-    add_together<D>(weights, rows, sums);
+    add_run<D>(weights, rows, 0, octet_size, sums);
   else
-    add_one_by_one<D>(weights, rows, n, sums);
+    add_by_runs<D>(weights, rows, n, sums);
 }
 
 }  // namespace tremie

@@ -103,7 +103,7 @@ class LinearElements {
 void gradients(ExplicitState<ThreeD>& state, std::vector<Mat<D, D>>& L) {
   for (const Tile<D>& tile : state.grid.tiles) {
     TileGrid<D>::Buffer v;
-    read_blocks<D>(tile, state.grid.v, v);
+    read_blocks<D>(tile, all_rows<D>, state.grid.v, v);
     for (int g = tile.first_group; g < tile.last_group; ++g) {
       const auto group = static_cast<std::size_t>(g);
       std::array<Octet, D> x;
