@@ -54,6 +54,15 @@ TEST(SpaceSolver, AgreesWithTheFactorisedSystem) {
   }
 }
 
+// A body of a few hundred nodes is solved without a matrix by default: a factor costs ten to fifty times as
+// much.
+TEST(SpaceSolver, TakesSmallBodiesToo) {
+  Body<ThreeD> body = block(1e6);
+  activate(body.grid, body.points);
+  EXPECT_LT(body.grid.n_nodes(), 500);
+  EXPECT_TRUE(detail::by_iteration(body, StepSettings{}));
+}
+
 // The same bits with one thread and with two.
 TEST(SpaceSolver, BitsDoNotDependOnTheThreads) {
   Body<ThreeD> one = block(1e6), two = block(1e6);
