@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <optional>
 
 #include "libmpm/contact/contact.hpp"
+#include "libmpm/law/equation_of_state.hpp"
 #include "libmpm/points/points.hpp"
 
 namespace tremie {
@@ -21,12 +23,16 @@ struct WallView {
 template <int D>
 using RigidWall = std::function<std::optional<WallView<D>>(const Vec<D>& x, double time)>;
 
+/// Time in which an overlap with a wall is closed at the soonest [s].
+inline constexpr double contact_relaxation = 1e-3;
+
 /// Contact of the points with a wall over a step of length dt that ends at `time`.
-/// `gap_min`: how near a point may come, its half spacing [m]; `penalty`: stiffness in units of m/dt.
+/// `gap_min`: how near a point may come, its half spacing [m]; `penalty`: stiffness in units of m/dt, more
+/// where that would let the point's pressure push it through; `K`: bulk modulus [Pa].
 template <int D>
 std::vector<ContactPoint<D>> find_contact(const ActiveGrid<D>& grid, const Points<D>& points,
                                           const RigidWall<D>& wall, double time, double dt, double gap_min,
-                                          double penalty) {
+                                          double penalty, double K) {
   std::vector<ContactPoint<D>> contact;
   if (!wall) return contact;
   for (int c = 0; c < grid.n_cells(); ++c)
@@ -43,7 +49,19 @@ std::vector<ContactPoint<D>> find_contact(const ActiveGrid<D>& grid, const Point
       // then, at most a tenth of a cell a step so that a deep overlap does not shoot a point off.
       const double reach = 0.1 * grid.cell_size_min();
       contact_point.target = std::min((gap_min - view->gap) / dt, reach / dt);
-      contact_point.stiffness = penalty * points.mass[p] / dt;
+      // Points are seeded some microns too near: closed within a step that is shorter than
+      // `contact_relaxation`, that would be a speed like 1/dt out of nothing. It is closed slowly, and the
+      // wall's own motion is followed.
+      const double wall_speed = view->normal.dot(view->velocity),
+                   overlap = gap_min - view->gap - wall_speed * dt;
+      if (dt < contact_relaxation && overlap > 0.0)
+        contact_point.target = std::min(contact_point.target, wall_speed + overlap / contact_relaxation);
+      // A layer of the points' spacing, 2 gap_min, under the pressure p gives way by p dt^2 / (2 rho gap_min)
+      // over the penalty: no farther than the points are kept from the wall.
+      const double rho = points.mass[p] / points.volume(p),
+                   p_wall = std::max(0.0, pressure(points.ln_J[p], K));
+      const double needed = p_wall * dt * dt / (2.0 * rho * gap_min * gap_min);
+      contact_point.stiffness = std::max(penalty, needed) * points.mass[p] / dt;
       contact.push_back(contact_point);
     }
   return contact;

@@ -283,7 +283,7 @@ void pose(Body<Space>& body, const StepSettings& settings, const RigidWall<Space
     if (settings.moving_surface) posed->surface = surface_of_pool(body, dt);
   carry_friction<Space>(body.friction, old_nodes, body.grid, posed->friction);
   posed->contact = find_contact(body.grid, body.points, wall, body.time + dt, dt, settings.wall_gap,
-                                settings.wall_penalty);
+                                settings.wall_penalty, body.mix.K);
   update_active<D>(posed->contact, body.grid.cell_nodes, body.v);
 }
 

@@ -95,5 +95,39 @@ TEST(RigidWalls, PushAndSeparate) {
   EXPECT_NEAR(momentum(body.points)[0] / mass / pushed, 1.0, 1e-9);
 }
 
+/// One point of 10 mm under the pressure p, `gap` from a wall at x = 0 that stands still.
+ContactPoint<2> contact_of_one(double gap, double p, double dt) {
+  Body<PlaneStrain> body;
+  body.mix = concrete(0.0, 100.0);
+  for (int d = 0; d < 2; ++d) body.grid.axes[d] = {.h = 0.02};
+  const double ln_J = ln_J_under(p, body.mix.K), V = 1e-4;
+  add_point<2>(body.points, {0.1 + gap, 0.1}, body.mix.density * V, V * std::exp(-ln_J), ln_J);
+  activate(body.grid, body.points);
+  const RigidWall<2> wall = [](const Vec<2>& x, double) -> std::optional<WallView<2>> {
+    return WallView<2>{x[0] - 0.1, Vec<2>(1.0, 0.0), Vec<2>(0.0, 0.0)};
+  };
+  return find_contact(body.grid, body.points, wall, dt, dt, 0.005, 100.0, body.mix.K).at(0);
+}
+
+// A point that is 20 microns too near is pushed away in a millisecond, however short the step: over dt alone
+// a step of 1e-6 s would throw it off at 20 m/s. A longer step closes the overlap by its end.
+TEST(RigidWalls, CloseAnOverlapInTheirOwnTime) {
+  EXPECT_NEAR(contact_of_one(0.005 - 20e-6, 0.0, 1e-6).target, 0.02, 1e-9);
+  EXPECT_NEAR(contact_of_one(0.005 - 20e-6, 0.0, 2e-3).target, 0.01, 1e-9);
+  EXPECT_NEAR(contact_of_one(0.006, 0.0, 1e-6).target, -1e3, 1e-6);  // free to come nearer
+}
+
+// What a layer of points under a pressure p gives way in a step, p A dt / stiffness with A = m/(rho 2 gap),
+// keeps it on its side of the wall: at most the gap. A short step needs no more than the usual stiffness.
+TEST(RigidWalls, HoldAPressureInALongStep) {
+  const double p = 7e3, A = 0.01, gap = 0.005;
+  for (double dt : {0.003, 0.03, 0.1}) {
+    const auto contact = contact_of_one(gap, p, dt);
+    EXPECT_LE(p * A * dt / contact.stiffness, 1.01 * gap) << dt;
+    EXPECT_GE(contact.stiffness, 99.9 * 2400.0 * 1e-4 / dt) << dt;
+  }
+  EXPECT_NEAR(contact_of_one(gap, p, 0.003).stiffness / (100.0 * 0.24 / 0.003), 1.0, 1e-12);
+}
+
 }  // namespace
 }  // namespace tremie
