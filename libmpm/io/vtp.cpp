@@ -1,11 +1,13 @@
 #include "libmpm/io/vtp.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <cstring>
 #include <numeric>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 
 #include "libmpm/io/write_error.hpp"
 
@@ -14,22 +16,36 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the header says LittleEndian");
 
-/// The appended block: each array is its length in bytes (64 bit), then its bytes.
+/// Appends `bytes` in base64.
+void append_base64(std::string_view bytes, std::string& text) {
+  constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t n = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      group = group << 8 | (k < n ? static_cast<std::uint8_t>(bytes[i + k]) : 0u);
+    for (std::size_t k = 0; k < 4; ++k) text += k <= n ? digits[group >> (18 - 6 * k) & 63u] : '=';
+  }
+}
+
+/// The appended block: each array is its length in bytes (64 bit) and its bytes, in base64, which leaves the
+/// file well-formed XML.
 class Appended {
  public:
   /// Adds an array and returns its offset for the header.
   template <class T>
   std::size_t add(const std::vector<T>& values) {
-    const std::size_t offset = bytes_.size();
+    const std::size_t offset = text_.size();
     const std::uint64_t length = values.size() * sizeof(T);
-    bytes_.append(reinterpret_cast<const char*>(&length), sizeof length);
-    bytes_.append(reinterpret_cast<const char*>(values.data()), length);
+    std::string bytes(reinterpret_cast<const char*>(&length), sizeof length);
+    bytes.append(reinterpret_cast<const char*>(values.data()), length);
+    append_base64(bytes, text_);
     return offset;
   }
-  const std::string& bytes() const { return bytes_; }
+  const std::string& text() const { return text_; }
 
  private:
-  std::string bytes_;
+  std::string text_;
 };
 
 std::vector<float> as_float(std::span<const double> values) {
@@ -79,8 +95,8 @@ void write_vtp(const std::filesystem::path& file, double time, std::span<const s
       throw std::invalid_argument("write_vtp: field " + field.name + " does not fit the points");
     data_array(xml, "Float32", field.name, field.components, appended.add(as_float(field.values)));
   }
-  xml << "</PointData>\n</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_";
-  write_text(file, xml.str() + appended.bytes() + "\n</AppendedData>\n</VTKFile>\n");
+  xml << "</PointData>\n</Piece>\n</PolyData>\n<AppendedData encoding=\"base64\">\n_";
+  write_text(file, xml.str() + appended.text() + "\n</AppendedData>\n</VTKFile>\n");
 }
 
 void write_pvd(const std::filesystem::path& file, std::span<const std::pair<double, std::string>> frames) {

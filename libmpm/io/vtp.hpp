@@ -1,7 +1,7 @@
 #pragma once
 
-// Points for ParaView: VTK XML poly data with raw appended single-precision arrays, and the .pvd that strings
-// the times together. No VTK library.
+// Points for ParaView: VTK XML poly data with appended single-precision arrays in base64, and the .pvd that
+// strings the times together. No VTK library.
 
 #include <array>
 #include <filesystem>

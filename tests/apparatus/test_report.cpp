@@ -132,6 +132,21 @@ TEST(Vtp, RefusesAFieldThatDoesNotFit) {
   EXPECT_THROW(io::write_vtp(folder / "a.vtp", 0.0, points, fields), std::invalid_argument);
 }
 
+// Three coordinates are 12 bytes, with their length of 8 before them 20, in base64 28 characters. By hand:
+// 0c 00 .. 00, then 1.0f, 2.0f and 3.0f, 00 00 80 3f 00 00 00 40 00 00 40 40.
+TEST(Vtp, IsWellFormedAndHoldsItsArrays) {
+  const test::TemporaryFolder folder;
+  const std::vector<std::array<double, 3>> points{{1, 2, 3}};
+  io::write_vtp(folder / "a.vtp", 0.0, points, {});
+  const std::string text = test::read_file(folder / "a.vtp");
+  const std::size_t block = text.find("<AppendedData encoding=\"base64\">\n_");
+  ASSERT_NE(block, std::string::npos);
+  EXPECT_EQ(text.substr(text.find('_', block) + 1, 28), "DAAAAAAAAAAAAIA/AAAAQAAAQEA=");
+  EXPECT_NE(text.find("Name=\"connectivity\" NumberOfComponents=\"1\" format=\"appended\" offset=\"28\""),
+            std::string::npos);
+  for (const char c : text) ASSERT_TRUE(c == '\n' || (c >= ' ' && c <= '~')) << "no text: " << int{c};
+}
+
 TEST(Chart, MeasuredValuesAreDashed) {
   const auto outcome = small_outcome();
   const std::string script = chart_script(outcome.charts.front(), outcome.series);
