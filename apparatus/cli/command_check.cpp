@@ -18,8 +18,7 @@ struct Options {
   std::vector<std::string> overrides;
 };
 
-void print_estimate(const scene::Scene& scene) {
-  const auto e = scene::estimate(scene);
+void print_estimate(const scene::Estimate& e) {
   fmt::print(
       "\n# cost, estimated\n#   {} points, {} bytes a point\n#   {} active cells at the start\n#   about {} "
       "steps\n",
@@ -39,11 +38,12 @@ void check_cell(const Options& options) {
 void check(const Options& options) {
   if (cell::is_cell(options.scene)) return check_cell(options);
   const auto scene = scene::read(options.scene, options.overrides);
+  const auto estimate = scene::estimate(scene);  // refuses what the apparatus cannot run
   fmt::print("# {}: valid. Every value that it uses, in SI:\n\n{}", options.scene, scene.resolved);
   fmt::print("\n# used and left out\n");
   for (const auto& line : scene::uses(scene)) fmt::print("#   {}\n", line);
   for (const auto& note : scene.notes) fmt::print("# note: {}\n", note);
-  print_estimate(scene);
+  print_estimate(estimate);
 }
 
 }  // namespace

@@ -129,6 +129,9 @@ void check_schedule(const Values& values) {
 
 void check_vane(const Values& values) {
   const double radius = values.number("vane.radius"), container = values.number("vane.container_radius");
+  if (radius >= container && values.layer("vane.radius") > values.layer("vane.container_radius"))
+    values.fail("vane.radius", fmt::format("does not fit; allowed: less than vane.container_radius, \"{}\"",
+                                           write_quantity(container, Dimension::length)));
   if (radius >= container)
     values.fail("vane.container_radius",
                 fmt::format("does not hold the vane; allowed: greater than vane.radius, \"{}\"",

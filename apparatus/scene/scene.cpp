@@ -49,6 +49,8 @@ Scene build(const Loaded& loaded) {
   scene.output = read_output(loaded.values);
   scene.resolved = write_resolved(loaded.schema, loaded.values);
   scene.notes = loaded.values.notes;
+  for (const auto& [key, value] : loaded.values.entries)
+    if (loaded.values.given(key)) scene.places[key] = describe(value.origin);
   return scene;
 }
 
@@ -68,14 +70,16 @@ std::int64_t peak_rss_bytes() {
   return std::int64_t{usage.ru_maxrss} * 1024;
 }
 
-/// An apparatus says with std::invalid_argument that it cannot run what the scene asks for: the user's to
-/// mend.
+/// An apparatus says with std::invalid_argument that it cannot run what the scene asks for, "key: reason":
+/// the user's to mend, where the key was given.
 template <class Call>
-auto as_input_error(const std::string& path, Call call) {
+auto as_input_error(const Scene& scene, Call call) {
   try {
     return call();
   } catch (const std::invalid_argument& error) {
-    throw InputError(path + ": " + error.what());
+    const std::string_view text = error.what();
+    const auto place = scene.places.find(text.substr(0, text.find(':')));
+    throw InputError((place == scene.places.end() ? scene.path : place->second) + ": " + error.what());
   }
 }
 
@@ -97,7 +101,7 @@ void set_threads(Scene& scene, int threads) {
 
 Outcome run(const Scene& scene, const Observer& observer) {
   const double wall = wall_seconds(), cpu = cpu_seconds();
-  Outcome outcome = as_input_error(scene.path, [&] {
+  Outcome outcome = as_input_error(scene, [&] {
     return std::visit([&](const auto& test) { return run_test(test, scene, observer); }, scene.test);
   });
   outcome.cost.wall = wall_seconds() - wall;
@@ -114,7 +118,7 @@ Estimate estimate(const Scene& scene) {
     const auto e = estimate(test);  // the apparatus' own
     return Estimate{e.points, e.cells_active, e.bytes_per_point, e.steps};
   };
-  return as_input_error(scene.path, [&] { return std::visit(estimate_test, scene.test); });
+  return as_input_error(scene, [&] { return std::visit(estimate_test, scene.test); });
 }
 
 std::vector<std::string> uses(const Scene& scene) {

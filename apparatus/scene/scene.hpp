@@ -6,6 +6,7 @@
 #include <atomic>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <variant>
@@ -32,7 +33,8 @@ struct Scene {
   Measured measured;
   Output output;
   std::string resolved;  ///< the same scene as TOML, every value in SI; reads back to the same scene
-  std::vector<std::string> notes;  ///< what the reader left out, and why
+  std::vector<std::string> notes;                          ///< what the reader left out, and why
+  std::map<std::string, std::string, std::less<>> places;  ///< of the keys that were given, "mine.toml:7"
 };
 
 /// The keys of every apparatus that read() knows.

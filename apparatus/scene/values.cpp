@@ -55,7 +55,9 @@ const std::string& Values::word(std::string_view key) const {
 
 void Values::fail(std::string_view key, const std::string& what) const {
   const auto found = entries.find(key);
-  const Origin origin = found != entries.end() ? found->second.origin : sections.find("")->second;
+  const bool placed = found != entries.end() && found->second.origin.layer != Layer::fallback;
+  const Origin origin =
+      placed ? found->second.origin : sections.find("")->second;  // a default stands nowhere
   throw InputError(fmt::format("{}: {}: {}", describe(origin), key, what));
 }
 

@@ -106,6 +106,37 @@ TEST_F(Program, BadInputIsExitCodeTwoAndWritesNothing) {
   EXPECT_NE(tremie("run bad.toml").text.find("bad.toml:4: cone.height"), std::string::npos);
 }
 
+TEST_F(Program, AnUnknownCommandOrOptionIsToldWhatThereIs) {
+  for (const auto& [arguments, parts] : std::vector<std::pair<std::string, std::vector<std::string>>>{
+           {"rum quick.toml", {"\"rum\"", "\"run\"", "check", "verify"}},
+           {"run quick.toml --thread 2", {"tremie run", "\"--thread\"", "\"--threads\"", "--accuracy"}},
+           {"--verson", {"\"--verson\"", "\"--version\""}},
+           {"fit quick.toml --sped 1", {"tremie fit", "\"--speed\"", "--rest"}}}) {
+    const Result result = tremie(arguments);
+    EXPECT_EQ(result.code, 2) << arguments;
+    for (const auto& part : parts)
+      EXPECT_NE(result.text.find(part), std::string::npos) << part << " is not in: " << result.text;
+  }
+}
+
+TEST_F(Program, OutputThatIsLostIsAFault) {
+  EXPECT_EQ(tremie("new slump_flow > /dev/full").code, 1);
+  EXPECT_EQ(tremie("check quick.toml > /dev/full").code, 1);
+}
+
+TEST_F(Program, WhatASchemeCannotRunIsToldWithItsPlace) {
+  test::write_file(
+      folder_ / "bad.toml",
+      "apparatus = \"slump_flow\"\nmix = \"mix_a\"\n[model]\nscheme = \"explicit\"\nyield = \"exact\"\n");
+  const Result result = tremie("run bad.toml");
+  EXPECT_EQ(result.code, 2);
+  EXPECT_NE(result.text.find("bad.toml:5: model.yield"), std::string::npos) << result.text;
+  const Result check = tremie("check bad.toml");
+  EXPECT_EQ(check.code, 2);
+  EXPECT_EQ(check.text.find("valid"), std::string::npos) << check.text;
+  EXPECT_TRUE(nothing_written());
+}
+
 TEST_F(Program, AFullDiskLeavesNothingHalfWritten) {
   // A limit on the size of files stands in for a full disk: results.h5 passes it, and its signal is ignored.
   const Result result =
