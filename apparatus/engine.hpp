@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -248,6 +249,20 @@ void judge(const Body<Space>& body, double start_mass, Checks& checks, Cost& cos
   cost.points = static_cast<std::int64_t>(body.points.size());
   cost.bytes_per_point = bytes_per_point<Space::dim>(body.points.thixotropic());
   cost.simulated = body.time;
+}
+
+/// Concrete that has slowed down bears less pressure than where it stood: a change of volume beyond three
+/// times that at the start [1], and half a per cent, is the method's. What falls and hits may be compressed
+/// more.
+inline void judge_volume(double at_start, Checks& checks) {
+  constexpr double slow = 1e-2;  // [m/s]
+  const double most = 3.0 * std::abs(at_start) + 5e-3;
+  if (checks.max_speed_end > slow || !(std::abs(checks.volume_change) > most)) return;
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "the concrete's volume changed by %+.2g %%; its weight can account for %.2g %%",
+                100.0 * checks.volume_change, 100.0 * most);
+  checks.reasons.push_back(text);
 }
 
 }  // namespace tremie::engine

@@ -103,6 +103,7 @@ Outcome run_in(const Scene& scene, const Law& law, const Observer& observer) {
   }
   read_results(body, scene, stopped ? watch.slow_since : std::nullopt, outcome);
   engine::judge(body, start_mass, outcome.checks, outcome.cost);
+  engine::judge_volume(outcome.series.front().volume_change, outcome.checks);
   judge_bars(scene, outcome.checks);
   outcome.final_frame = engine::frame_of(body);
   if (observer.on_frame) observer.on_frame(outcome.final_frame);
