@@ -11,7 +11,7 @@
 //   M^-1 = diag(S)^-1 + P (P' S P)^-1 P'.
 
 #include "libmpm/step/conjugate_gradients.hpp"
-#include "libmpm/step/pressure_rows.hpp"
+#include "libmpm/step/pressure_entries.hpp"
 #include "libmpm/step/two_ended_cholesky.hpp"
 
 namespace tremie {
@@ -20,20 +20,20 @@ class PressureIteration {
  public:
   static constexpr int cube = 3;  ///< cells a direction
 
-  /// False where the second level is not positive definite.
-  bool build(const ActiveGrid<3>& grid, const CellBatches& batches, const PressureRows& rows);
+  /// From `entries`; false where the second level is not positive definite.
+  bool build(const ActiveGrid<3>& grid);
   /// p <- S^-1 p, its residual's energy norm reduced by `reduction`.
-  void solve(const ActiveGrid<3>& grid, const CellBatches& batches, const PressureRows& rows,
-             double reduction, Eigen::VectorXf& p);
+  void solve(double reduction, Eigen::VectorXf& p);
+
+  PressureEntries entries;  ///< S
 
  private:
   void find_cubes(const ActiveGrid<3>& grid);
-  void fill_coarse(const ActiveGrid<3>& grid, const CellBatches& batches, const PressureRows& rows);
-  void multiply(const ActiveGrid<3>& grid, const CellBatches& batches, const PressureRows& rows,
-                const Eigen::VectorXf& p, Eigen::VectorXf& Sp);
+  void fill_coarse();
+  void multiply(const Eigen::VectorXf& p, Eigen::VectorXf& Sp);
   void precondition(const Eigen::VectorXf& r, Eigen::VectorXf& z);
 
-  Eigen::VectorXf inverse_diagonal_, y_, coarse_;
+  Eigen::VectorXf inverse_diagonal_, coarse_;
   std::vector<int> cube_;        ///< of each cell
   std::vector<int> cube_begin_;  ///< cells cube_cell_[cube_begin_[k] .. cube_begin_[k + 1]) are in cube k
   std::vector<int> cube_cell_;
@@ -62,73 +62,31 @@ inline void PressureIteration::find_cubes(const ActiveGrid<3>& grid) {
   cube_begin_.push_back(n);
 }
 
-/// P' S P: the cells of a cube that see a node act on it as one.
-inline void PressureIteration::fill_coarse(const ActiveGrid<3>& grid, const CellBatches& batches,
-                                           const PressureRows& rows) {
-  struct Share {
-    int cube;
-    Eigen::Vector4f row;
-  };
-  std::vector<Share> share;
-  const auto cubes_of = [&](int i) {
-    share.clear();
-    for (const int* e = batches.entries_begin(i); e != batches.entries_end(i); ++e) {
-      const int k = cube_[*e / 27];
-      auto s = std::find_if(share.begin(), share.end(), [&](const Share& one) { return one.cube == k; });
-      if (s == share.end()) s = share.insert(s, {k, Eigen::Vector4f::Zero()});
-      s->row += rows.row[*e];
-    }
-  };
+/// P' S P.
+inline void PressureIteration::fill_coarse() {
   int bandwidth = 0;
-  for (int i = 0; i < grid.n_nodes(); ++i) {
-    int low = cube_[*batches.entries_begin(i) / 27], high = low;
-    for (const int* e = batches.entries_begin(i); e != batches.entries_end(i); ++e)
-      low = std::min(low, cube_[*e / 27]), high = std::max(high, cube_[*e / 27]);
-    bandwidth = std::max(bandwidth, high - low);
-  }
+  entries.for_each(
+      [&](int c, int other, float) { bandwidth = std::max(bandwidth, std::abs(cube_[c] - cube_[other])); });
   const int n = static_cast<int>(cube_begin_.size()) - 1;
   band_.reset(n, bandwidth);
   coarse_.setZero(n);
-  for (int c = 0; c < grid.n_cells(); ++c) band_.add(cube_[c], cube_[c], rows.softness[c]);
-  for (int i = 0; i < grid.n_nodes(); ++i) {
-    cubes_of(i);
-    for (const Share& a : share) {
-      const Eigen::Vector4f w = PressureRows::times(rows.G_inverse[i], a.row);
-      for (const Share& b : share)
-        if (b.cube <= a.cube) band_.add(a.cube, b.cube, w.dot(b.row));
-    }
-  }
+  entries.for_each([&](int c, int other, float value) {
+    const int k = cube_[c], l = cube_[other];
+    band_.add(std::max(k, l), std::min(k, l), k == l && c != other ? 2.0f * value : value);
+  });
 }
 
-inline bool PressureIteration::build(const ActiveGrid<3>& grid, const CellBatches& batches,
-                                     const PressureRows& rows) {
+inline bool PressureIteration::build(const ActiveGrid<3>& grid) {
   inverse_diagonal_.resize(grid.n_cells());
-  y_.resize(4 * grid.n_nodes());
-#pragma omp parallel for schedule(static)
-  for (int c = 0; c < grid.n_cells(); ++c) {
-    Eigen::Vector4f sum = Eigen::Vector4f::Zero();
-    for (int k = 0; k < 27; ++k)
-      sum += rows.row[27 * c + k].cwiseProduct(
-          PressureRows::times(rows.G_inverse[grid.cell_nodes[c][k]], rows.row[27 * c + k]));
-    inverse_diagonal_[c] = 1.0f / (rows.softness[c] + sum.sum());
-  }
+  for (int c = 0; c < grid.n_cells(); ++c) inverse_diagonal_[c] = 1.0f / entries.diagonal(c);
   find_cubes(grid);
-  fill_coarse(grid, batches, rows);
+  fill_coarse();
   return band_.factorise();
 }
 
-inline void PressureIteration::multiply(const ActiveGrid<3>& grid, const CellBatches& batches,
-                                        const PressureRows& rows, const Eigen::VectorXf& p,
-                                        Eigen::VectorXf& Sp) {
-  const int n = grid.n_cells(), n_nodes = grid.n_nodes();
+inline void PressureIteration::multiply(const Eigen::VectorXf& p, Eigen::VectorXf& Sp) {
 #pragma omp parallel
-  {
-#pragma omp for schedule(static)
-    for (int i = 0; i < n_nodes; ++i)
-      y_.segment<4>(4 * i) = PressureRows::times(rows.G_inverse[i], rows.push(batches, i, p));
-#pragma omp for schedule(static)
-    for (int c = 0; c < n; ++c) Sp[c] = rows.softness[c] * p[c] + rows.divergence(grid, c, y_);
-  }
+  entries.multiply_in_region(p, Sp);
 }
 
 inline void PressureIteration::precondition(const Eigen::VectorXf& r, Eigen::VectorXf& z) {
@@ -148,13 +106,11 @@ inline void PressureIteration::precondition(const Eigen::VectorXf& r, Eigen::Vec
   }
 }
 
-inline void PressureIteration::solve(const ActiveGrid<3>& grid, const CellBatches& batches,
-                                     const PressureRows& rows, double reduction, Eigen::VectorXf& p) {
+inline void PressureIteration::solve(double reduction, Eigen::VectorXf& p) {
   Eigen::VectorXf rest = p;
-  conjugate_gradients(
-      [&](const Eigen::VectorXf& x, Eigen::VectorXf& Sx) { multiply(grid, batches, rows, x, Sx); },
-      [&](const Eigen::VectorXf& r, Eigen::VectorXf& z) { precondition(r, z); },
-      {.reduction = reduction, .most = 200}, rest, p);
+  conjugate_gradients([&](const Eigen::VectorXf& x, Eigen::VectorXf& Sx) { multiply(x, Sx); },
+                      [&](const Eigen::VectorXf& r, Eigen::VectorXf& z) { precondition(r, z); },
+                      {.reduction = reduction, .most = 200}, rest, p);
 }
 
 }  // namespace tremie

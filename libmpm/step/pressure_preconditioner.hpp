@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "libmpm/step/pressure_iteration.hpp"
+#include "libmpm/step/pressure_rows.hpp"
 
 namespace tremie {
 
@@ -43,8 +44,12 @@ class PressurePreconditioner {
   template <class Use>
   void for_each_neighbour(const ActiveGrid<3>& grid, int cell, Use use) const;
   int find_bandwidth(const ActiveGrid<3>& grid, bool wraps) const;
-  void fill_band_by_boxes(const ActiveGrid<3>& grid);
-  void fill_band_by_nodes(const ActiveGrid<3>& grid, const CellBatches& batches);
+  template <class Add>
+  void fill_by_boxes(const ActiveGrid<3>& grid, Add add) const;
+  template <class Add>
+  void fill_by_nodes(const ActiveGrid<3>& grid, const CellBatches& batches, Add add) const;
+  template <class Add>
+  void fill(const ActiveGrid<3>& grid, const CellBatches& batches, Add add) const;
   bool by_band_ = true;
   double reduction_ = 1e-2;  ///< of the residual in a solve with S by iteration
 
@@ -100,12 +105,13 @@ inline int PressurePreconditioner::find_bandwidth(const ActiveGrid<3>& grid, boo
   return *std::max_element(reach.begin(), reach.end());
 }
 
-/// The part of S below its diagonal on a grid whose controls are numbered like its cells: two cells share a
-/// box of controls.
-inline void PressurePreconditioner::fill_band_by_boxes(const ActiveGrid<3>& grid) {
+/// Calls add(c, other, value) for the part of S below its diagonal on a grid whose controls are numbered like
+/// its cells: two cells share a box of controls.
+template <class Add>
+void PressurePreconditioner::fill_by_boxes(const ActiveGrid<3>& grid, Add add) const {
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < grid.n_cells(); ++c) {
-    band_.add(number_[c], number_[c], rows_.softness[c]);
+    add(c, c, rows_.softness[c]);
     if (rows_.left_out[c]) continue;
     std::array<Eigen::Vector4f, 27> w;
     for (int k = 0; k < 27; ++k)
@@ -119,35 +125,42 @@ inline void PressurePreconditioner::fill_band_by_boxes(const ActiveGrid<3>& grid
         for (int j = low[1]; j <= high[1]; ++j)
           for (int k = 9 * i + 3 * j + low[2]; k <= 9 * i + 3 * j + high[2]; ++k)
             sum += w[k].cwiseProduct(rows_.row[shift + k]);
-      band_.add(number_[c], number_[other], sum.sum());
+      add(c, other, sum.sum());
       return other != c;  // those behind are entered by themselves
     });
   }
 }
 
 /// The same on any grid.
-inline void PressurePreconditioner::fill_band_by_nodes(const ActiveGrid<3>& grid,
-                                                       const CellBatches& batches) {
+template <class Add>
+void PressurePreconditioner::fill_by_nodes(const ActiveGrid<3>& grid, const CellBatches& batches,
+                                           Add add) const {
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < grid.n_cells(); ++c) {
-    band_.add(number_[c], number_[c], rows_.softness[c]);
+    add(c, c, rows_.softness[c]);
     for (int k = 0; k < 27 && !rows_.left_out[c]; ++k) {
       const int i = grid.cell_nodes[c][k];
       const Eigen::Vector4f w = PressureRows::times(rows_.G_inverse[i], rows_.row[27 * c + k]);
       for (const int* e = batches.entries_begin(i); e != batches.entries_end(i); ++e)
-        if (const int other = *e / 27; number_[other] <= number_[c])
-          band_.add(number_[c], number_[other], w.dot(rows_.row[*e]));
+        if (const int other = *e / 27; number_[other] <= number_[c]) add(c, other, w.dot(rows_.row[*e]));
     }
   }
 }
 
+template <class Add>
+void PressurePreconditioner::fill(const ActiveGrid<3>& grid, const CellBatches& batches, Add add) const {
+  bool by_boxes = true;  // a periodic axis repeats places, a crease adds controls
+  for (const Axis& a : grid.axes) by_boxes = by_boxes && !a.periodic && a.n_creases() == 0;
+  by_boxes ? fill_by_boxes(grid, add) : fill_by_nodes(grid, batches, add);
+}
+
 inline void PressurePreconditioner::lay_out(const ActiveGrid<3>& grid, double most_band_operations) {
   number_across_the_thin_way(grid);
-  bool periodic = false;
-  for (const Axis& a : grid.axes) periodic = periodic || a.periodic;
-  bandwidth_ = find_bandwidth(grid, periodic);
+  int periodic = 0;
+  for (const Axis& a : grid.axes) periodic += a.periodic ? 1 : 0;
+  bandwidth_ = find_bandwidth(grid, periodic > 0);
   const double n = grid.n_cells(), width = bandwidth_;
-  by_band_ = n * width * width < most_band_operations;
+  by_band_ = periodic == 3 || n * width * width < most_band_operations;
   if (by_band_) return;
   for (int c = 0; c < grid.n_cells(); ++c) number_[c] = c;
   band_ = {};
@@ -159,11 +172,14 @@ inline bool PressurePreconditioner::build(const ActiveGrid<3>& grid, const CellB
   // What S^-1 misses, C makes ratio times as large.
   reduction_ = std::clamp(0.3 / ratio, 5e-4, 1e-2);
   rows_.build(grid, batches, b, G_inverse, stiffness);
-  if (!by_band_) return iteration_.build(grid, batches, rows_);
+  if (!by_band_) {
+    auto& S = iteration_.entries;
+    S.reset(grid);
+    fill(grid, batches, [&](int c, int other, float value) { S.add(grid, c, other, value); });
+    return iteration_.build(grid);
+  }
   band_.reset(grid.n_cells(), bandwidth_);
-  bool by_boxes = true;  // a periodic axis repeats places, a crease adds controls
-  for (const Axis& a : grid.axes) by_boxes = by_boxes && !a.periodic && a.n_creases() == 0;
-  by_boxes ? fill_band_by_boxes(grid) : fill_band_by_nodes(grid, batches);
+  fill(grid, batches, [&](int c, int other, float value) { band_.add(number_[c], number_[other], value); });
   return band_.factorise();
 }
 
@@ -183,7 +199,7 @@ inline void PressurePreconditioner::apply(const CellBatches& batches, const Acti
     for (int c = 0; c < n; ++c) p_[number_[c]] = rows_.divergence(grid, c, y_);
     if (by_band_) band_.solve_in_region(p_);
   }
-  if (!by_band_) iteration_.solve(grid, batches, rows_, reduction_, p_);
+  if (!by_band_) iteration_.solve(reduction_, p_);
 #pragma omp parallel
   {
 #pragma omp for schedule(static)
