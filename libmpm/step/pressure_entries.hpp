@@ -6,8 +6,7 @@
 // entries with itself and the cells ahead are kept, and a product uses each twice, for the cell and for the
 // one ahead; 252 bytes a cell are read where the rows of B would be 864. The cells lie in columns along the
 // body's longest way, sixteen of them go side by side, and every cell adds up its own entries in one order:
-// the bits do not depend on the threads. Neighbouring columns follow each other in slices, so that what is
-// read for the second time is still in the cache.
+// the bits do not depend on the threads.
 
 #include <algorithm>
 #include <array>
@@ -32,14 +31,15 @@ class PressureEntries {
   void multiply_in_region(const Eigen::VectorXf& p, Eigen::VectorXf& Sp);
 
  private:
-  static constexpr int reach = 2, ahead = 63, slice = 16;
-  static constexpr int slack = batch_size + reach;  ///< of reading whole batches
+  static constexpr int reach = 2, kept = 63;
+  static constexpr int slack = batch_size + 2 * reach;  ///< of reading whole batches
 
   /// Cells next to each other along way_[2], with what lies between them if they have gaps.
   struct Column {
     Index<2> across;
-    int low, size, place;  ///< place: of its first cell in the box
-    std::size_t at;        ///< of its first entry; those with one neighbour follow each other
+    int low, end;
+    std::size_t at = 0;  ///< its first entry; those with the same neighbour follow each other
+    int size() const { return end - low; }
   };
   struct Ghost {
     int place, cell;
@@ -62,37 +62,32 @@ class PressureEntries {
 };
 
 inline void PressureEntries::find_columns(const std::vector<Index<3>>& at) {
-  const auto across = [&](int c) { return at[c][0] * extent_[1] + at[c][1]; };
+  const auto across = [&](const Index<2>& a) { return static_cast<std::size_t>(a[0] * extent_[1] + a[1]); };
   const int n = static_cast<int>(at.size());
-  column_at_.assign(static_cast<std::size_t>(extent_[0] * extent_[1]), -1);
+  column_at_.assign(across({extent_[0], 0}), -1);
   columns_.clear();
-  for (int c = 0; c < n; ++c) {
-    int& k = column_at_[across(c)];
+  for (const Index<3>& cell : at) {
+    int& k = column_at_[across({cell[0], cell[1]})];
     if (k < 0) {
       k = static_cast<int>(columns_.size());
-      columns_.push_back({{at[c][0], at[c][1]}, at[c][2], 1, 0, 0});
+      columns_.push_back({.across = {cell[0], cell[1]}, .low = cell[2], .end = cell[2] + 1});
     }
-    Column& column = columns_[k];  // size: the end, until all are seen
-    if (column.size == 1) column.size = column.low + 1;
-    column.low = std::min(column.low, at[c][2]), column.size = std::max(column.size, at[c][2] + 1);
+    columns_[k].low = std::min(columns_[k].low, cell[2]);
+    columns_[k].end = std::max(columns_[k].end, cell[2] + 1);
   }
-  std::sort(columns_.begin(), columns_.end(), [](const Column& l, const Column& r) {
-    return std::array{l.across[1] / slice, l.across[0], l.across[1]} <
-           std::array{r.across[1] / slice, r.across[0], r.across[1]};
-  });
+  std::sort(columns_.begin(), columns_.end(),
+            [](const Column& a, const Column& b) { return a.across < b.across; });
   std::size_t size = slack;
   for (std::size_t k = 0; k < columns_.size(); ++k) {
     Column& column = columns_[k];
-    column.size -= column.low;
-    column.place = place({column.across[0], column.across[1], column.low});
     column.at = size;
-    column_at_[column.across[0] * extent_[1] + column.across[1]] = static_cast<int>(k);
-    size += static_cast<std::size_t>(ahead * column.size);
+    column_at_[across(column.across)] = static_cast<int>(k);
+    size += static_cast<std::size_t>(kept * column.size());
   }
   entries_.assign(size + slack, 0.0f);
   place_.resize(at.size()), column_.resize(at.size()), first_.resize(at.size());
   for (int c = 0; c < n; ++c) {
-    column_[c] = column_at_[across(c)];
+    column_[c] = column_at_[across({at[c][0], at[c][1]})];
     const Column& column = columns_[column_[c]];
     place_[c] = place(at[c]);
     first_[c] = column.at + static_cast<std::size_t>(at[c][2] - column.low);
@@ -139,7 +134,7 @@ inline void PressureEntries::add(const ActiveGrid<3>& grid, int c, int other, fl
     if (axis.periodic && std::abs(step[d]) > reach) step[d] -= step[d] > 0 ? axis.n_cells : -axis.n_cells;
   }
   const int k = offset(step[0], step[1], step[2]), from = k < 0 ? other : c;
-  entries_[first_[from] + static_cast<std::size_t>(std::abs(k) * columns_[column_[from]].size)] += value;
+  entries_[first_[from] + static_cast<std::size_t>(std::abs(k) * columns_[column_[from]].size())] += value;
 }
 
 template <class Use>
@@ -153,7 +148,8 @@ void PressureEntries::for_each(Use use) const {
         for (int d = a == 0 && b == 0 ? 0 : -reach; d <= reach; ++d)
           if (const int other = cell[place_[c] + place({a, b, d})]; other >= 0)
             use(c, other,
-                entries_[first_[c] + static_cast<std::size_t>(offset(a, b, d) * columns_[column_[c]].size)]);
+                entries_[first_[c] +
+                         static_cast<std::size_t>(offset(a, b, d) * columns_[column_[c]].size())]);
 }
 
 /// Products of sixteen cells at a time. Beyond the ends of a column entries of others are read, finite and
@@ -161,33 +157,33 @@ void PressureEntries::for_each(Use use) const {
 inline void PressureEntries::multiply_column(const Column& column) {
   using Sixteen = Eigen::Map<const Lanes<float>>;
   const auto at = [](const float* from) { return Sixteen(from); };
-  for (int i = 0; i < column.size; i += batch_size) {
-    const float *x = &x_[column.place + i], *own = &entries_[column.at + static_cast<std::size_t>(i)];
+  const int size = column.size(), start = place({column.across[0], column.across[1], column.low});
+  for (int i = 0; i < size; i += batch_size) {
+    const float *x = &x_[start + i], *own = &entries_[column.at + static_cast<std::size_t>(i)];
     Lanes<float> to = at(own) * at(x), from = Lanes<float>::Zero();
     for (int d = 1; d <= reach; ++d) {
-      to += at(own + d * column.size) * at(x + d);
-      from += at(own + d * column.size - d) * at(x - d);
+      to += at(own + d * size) * at(x + d);
+      from += at(own + d * size - d) * at(x - d);
     }
     const auto beside = [&](int a, int b) -> const Column* {
       const int k = column_at_[(column.across[0] + a) * extent_[1] + column.across[1] + b];
       if (k < 0) return nullptr;
       const Column& other = columns_[k];
-      const int first = column.low + i - other.low;  // in the other's cells
-      return first - reach < other.size && first + batch_size + reach > 0 ? &other : nullptr;
+      const int first = column.low + i;
+      return first - reach < other.end && first + batch_size + reach > other.low ? &other : nullptr;
     };
     for (int a = 0; a <= reach; ++a)
       for (int b = a == 0 ? 1 : -reach; b <= reach; ++b) {
         const int there = place({a, b, 0});
         if (beside(a, b))
-          for (int d = -reach; d <= reach; ++d)
-            to += at(own + offset(a, b, d) * column.size) * at(x + there + d);
+          for (int d = -reach; d <= reach; ++d) to += at(own + offset(a, b, d) * size) * at(x + there + d);
         if (const Column* other = beside(-a, -b)) {
           const float* theirs = entries_.data() + other->at + (column.low + i - other->low);
           for (int d = -reach; d <= reach; ++d)
-            from += at(theirs + offset(a, b, d) * other->size - d) * at(x - there - d);
+            from += at(theirs + offset(a, b, d) * other->size() - d) * at(x - there - d);
         }
       }
-    Eigen::Map<Lanes<float>> y(&y_[column.place + i]);
+    Eigen::Map<Lanes<float>> y(&y_[start + i]);
     y = to + from;
   }
 }

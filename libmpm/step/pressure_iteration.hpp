@@ -1,7 +1,7 @@
 #pragma once
 
 // The pressures' system S p = (C^-1 + B G^-1 B') p of a body too large for a factor: conjugate gradients
-// without a matrix, preconditioned on two levels.
+// with its entries, preconditioned on two levels.
 //
 // S is a Laplacian of the pressures with a little softness C^-1, so that its diagonal alone leaves as many
 // iterations as the pressure reaches cells, a hundred for a stiff bulk modulus and a long step. What is

@@ -9,9 +9,9 @@
 //
 //   P^-1 = G^-1 - G^-1 B' S^-1 B G^-1,     S = C^-1 + B G^-1 B',
 //
-// with one unknown a cell in S, the pressures, coupled over two cells each way. For bodies of some thousand
-// cells S is factorised as a band. The band's n b^2 operations grow like n^(7/3); beyond, S is solved by
-// conjugate gradients of its own (pressure_iteration.hpp).
+// with one unknown a cell in S, the pressures, coupled over two cells each way. For bodies of up to some
+// thousand cells S is factorised as a band. The band's n b^2 operations grow like n^(7/3); beyond, S is
+// solved by conjugate gradients of its own (pressure_iteration.hpp).
 
 #include <omp.h>
 

@@ -97,6 +97,67 @@ TEST(SpaceSolver, StiffBulkCostsNoMore) {
   EXPECT_LE(products[1], 2 * products[0]);
 }
 
+/// A grid of cells with holes, of the given extent; only what the pressures' matrix asks for.
+ActiveGrid<3> holey_grid(const Index<3>& extent, const std::array<bool, 3>& periodic) {
+  ActiveGrid<3> grid;
+  for (int d = 0; d < 3; ++d) {
+    grid.axes[d].periodic = periodic[d];
+    if (periodic[d]) grid.axes[d].n_cells = extent[d];
+  }
+  grid.cell_map.reset({0, 0, 0}, {extent[0] - 1, extent[1] - 1, extent[2] - 1});
+  for (int i = 0; i < extent[0]; ++i)
+    for (int j = 0; j < extent[1]; ++j)
+      for (int k = 0; k < extent[2]; ++k) {
+        const bool corner = i == 0 || i == extent[0] - 1 || k == extent[2] - 1;
+        if (!corner && std::sin(12.9 * i + 78.2 * j + 37.7 * k) > 0.3) continue;
+        grid.cell_map.value[grid.cell_map.offset({i, j, k})] = grid.n_cells();
+        grid.cell_index.push_back({i, j, k});
+      }
+  return grid;
+}
+
+// S by its entries against a dense matrix: columns along each axis, longer and shorter than a batch, holes,
+// one and two periodic axes, one so short that a cell sees another from both sides. A product adds up 125
+// numbers of the order 1 in single precision.
+TEST(SpaceSolver, PressureEntriesMultiplyLikeADenseMatrix) {
+  omp_set_num_threads(1);
+  const std::pair<Index<3>, std::array<bool, 3>> cases[] = {{{5, 9, 37}, {}},
+                                                            {{6, 20, 4}, {}},
+                                                            {{17, 3, 7}, {}},
+                                                            {{8, 7, 5}, {true, false, false}},
+                                                            {{4, 7, 6}, {true, true, false}},
+                                                            {{3, 5, 18}, {false, true, false}}};
+  for (const auto& [extent, periodic] : cases) {
+    const ActiveGrid<3> grid = holey_grid(extent, periodic);
+    const int n = grid.n_cells();
+    PressureEntries entries;
+    entries.reset(grid);
+    Eigen::MatrixXd S = Eigen::MatrixXd::Zero(n, n);
+    for (int c = 0; c < n; ++c)
+      for (int other = 0; other <= c; ++other) {
+        bool near = true;
+        for (int d = 0; d < 3; ++d) {
+          const int step = std::abs(grid.cell_index[c][d] - grid.cell_index[other][d]);
+          near = near && (step <= 2 || (periodic[d] && extent[d] - step <= 2));
+        }
+        if (!near) continue;
+        const auto value = static_cast<float>(std::sin(1.3 * c + 2.7 * other));
+        S(c, other) = S(other, c) = value;
+        entries.add(grid, c, other, value);
+      }
+    Eigen::VectorXf p(n), Sp(n);
+    for (int c = 0; c < n; ++c) p[c] = static_cast<float>(std::cos(0.7 * c));
+    entries.multiply_in_region(p, Sp);
+    EXPECT_LE((Sp.cast<double>() - S * p.cast<double>()).cwiseAbs().maxCoeff(), 1e-4);
+    Eigen::MatrixXd seen = Eigen::MatrixXd::Zero(n, n);
+    entries.for_each([&](int c, int other, float value) {
+      seen(c, other) += value;
+      if (c != other) seen(other, c) += value;
+    });
+    EXPECT_EQ((seen - S).cwiseAbs().maxCoeff(), 0.0);
+  }
+}
+
 // The products of one spline a direction against the strain rows: gradients and their adjoint at walls and
 // away.
 TEST(SpaceSolver, GradientsAndTheirAdjoint) {
