@@ -27,7 +27,7 @@ struct AdmmSettings {
   double penalty_by_iteration = 1.5;  ///< r / mu: softer, for the systems are then better conditioned
   double solve_reduction = 0.5;       ///< of the residual in one solve, in the energy norm
   double solve_share = 1.0;           ///< of the tolerated mismatch (squared) that a solve may leave
-  int direct_below = 1200;            ///< unknowns; smaller systems are factorised
+  int direct_below = 2000;            ///< unknowns; smaller systems are factorised
   double most_band_operations = 1e9;  ///< of a factor of the pressures' matrix; beyond, by iteration
 };
 
