@@ -28,10 +28,15 @@ bool is_study_command(const char* word) {
   return false;
 }
 
+/// The file of this program, so that another start of it has its name too.
+std::filesystem::path own_file() {
+  std::error_code error;
+  return std::filesystem::read_symlink("/proc/self/exe", error);
+}
+
 /// Becomes tremie-study, with the same arguments; returns where that cannot be.
 int hand_over(char** argv) {
-  std::error_code error;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / "tremie-study";
+  const auto program = own_file().parent_path() / "tremie-study";
   execv(program.c_str(), argv);
   fmt::print(stderr, "tremie: {}: {}\n", program.string(), std::strerror(errno));
   return fault;
@@ -44,7 +49,7 @@ void spin_briefly(int argc, char** argv) {
   const bool threads = std::any_of(
       argv, argv + argc, [](const char* word) { return std::string_view(word).substr(0, 9) == "--threads"; });
   if (!threads || std::getenv("GOMP_SPINCOUNT") || std::getenv("OMP_WAIT_POLICY")) return;
-  if (setenv("GOMP_SPINCOUNT", "10000", 0) == 0) execv("/proc/self/exe", argv);
+  if (setenv("GOMP_SPINCOUNT", "10000", 0) == 0) execv(own_file().c_str(), argv);
 }
 
 /// The commands of tremie-study, for --help.
