@@ -81,22 +81,23 @@ void enter_controls(ExplicitState<Space>& state, const Tile<Space::dim>& tile,
                     const Weights<Space::dim>& weights, std::size_t l, WallPoint<Space::dim>& p) {
   constexpr int D = Space::dim;
   Side side[D];
+  const Share<D>& share = share_of(state.grid, static_cast<int>(&tile - state.grid.tiles.data()));
   for (int d = 0; d < D; ++d) side[d] = side_of(state, tile, weights, l, d);
   NodeLanes inertia = {};
   for (int k = 0; k < power(3, D); ++k) {
     const Index<D> o = local_offset<D>(k);
     int block = 0, within = 0;
     double N = 1.0;
-    NodeLanes share = p.normal;
+    NodeLanes push = p.normal;
     for (int d = 0; d < D; ++d) {
       const auto at = static_cast<std::size_t>(o[d]);
       block += side[d].block[at], within += side[d].within[at];
-      N *= side[d].w[at], share *= side[d].left[at];
+      N *= side[d].w[at], push *= side[d].left[at];
     }
-    NodeLanes& v = state.grid.v[static_cast<std::size_t>(tile.block[block])][within];
+    NodeLanes& v = first_nodes(state.grid, share, tile.block[static_cast<std::size_t>(block)])[within];
     p.control[k] = &v, p.N[k] = N;
-    p.give[k] = v[D] > 0.0 ? N / v[D] * share : NodeLanes{};
-    inertia += N * p.give[k] * share;
+    p.give[k] = N * v[D] * push;
+    inertia += N * p.give[k] * push;
   }
   for (int d = 0; d < D; ++d) p.inertia += inertia[d];
 }
@@ -154,6 +155,7 @@ void push_off_wall(const RigidWall<Space::dim>& wall, double time, double dt, do
       if (more == 0.0) continue;
       for (int k = 0; k < power(3, D); ++k) *p.control[k] += more * p.give[k];
     }
+  hand_on_velocities(state.grid);
 }
 
 }  // namespace tremie::detail

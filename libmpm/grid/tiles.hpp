@@ -9,11 +9,15 @@
 // buffer, and each block sums up the buffers of its 2^D tiles in one fixed order: no locks, and the same bits
 // for any number of threads. Points reach about half of the rows that their tile sees (a row: the controls
 // along the last direction); each tile knows which, and the others are neither cleared nor read nor summed.
-
-#include <omp.h>
+//
+// Each thread has a share of the tiles, and velocities of its own on all blocks that they see: blocks at the
+// border of two shares are summed up in both, to the same bits, so that all that threads need of each other
+// is the sums of the tiles at their borders. Those have two buffers, filled in turn: one share may pass over
+// its points while its neighbour still reads what they gave last.
 
 #include <algorithm>
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "libmpm/grid/active_grid.hpp"
@@ -23,8 +27,12 @@ namespace tremie {
 inline constexpr int tile_cells = 4;
 inline constexpr int tile_span = 2 * tile_cells;  ///< controls that a tile sees in each direction
 
-/// One entry a control: components 0 to D-1 a vector, component D the mass.
+/// One entry a control: components 0 to D-1 a vector, component D the mass, or of velocities 1/mass [1/kg], 0
+/// where there is none.
 using NodeLanes [[gnu::vector_size(32)]] = double;
+
+/// Two controls side by side.
+using TwoNodes [[gnu::vector_size(64), gnu::may_alias]] = double;
 
 /// Rows of the controls that a tile sees, one bit each; the direction before the last runs fastest.
 using TileRows = std::uint64_t;
@@ -35,14 +43,17 @@ template <int D>
 struct Tile {
   Index<D> at{};                         ///< its cells are 4 at ... 4 at + 3
   int first_group = 0, last_group = 0;   ///< its points, in groups of eight: [first, last)
-  std::array<int, power(2, D)> block{};  ///< blocks at + offset, the last direction running fastest
+  int mixed_groups = 0;                  ///< of these, groups of points of several cells
+  std::array<int, power(2, D)> block{};  ///< blocks at + offset, in its share; the last direction fastest
+  std::array<int, 2> buffer{};           ///< what its points give in every other pass, in turn
 };
 
 template <int D>
 struct NodeBlock {
   Index<D> at{};
   std::array<int, power(2, D)> tile{};  ///< tiles at - offset; -1: none
-  int cost = 0;                         ///< of the blocks up to this one: of a tile 1, of a block 1
+  int share = -1, in_share = -1;        ///< the first share that sees it, and where it is there
+  std::uint64_t on_walls = 0;           ///< its controls on flat walls, one bit each
 };
 
 /// The controls that a tile sees, aligned so that an even one and the next make one vector of eight.
@@ -50,22 +61,34 @@ template <int n>
 struct alignas(64) NodeCube : std::array<NodeLanes, n> {};
 
 template <int D>
+using BlockNodes = std::array<NodeLanes, power(tile_cells, D)>;
+
+/// What one thread passes over.
+template <int D>
+struct Share {
+  int first_tile = 0, last_tile = 0;        ///< [first, last)
+  std::vector<int> blocks = {};             ///< that these tiles see
+  std::vector<BlockNodes<D>> v = {};        ///< of each: velocities, in the rows that a tile reaches
+  std::vector<BlockNodes<D>> v_start = {};  ///< before the step's forces, for FLIP alone
+};
+
+template <int D>
 struct TileGrid {
   static constexpr int tile_nodes = power(tile_span, D), block_nodes = power(tile_cells, D);
   using Buffer = NodeCube<tile_nodes>;
-  using Nodes = std::array<NodeLanes, block_nodes>;
 
   std::array<Axis, D> axes;
   std::vector<Tile<D>> tiles;
   std::vector<NodeBlock<D>> blocks;
-  std::vector<Buffer> sums;    ///< a tile: momentum and mass that its points give
-  std::vector<Buffer> forces;  ///< a tile: impulse of the stresses, for FLIP alone
-  std::vector<TileRows> rows;  ///< a tile: what its points reached when they last gave to the controls
-  std::vector<Nodes> v;        ///< a block: velocity and mass, in the rows that a tile reaches
-  std::vector<Nodes> v_start;  ///< a block: velocity before the step's forces, for FLIP alone
+  std::vector<Share<D>> shares;
+  int turn = 0;                ///< which of a tile's buffers was filled last
+  std::vector<Buffer> sums;    ///< a buffer: momentum and mass that the points give
+  std::vector<Buffer> forces;  ///< a buffer: impulse of the stresses, for FLIP alone
+  std::vector<TileRows> rows;  ///< a buffer: what the points reached; all else in it is zero
 
   int n_tiles() const { return static_cast<int>(tiles.size()); }
   int n_blocks() const { return static_cast<int>(blocks.size()); }
+  int filled_buffer(int tile) const { return tiles[static_cast<std::size_t>(tile)].buffer[turn]; }
 };
 
 /// Distance between neighbours in direction d within a cube of `span` entries a direction.
@@ -90,97 +113,7 @@ inline int wrapped(const Axis& axis, int at) {
   return axis.periodic ? ((at % n) + n) % n : at;
 }
 
-template <int D, class Item>
-int find_at(const std::vector<Item>& sorted, const Index<D>& at) {
-  const auto found = std::lower_bound(sorted.begin(), sorted.end(), at,
-                                      [](const Item& item, const Index<D>& i) { return item.at < i; });
-  return found != sorted.end() && found->at == at ? static_cast<int>(found - sorted.begin()) : -1;
-}
-
-/// Blocks around the tiles and who sees whom.
-template <int D>
-void join_blocks(TileGrid<D>& grid) {
-  std::vector<Index<D>> at;
-  const auto neighbour = [&](const Index<D>& from, int k, int sign) {
-    Index<D> to = corner<D>(k);
-    for (int d = 0; d < D; ++d) to[d] = wrapped(grid.axes[d], from[d] + sign * to[d]);
-    return to;
-  };
-  for (const Tile<D>& t : grid.tiles)
-    for (int k = 0; k < power(2, D); ++k) at.push_back(neighbour(t.at, k, 1));
-  std::sort(at.begin(), at.end());
-  at.erase(std::unique(at.begin(), at.end()), at.end());
-  grid.blocks.resize(at.size());
-  for (std::size_t b = 0; b < at.size(); ++b) {
-    grid.blocks[b].at = at[b];
-    grid.blocks[b].cost = 1 + (b > 0 ? grid.blocks[b - 1].cost : 0);
-    for (int k = 0; k < power(2, D); ++k) {
-      grid.blocks[b].tile[k] = find_at<D>(grid.tiles, neighbour(at[b], k, -1));
-      grid.blocks[b].cost += grid.blocks[b].tile[k] < 0 ? 0 : 1;
-    }
-  }
-  for (Tile<D>& t : grid.tiles)
-    for (int k = 0; k < power(2, D); ++k) t.block[k] = find_at<D>(grid.blocks, neighbour(t.at, k, 1));
-}
-
 }  // namespace detail
-
-/// Lays the grid under these tiles, sorted by `at`. Velocities of controls that were there are kept.
-template <int D>
-void lay_tiles(TileGrid<D>& grid, std::vector<Tile<D>> tiles, bool flip) {
-  const std::vector<NodeBlock<D>> old = std::move(grid.blocks);
-  std::vector<typename TileGrid<D>::Nodes> v = std::move(grid.v), v_start = std::move(grid.v_start);
-  grid.tiles = std::move(tiles);
-  grid.blocks = {};
-  detail::join_blocks<D>(grid);
-  grid.sums.resize(grid.tiles.size());
-  grid.rows.assign(grid.tiles.size(), all_rows<D>);
-  grid.v.assign(grid.blocks.size(), {});
-  if (flip) grid.forces.resize(grid.tiles.size()), grid.v_start.assign(grid.blocks.size(), {});
-  for (std::size_t b = 0; b < grid.blocks.size(); ++b) {
-    const int was = detail::find_at<D>(old, grid.blocks[b].at);
-    if (was < 0) continue;
-    grid.v[b] = v[static_cast<std::size_t>(was)];
-    if (flip) grid.v_start[b] = v_start[static_cast<std::size_t>(was)];
-  }
-}
-
-/// The first of a thread's tiles; those of thread + 1 are the end. Threads have neighbouring tiles, always
-/// the same ones between two sortings, of about as many groups: what a tile keeps stays in its thread's
-/// caches.
-template <int D>
-int first_tile_of(const TileGrid<D>& grid, int thread, int n_threads) {
-  constexpr std::int64_t groups_worth = 8;  // what a tile's own arrays cost
-  const auto cost = [&](const Tile<D>& tile) {
-    return tile.last_group + groups_worth * (&tile - grid.tiles.data() + 1);
-  };
-  if (grid.tiles.empty()) return 0;
-  const std::int64_t before = cost(grid.tiles.back()) * thread / n_threads;
-  const auto first = std::partition_point(grid.tiles.begin(), grid.tiles.end(),
-                                          [&](const Tile<D>& tile) { return cost(tile) <= before; });
-  return static_cast<int>(first - grid.tiles.begin());
-}
-
-/// The first of a thread's blocks: neighbours too, with about as many tiles to sum up.
-template <int D>
-int first_block_of(const TileGrid<D>& grid, int thread, int n_threads) {
-  const std::int64_t before =
-      std::int64_t{grid.blocks.empty() ? 0 : grid.blocks.back().cost} * thread / n_threads;
-  const auto first = std::partition_point(grid.blocks.begin(), grid.blocks.end(),
-                                          [&](const NodeBlock<D>& block) { return block.cost <= before; });
-  return static_cast<int>(first - grid.blocks.begin());
-}
-
-/// Visits each thread's tiles or blocks in that thread; `first`: first_tile_of or first_block_of.
-template <int D, class Visit>
-void for_each_share(const TileGrid<D>& grid, int (*first)(const TileGrid<D>&, int, int), Visit visit) {
-#pragma omp parallel
-  {
-    const int thread = omp_get_thread_num(), n_threads = omp_get_num_threads();
-    const int end = first(grid, thread + 1, n_threads);
-    for (int i = first(grid, thread, n_threads); i < end; ++i) visit(i);
-  }
-}
 
 /// Visits the numbers of the rows in `rows`.
 template <class Visit>
@@ -198,7 +131,8 @@ TileRows stencil_rows(int base) {
 template <int D>
 void clear_rows(TileRows rows, NodeCube<power(tile_span, D)>& cube) {
   for_each_row(rows, [&](int row) {
-    for (int i = 0; i < tile_span; ++i) cube[row * tile_span + i] = NodeLanes{};
+    auto* const two = reinterpret_cast<TwoNodes*>(&cube[static_cast<std::size_t>(row * tile_span)]);
+    two[0] = two[1] = two[2] = two[3] = TwoNodes{};
   });
 }
 
@@ -230,8 +164,7 @@ int row_in_cube(int k, int row) {
 
 /// Copies rows of a tile's blocks into one cube of controls.
 template <int D>
-void read_blocks(const Tile<D>& tile, TileRows rows,
-                 const std::vector<std::array<NodeLanes, power(tile_cells, D)>>& blocks,
+void read_blocks(const Tile<D>& tile, TileRows rows, const std::vector<BlockNodes<D>>& blocks,
                  std::array<NodeLanes, power(tile_span, D)>& cube) {
   for (int k = 0; k < power(2, D); ++k) {
     const auto& block = blocks[static_cast<std::size_t>(tile.block[k])];
@@ -242,26 +175,38 @@ void read_blocks(const Tile<D>& tile, TileRows rows,
   }
 }
 
-/// Visits the rows of block b that any of its tiles reaches, with the sums over the tiles' buffers:
-/// visit(row, totals of its controls).
+/// Which rows of its blocks a share sums up.
+enum class RowsOf {
+  own_tiles,  ///< those that its tiles reach: what their points read
+  all_tiles   ///< those that any tile reaches, for what sees all controls
+};
+
+/// Visits rows of block b with the sums over the tiles' buffers: visit(row, totals of its controls).
 template <int D, class Visit>
-void sum_tiles(const TileGrid<D>& grid, int b, const std::vector<typename TileGrid<D>::Buffer>& buffers,
-               Visit visit) {
+void sum_tiles(const TileGrid<D>& grid, const Share<D>& share, RowsOf rows_of, int b,
+               const std::vector<typename TileGrid<D>::Buffer>& buffers, Visit visit) {
   const NodeBlock<D>& block = grid.blocks[static_cast<std::size_t>(b)];
-  unsigned reached = 0, reached_by[power(2, D)];
+  unsigned wanted = 0, reached_by[power(2, D)];
+  const typename TileGrid<D>::Buffer* buffer[power(2, D)];
   for (int k = 0; k < power(2, D); ++k) {
-    const int t = block.tile[k];
-    reached_by[k] = t < 0 ? 0 : rows_of_block<D>(grid.rows[static_cast<std::size_t>(t)], k);
-    reached |= reached_by[k];
+    const int tile = block.tile[k];
+    reached_by[k] = 0;
+    if (tile < 0) continue;
+    const auto at = static_cast<std::size_t>(grid.filled_buffer(tile));
+    reached_by[k] = rows_of_block<D>(grid.rows[at], k);
+    buffer[k] = &buffers[at];
+    if (rows_of == RowsOf::all_tiles || (tile >= share.first_tile && tile < share.last_tile))
+      wanted |= reached_by[k];
   }
-  for_each_row(reached, [&](int row) {
-    std::array<NodeLanes, tile_cells> total{};
+  for_each_row(wanted, [&](int row) {
+    TwoNodes low = {}, high = {};
     for (int k = 0; k < power(2, D); ++k) {
       if ((reached_by[k] >> row & 1) == 0) continue;
-      const NodeLanes* from =
-          &buffers[static_cast<std::size_t>(block.tile[k])][static_cast<std::size_t>(row_in_cube<D>(k, row))];
-      for (std::size_t i = 0; i < tile_cells; ++i) total[i] += from[i];
+      const auto* from = reinterpret_cast<const TwoNodes*>(&(*buffer[k])[row_in_cube<D>(k, row)]);
+      low += from[0], high += from[1];
     }
+    std::array<NodeLanes, tile_cells> total;
+    std::memcpy(&total[0], &low, sizeof low), std::memcpy(&total[2], &high, sizeof high);
     visit(row, total);
   });
 }

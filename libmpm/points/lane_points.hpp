@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "libmpm/grid/tiles.hpp"
+#include "libmpm/grid/shares.hpp"
 #include "libmpm/law/lanes.hpp"
 #include "libmpm/points/points.hpp"
 
@@ -264,7 +264,7 @@ void wrap_points(const std::array<Axis, D>& axes, LanePoints<D>& lanes) {
 template <int D>
 struct SortedTiles {
   std::vector<Tile<D>> tiles;
-  std::size_t mixed = 0;
+  std::int64_t mixed = 0;
 };
 
 /// Sorts the points by tile and cell into groups of eight. `stencil_shift`: 0 where a point's stencil begins
@@ -283,8 +283,9 @@ SortedTiles<D> sort_into_tiles(const std::array<Axis, D>& axes, double stencil_s
     const detail::SortKey* end =
         std::find_if(first, last, [&](const detail::SortKey& key) { return tile_number(key) != number; });
     Tile<D> tile{.at = box.tile(number), .first_group = static_cast<int>(groups.size())};
-    sorted.mixed += detail::form_groups(first, end, groups);
+    tile.mixed_groups = static_cast<int>(detail::form_groups(first, end, groups));
     tile.last_group = static_cast<int>(groups.size());
+    sorted.mixed += tile.mixed_groups;
     sorted.tiles.push_back(tile);
     first = end;
   }

@@ -36,44 +36,59 @@ void apply_walls(const std::array<Axis, D>& axes, const Shape<D>& shape, const W
 }
 
 template <int D>
-Index<D> control_of(const NodeBlock<D>& block, int k) {
+Index<D> control_of(const Index<D>& block, int k) {
   Index<D> control;
-  for (int d = D - 1; d >= 0; --d, k /= tile_cells)
-    control[d] = block.at[d] * tile_cells - 1 + k % tile_cells;
+  for (int d = D - 1; d >= 0; --d, k /= tile_cells) control[d] = block[d] * tile_cells - 1 + k % tile_cells;
   return control;
 }
 
-/// Whether any control of a block may lie on a wall.
+/// Which controls of the block at `block` lie on flat walls.
 template <int D>
-bool touches_wall(const std::array<Axis, D>& axes, const NodeBlock<D>& block) {
-  for (int d = 0; d < D; ++d) {
-    const int first = block.at[d] * tile_cells - 1;
-    if (axes[d].wall_low() && first <= 1) return true;
-    if (axes[d].wall_high() && first + tile_cells > axes[d].n_cells) return true;
+std::uint64_t nodes_on_walls(const std::array<Axis, D>& axes, const Shape<D>& shape, const Index<D>& block) {
+  std::uint64_t on_walls = 0;
+  for (int k = 0; k < power(tile_cells, D); ++k) {
+    const Index<D> control = control_of<D>(block, k);
+    for (int d = 0; d < D; ++d)
+      if ((axes[d].wall_low() && control[d] == shape.low_wall()) ||
+          (axes[d].wall_high() && control[d] == axes[d].n_cells + 1))
+        on_walls |= std::uint64_t{1} << k;
   }
-  return false;
+  return on_walls;
 }
 
-/// Visits every control that points reach; `update(b, k, total)` makes the velocity of control k of block b
-/// from the sum of the tiles.
+/// Makes the velocities of a share's controls from the sums over the tiles: `update(v, totals, b, k)` those
+/// of the four controls v of block b from k on. Flat walls come after it.
 template <class Space, class Update>
-void for_each_node(const Body<Space>& body, ExplicitState<Space>& state, double friction_coefficient,
-                   const std::vector<typename TileGrid<Space::dim>::Buffer>& buffers, Update update) {
+void update_nodes(const Body<Space>& body, const ExplicitState<Space>& state, double friction_coefficient,
+                  const std::vector<typename TileGrid<Space::dim>::Buffer>& buffers, Update update,
+                  RowsOf rows_of, Share<Space::dim>& share) {
   constexpr int D = Space::dim;
-  TileGrid<D>& grid = state.grid;
-  for_each_share(grid, first_block_of<D>, [&](int b) {
-    const bool walls = touches_wall<D>(grid.axes, grid.blocks[b]);
-    sum_tiles<D>(grid, b, buffers, [&](int row, const std::array<NodeLanes, tile_cells>& total) {
-      for (int i = 0; i < tile_cells; ++i) {
-        const int k = row * tile_cells + i;
-        NodeLanes& v = grid.v[b][k];
-        update(b, k, total[i]);
-        if (walls && v[D] > 0.0)
-          apply_walls<D>(grid.axes, state.shape, body.walls, friction_coefficient,
-                         control_of<D>(grid.blocks[b], k), v);
-      }
-    });
-  });
+  const TileGrid<D>& grid = state.grid;
+  for (std::size_t b = 0; b < share.blocks.size(); ++b) {
+    const NodeBlock<D>& block = grid.blocks[static_cast<std::size_t>(share.blocks[b])];
+    sum_tiles<D>(grid, share, rows_of, share.blocks[b], buffers,
+                 [&](int row, const std::array<NodeLanes, tile_cells>& total) {
+                   const int first = row * tile_cells;
+                   NodeLanes* const v = &share.v[b][static_cast<std::size_t>(first)];
+                   update(v, total, b, static_cast<std::size_t>(first));
+                   for (std::uint64_t on_walls = block.on_walls >> first & 0xf; on_walls != 0;
+                        on_walls &= on_walls - 1) {
+                     const int i = __builtin_ctzll(on_walls);
+                     if (v[i][D] > 0.0)
+                       apply_walls<D>(grid.axes, state.shape, body.walls, friction_coefficient,
+                                      control_of<D>(block.at, first + i), v[i]);
+                   }
+                 });
+  }
+}
+
+/// 1/mass of four controls, 0 where there is none.
+template <int D>
+NodeLanes inverse_masses(const std::array<NodeLanes, tile_cells>& total) {
+  NodeLanes mass;
+  for (int i = 0; i < tile_cells; ++i) mass[i] = total[static_cast<std::size_t>(i)][D];
+  const auto there = mass > 0.0;
+  return there ? 1.0 / (there ? mass : NodeLanes{} + 1.0) : NodeLanes{};
 }
 
 template <int D>
@@ -85,32 +100,38 @@ NodeLanes as_lanes(const Vec<D>& a) {
 
 /// Velocities from the momenta (with the impulses of the stresses already in them), and gravity.
 template <class Space>
-void velocities_from_sums(const Body<Space>& body, ExplicitState<Space>& state, double friction,
-                          const Vec<Space::dim>& gravity_impulse) {
+void velocities_from_sums(const Body<Space>& body, const ExplicitState<Space>& state, double friction,
+                          const Vec<Space::dim>& gravity_impulse, RowsOf rows_of, Share<Space::dim>& share) {
   constexpr int D = Space::dim;
   const NodeLanes pull = as_lanes<D>(gravity_impulse);
-  for_each_node(body, state, friction, state.grid.sums, [&](int b, int k, const NodeLanes& total) {
-    const double mass = total[D];
-    NodeLanes v = mass > 0.0 ? total / mass + pull : NodeLanes{};
-    v[D] = mass;
-    state.grid.v[b][k] = v;
-  });
+  const auto divide = [&](NodeLanes* v, const std::array<NodeLanes, tile_cells>& total, std::size_t,
+                          std::size_t) {
+    const NodeLanes inverse = inverse_masses<D>(total);
+    for (int i = 0; i < tile_cells; ++i) {
+      v[i] = inverse[i] > 0.0 ? total[static_cast<std::size_t>(i)] * inverse[i] + pull : NodeLanes{};
+      v[i][D] = inverse[i];
+    }
+  };
+  update_nodes(body, state, friction, state.grid.sums, divide, rows_of, share);
 }
 
 /// Adds impulses of the stresses and gravity to velocities that are there already.
 template <class Space>
-void add_impulses(const Body<Space>& body, ExplicitState<Space>& state, double friction,
+void add_impulses(const Body<Space>& body, const ExplicitState<Space>& state, double friction,
                   const std::vector<typename TileGrid<Space::dim>::Buffer>& impulses, bool flip,
-                  const Vec<Space::dim>& gravity_impulse) {
+                  const Vec<Space::dim>& gravity_impulse, RowsOf rows_of, Share<Space::dim>& share) {
   constexpr int D = Space::dim;
   const NodeLanes pull = as_lanes<D>(gravity_impulse);
-  for_each_node(body, state, friction, impulses, [&](int b, int k, const NodeLanes& total) {
-    NodeLanes& v = state.grid.v[b][k];
-    const double mass = v[D];
-    if (flip) state.grid.v_start[b][k] = v;
-    if (mass > 0.0) v += total / mass + pull;
-    v[D] = mass;
-  });
+  const auto add = [&](NodeLanes* v, const std::array<NodeLanes, tile_cells>& total, std::size_t b,
+                       std::size_t k) {
+    for (int i = 0; i < tile_cells; ++i) {
+      const double inverse = v[i][D];
+      if (flip) share.v_start[b][k + static_cast<std::size_t>(i)] = v[i];
+      if (inverse > 0.0) v[i] += total[static_cast<std::size_t>(i)] * inverse + pull;
+      v[i][D] = inverse;
+    }
+  };
+  update_nodes(body, state, friction, impulses, add, rows_of, share);
 }
 
 }  // namespace tremie::detail

@@ -2,7 +2,7 @@
 
 // Parts of an explicit step: sorting the points, and how long the next step is.
 
-#include "libmpm/step/explicit_body.hpp"
+#include "libmpm/step/explicit_nodes.hpp"
 
 namespace tremie {
 
@@ -27,19 +27,21 @@ void sort_points(const ExplicitSettings& settings, ExplicitState<Space>& state) 
   constexpr int D = Space::dim;
   auto sorted = sort_into_tiles<D>(state.grid.axes, state.shape.stencil_shift(), state.points);
   lay_tiles(state.grid, std::move(sorted.tiles), settings.transfer.flip);
+  for (NodeBlock<D>& block : state.grid.blocks)
+    block.on_walls = nodes_on_walls<D>(state.grid.axes, state.shape, block.at);
   state.drift = 0.0;
-  state.mixed_groups = static_cast<std::int64_t>(sorted.mixed);
+  state.mixed_groups = sorted.mixed;
   state.mixed_since = 0;
   state.wall_drift = state.holding.drift = 1e300;
   ++state.sorts;
 }
 
-/// Sorts the points again if they have drifted too far, or if it pays. The velocities on the grid stay.
+/// Whether the points have drifted too far, or sorting them again pays.
 template <class Space>
-void sort_if_drifted(const ExplicitSettings& settings, ExplicitState<Space>& state) {
+bool should_sort(const ExplicitState<Space>& state) {
   const double paid = static_cast<double>(state.mixed_since);
-  if (state.drift > drift_allowed || paid > passes_for_sorting * static_cast<double>(state.points.groups()))
-    sort_points(settings, state);
+  return state.drift > drift_allowed ||
+         paid > passes_for_sorting * static_cast<double>(state.points.groups());
 }
 
 /// The limits of the step to come, and its length.

@@ -155,7 +155,8 @@ TileRows rows_reached(const Weights<D>& weights, int n) {
 /// One tile.
 template <Pass pass, class Space, class Law>
 PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& settings,
-                        const PassInput& input, int t, ExplicitState<Space>& state) {
+                        const PassInput& input, int t, const Share<Space::dim>& share,
+                        ExplicitState<Space>& state) {
   constexpr int D = Space::dim;
   TileGrid<D>& grid = state.grid;
   LanePoints<D>& points = state.points;
@@ -163,20 +164,23 @@ PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& 
   const bool flip = settings.transfer.flip, cells = settings.cell_pressure;
   const bool apart = flip && pass.move && pass.stress;  // FLIP must tell forces from momentum
   Cube<D> v, v_start;
-  TileRows& rows = grid.rows[t];
-  if (pass.gather) read_blocks<D>(tile, rows, grid.v, v);
-  if (pass.gather && pass.move && flip) read_blocks<D>(tile, rows, grid.v_start, v_start);
-  auto& sums = grid.sums[t];
-  auto& forces = apart ? grid.forces[t] : sums;
+  const TileRows reached = grid.rows[grid.filled_buffer(t)];
+  if (pass.gather) read_blocks<D>(tile, reached, share.v, v);
+  if (pass.gather && pass.move && flip) read_blocks<D>(tile, reached, share.v_start, v_start);
+  const int buffer = tile.buffer[1 - grid.turn];
+  auto& sums = grid.sums[buffer];
+  auto& forces = apart ? grid.forces[buffer] : sums;
+  TileRows& rows = grid.rows[buffer];
   clear_rows<D>(rows, sums);
   if (apart) clear_rows<D>(rows, forces);
   rows = 0;
   const auto first = static_cast<std::size_t>(tile.first_group),
              last = static_cast<std::size_t>(tile.last_group);
   const HeldCells<D>* held = pass.stress ? state.holding.of(t) : nullptr;
-  PressureCells<Space> before(grid.axes, state.shape, tile.at, settings.stress, held),
-      after(grid.axes, state.shape, tile.at, settings.stress, held);
-  PressureCells<Space>& pushed = pass.gather && pass.move ? after : before;
+  const bool pressed_anew = pass.gather && pass.move;  // by the cells that the points have moved to
+  PressureCells<Space> before(grid.axes, state.shape, tile.at, settings.stress, held, pass.stress && cells),
+      after(grid.axes, state.shape, tile.at, settings.stress, held, pass.stress && cells && pressed_anew);
+  PressureCells<Space>& pushed = pressed_anew ? after : before;
   static thread_local std::vector<std::array<int, octet_size>> cells_before;
   if (pass.stress && cells && pass.gather) {
     cells_before.resize(last - first);
@@ -227,15 +231,19 @@ PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& 
   return reduced.reduced();
 }
 
-/// All tiles.
-template <Pass pass, class Space, class Law>
+/// All tiles; `before(share)` comes first in each share, for what needs nothing of the others but the sums of
+/// the last pass.
+template <Pass pass, class Space, class Law, class Before>
 PassSums pass_over_points(const Mix& mix, const Law& law, const ExplicitSettings& settings,
-                          const PassInput& input, ExplicitState<Space>& state) {
+                          const PassInput& input, ExplicitState<Space>& state, Before before) {
   constexpr int D = Space::dim;
   std::vector<PassSums> reduced(state.grid.tiles.size());
-  for_each_share(state.grid, first_tile_of<D>, [&](int t) {
-    reduced[t] = pass_over_tile<pass, Space>(mix, law, settings, input, t, state);
+  for_each_share(state.grid, [&](Share<D>& share) {
+    before(share);
+    for (int t = share.first_tile; t < share.last_tile; ++t)
+      reduced[t] = pass_over_tile<pass, Space>(mix, law, settings, input, t, share, state);
   });
+  state.grid.turn = 1 - state.grid.turn;
   PassSums all;
   for (const PassSums& one : reduced) all.add(one);
   state.mixed_since += std::max<std::int64_t>(0, all.mixed - state.mixed_groups);

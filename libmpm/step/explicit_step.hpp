@@ -23,34 +23,58 @@ ExplicitState<Space> start_explicit(Body<Space>& body, const Law& law, const Exp
   detail::choose_next_step(body, law, settings, state);
   const detail::PassInput input{.impulse_dt = state.next_dt};
   look_into_wall_cells(state);
+  const auto nothing_before = [](Share<Space::dim>&) {};
   if (settings.stress == StressUpdate::last)
-    detail::pass_over_points<detail::first_sums, Space>(body.mix, law, settings, input, state);
+    detail::pass_over_points<detail::first_sums, Space>(body.mix, law, settings, input, state,
+                                                        nothing_before);
   else
-    detail::pass_over_points<detail::first_momenta, Space>(body.mix, law, settings, input, state);
+    detail::pass_over_points<detail::first_momenta, Space>(body.mix, law, settings, input, state,
+                                                           nothing_before);
   return state;
 }
+
+namespace detail {
+
+/// The controls' part of a step, then a pass over the points. Each thread goes from its controls to its
+/// points at once, unless `between`, if it is wanted, must see all controls first.
+template <Pass pass, class Space, class Law, class Controls, class Between>
+PassSums controls_then_points(const Body<Space>& body, const Law& law, const ExplicitSettings& settings,
+                              const PassInput& input, ExplicitState<Space>& state, Controls controls,
+                              bool wanted, Between between) {
+  if (wanted) {
+    for_each_share(state.grid, controls);
+    between();
+  }
+  look_into_wall_cells(state);
+  return pass_over_points<pass, Space>(body.mix, law, settings, input, state, [&](Share<Space::dim>& share) {
+    if (!wanted) controls(share);
+  });
+}
+
+}  // namespace detail
 
 /// Updates the stress last (USL): the velocities at the end of the step deform and move the points. Points to
 /// grid for the step to come happens in the same pass, with the impulses that the new stresses give in it.
 template <class Space, class Law>
 detail::PassSums stress_last(Body<Space>& body, const Law& law, const ExplicitSettings& settings,
                              const RigidWall<Space::dim>& wall, double dt, ExplicitState<Space>& state) {
+  const Vec<Space::dim> pull = dt * body.gravity, none = Vec<Space::dim>::Zero();
+  const double friction = settings.friction_coefficient;
   // Momentum balance on the grid; the stresses' impulses are in the momenta, but for FLIP.
-  const bool flip = settings.transfer.flip;
-  const Vec<Space::dim> pull = dt * body.gravity;
-  if (flip) {
-    detail::velocities_from_sums(body, state, 0.0, Vec<Space::dim>::Zero());
-    detail::add_impulses(body, state, settings.friction_coefficient, state.grid.forces, flip, pull);
-  } else {
-    detail::velocities_from_sums(body, state, settings.friction_coefficient, pull);
-  }
-  detail::push_off_wall(wall, body.time + dt, dt, settings.wall_gap, state);
-  detail::sort_if_drifted(settings, state);
-  look_into_wall_cells(state);
-
+  const bool sort = detail::should_sort(state);
+  const RowsOf rows_of = wall || sort ? RowsOf::all_tiles : RowsOf::own_tiles;
+  const auto velocities = [&](Share<Space::dim>& share) {
+    const bool flip = settings.transfer.flip;
+    detail::velocities_from_sums(body, state, flip ? 0.0 : friction, flip ? none : pull, rows_of, share);
+    if (flip) detail::add_impulses(body, state, friction, state.grid.forces, flip, pull, rows_of, share);
+  };
+  const auto wall_and_sorting = [&] {
+    detail::push_off_wall(wall, body.time + dt, dt, settings.wall_gap, state);
+    if (sort) detail::sort_points(settings, state);
+  };
   // Grid to points, stress, motion, points to grid.
-  return detail::pass_over_points<detail::whole_pass, Space>(body.mix, law, settings, {dt, state.next_dt},
-                                                             state);
+  return detail::controls_then_points<detail::whole_pass>(body, law, settings, {dt, state.next_dt}, state,
+                                                          velocities, wall || sort, wall_and_sorting);
 }
 
 /// Updates the stress first (USF), the paper's order: with the points' velocities as the grid has them before
@@ -58,15 +82,22 @@ detail::PassSums stress_last(Body<Space>& body, const Law& law, const ExplicitSe
 template <class Space, class Law>
 detail::PassSums stress_first(Body<Space>& body, const Law& law, const ExplicitSettings& settings,
                               const RigidWall<Space::dim>& wall, double dt, ExplicitState<Space>& state) {
-  const bool flip = settings.transfer.flip;
-  detail::velocities_from_sums(body, state, 0.0, Vec<Space::dim>::Zero());
-  detail::sort_if_drifted(settings, state);
-  look_into_wall_cells(state);
-  detail::PassSums sums =
-      detail::pass_over_points<detail::stress_pass, Space>(body.mix, law, settings, {dt, dt}, state);
-  detail::add_impulses(body, state, settings.friction_coefficient, state.grid.sums, flip, dt * body.gravity);
-  detail::push_off_wall(wall, body.time + dt, dt, settings.wall_gap, state);
-  sums.add(detail::pass_over_points<detail::motion_pass, Space>(body.mix, law, settings, {dt, 0.0}, state));
+  const Vec<Space::dim> pull = dt * body.gravity, none = Vec<Space::dim>::Zero();
+  const bool sort = detail::should_sort(state);
+  const RowsOf rows_of = wall || sort ? RowsOf::all_tiles : RowsOf::own_tiles;
+  const auto velocities = [&](Share<Space::dim>& share) {
+    detail::velocities_from_sums(body, state, 0.0, none, rows_of, share);
+  };
+  detail::PassSums sums = detail::controls_then_points<detail::stress_pass>(
+      body, law, settings, {dt, dt}, state, velocities, sort, [&] { detail::sort_points(settings, state); });
+
+  const auto impulses = [&](Share<Space::dim>& share) {
+    detail::add_impulses(body, state, settings.friction_coefficient, state.grid.sums, settings.transfer.flip,
+                         pull, rows_of, share);
+  };
+  sums.add(detail::controls_then_points<detail::motion_pass>(
+      body, law, settings, {dt, 0.0}, state, impulses, bool{wall},
+      [&] { detail::push_off_wall(wall, body.time + dt, dt, settings.wall_gap, state); }));
   return sums;
 }
 

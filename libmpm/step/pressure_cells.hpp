@@ -26,14 +26,15 @@ class PressureCells {
   static constexpr int D = Space::dim, n = power(tile_pressure_cells, D);
   using Cube = std::array<NodeLanes, TileGrid<D>::tile_nodes>;
 
-  /// `held`: the tile's cells at walls that hold, if there are any.
+  /// `held`: the tile's cells at walls that hold, if there are any. Without `wanted` nothing may be entered.
   PressureCells(const std::array<Axis, D>& axes, const Shape<D>& shape, const Index<D>& tile,
-                StressUpdate stress, const HeldCells<D>* held)
+                StressUpdate stress, const HeldCells<D>* held, bool wanted)
       : axes_(axes),
         shape_(shape),
         tile_(tile),
         follows_(shape.kind == ShapeFunctions::b_spline || stress == StressUpdate::last),
         held_(held) {
+    if (!wanted) return;
     slot_.fill(-1);
     for (int d = 0; d < D; ++d) {
       origin_[d] = axes[d].origin, per_cell_[d] = 1.0 / axes[d].h, first_[d] = tile[d] * tile_cells;

@@ -287,7 +287,7 @@ TEST(SortedPoints, GroupsOfOneCell) {
   take_points<D>(points, true, lanes);
   const auto sorted = sort_into_tiles<D>(axes, 0.0, lanes);
   std::vector<int> seen(points.size(), 0);
-  std::size_t mixed = 0;
+  std::int64_t mixed = 0;
   for (std::size_t t = 0; t < sorted.tiles.size(); ++t) {
     const Tile<D>& tile = sorted.tiles[t];
     if (t > 0) {
@@ -314,7 +314,7 @@ TEST(SortedPoints, GroupsOfOneCell) {
     }
   }
   for (const int n : seen) EXPECT_EQ(n, 1);
-  EXPECT_GT(mixed, 0u);
+  EXPECT_GT(mixed, 0);
   EXPECT_LE(mixed, sorted.mixed);
 }
 

@@ -1,15 +1,15 @@
-// The tiles of the explicit grid: rows of controls and what each thread has.
+// The tiles of the explicit grid: rows of controls and what each thread shares in.
 
 #include <gtest/gtest.h>
 
-#include "libmpm/grid/tiles.hpp"
+#include "libmpm/grid/shares.hpp"
 
 namespace tremie {
 namespace {
 
 /// A row of tiles, the t-th with t groups more than the one before it.
 template <int D>
-TileGrid<D> row_of_tiles(int n) {
+TileGrid<D> row_of_tiles(int n, int n_shares) {
   TileGrid<D> grid;
   for (Axis& axis : grid.axes) axis = {.n_cells = 64};
   std::vector<Tile<D>> tiles;
@@ -19,7 +19,7 @@ TileGrid<D> row_of_tiles(int n) {
     groups += t;
     tiles.push_back(tile);
   }
-  lay_tiles<D>(grid, tiles, false);
+  lay_tiles<D>(grid, tiles, false, n_shares);
   return grid;
 }
 
@@ -58,25 +58,74 @@ TEST(Tiles, OnlyTheRowsThatAreMeantAreCleared) {
   for (int i = 0; i < TileGrid<2>::tile_nodes; ++i) EXPECT_EQ(cube[i][0], i < tile_span ? 1.0 : 0.0);
 }
 
-// Each tile and block is somebody's, once; no thread has more than its share and one tile.
-TEST(Tiles, ThreadsShareThemAll) {
-  for (const int n : {0, 1, 2, 7, 40}) {
-    const TileGrid<3> grid = row_of_tiles<3>(n);
-    for (const int threads : {1, 2, 3, 16}) {
-      EXPECT_EQ(first_tile_of(grid, 0, threads), 0);
-      EXPECT_EQ(first_block_of(grid, 0, threads), 0);
-      EXPECT_EQ(first_tile_of(grid, threads, threads), grid.n_tiles());
-      EXPECT_EQ(first_block_of(grid, threads, threads), grid.n_blocks());
-      for (int t = 0; t < threads; ++t) {
-        EXPECT_LE(first_tile_of(grid, t, threads), first_tile_of(grid, t + 1, threads));
-        EXPECT_LE(first_block_of(grid, t, threads), first_block_of(grid, t + 1, threads));
-      }
-    }
-    if (n != 40) continue;
-    // 780 groups and 8 a tile for its arrays: 1100 in all, 47 of them the last tile's.
-    const int half = first_tile_of(grid, 1, 2);
-    EXPECT_NEAR(grid.tiles[static_cast<std::size_t>(half)].first_group + 8 * half, 550, 47);
+/// Each tile is in one share, and finds in it the blocks that it sees.
+void expect_shared_out(const TileGrid<3>& grid) {
+  int next = 0;
+  for (const Share<3>& share : grid.shares) {
+    EXPECT_EQ(share.first_tile, next);
+    EXPECT_EQ(share.v.size(), share.blocks.size());
+    next = share.last_tile;
   }
+  EXPECT_EQ(next, grid.n_tiles());
+  for (int t = 0; t < grid.n_tiles(); ++t) {
+    const Tile<3>& tile = grid.tiles[static_cast<std::size_t>(t)];
+    const Share<3>& share = share_of(grid, t);
+    EXPECT_TRUE(share.first_tile <= t && t < share.last_tile);
+    for (int k = 0; k < 8; ++k) {
+      const auto in_share = static_cast<std::size_t>(tile.block[static_cast<std::size_t>(k)]);
+      const auto& at = grid.blocks[static_cast<std::size_t>(share.blocks[in_share])].at;
+      for (int d = 0; d < 3; ++d) EXPECT_EQ(at[d], tile.at[d] + corner<3>(k)[d]);
+    }
+  }
+}
+
+TEST(Tiles, SharesAreOfAllTiles) {
+  for (const int n : {0, 1, 2, 7, 40})
+    for (const int shares : {1, 2, 3, 16}) {
+      const TileGrid<3> grid = row_of_tiles<3>(n, shares);
+      EXPECT_EQ(std::ssize(grid.shares), shares);
+      expect_shared_out(grid);
+    }
+  // 780 groups of 10 and 30 a tile: 9000 in all, 420 of them the last tile's, half of which may be too many.
+  const TileGrid<3> grid = row_of_tiles<3>(40, 2);
+  const int half = grid.shares[0].last_tile;
+  EXPECT_NEAR(10 * grid.tiles[static_cast<std::size_t>(half)].first_group + 30 * half, 4500, 210);
+}
+
+// In a row of tiles those on either side of a border between two shares see common blocks.
+TEST(Tiles, TilesAtABorderHaveTwoBuffers) {
+  const TileGrid<3> grid = row_of_tiles<3>(10, 3);
+  std::vector<int> two;
+  std::vector<int> buffers;
+  for (int t = 0; t < 10; ++t) {
+    const auto& buffer = grid.tiles[static_cast<std::size_t>(t)].buffer;
+    buffers.push_back(buffer[0]);
+    if (buffer[0] == buffer[1]) continue;
+    two.push_back(t), buffers.push_back(buffer[1]);
+  }
+  const int first = grid.shares[1].first_tile, second = grid.shares[2].first_tile;
+  EXPECT_EQ(two, (std::vector<int>{first - 1, first, second - 1, second}));
+  for (int i = 0; i < std::ssize(buffers); ++i) EXPECT_EQ(buffers[static_cast<std::size_t>(i)], i);
+  EXPECT_EQ(grid.sums.size(), buffers.size());
+}
+
+// Block 9 is the last that tile 8 sees and the first that tile 9 sees.
+TEST(Tiles, VelocitiesAreHandedOnAndKept) {
+  TileGrid<3> grid = row_of_tiles<3>(10, 10);
+  const auto block_9 = [&](int tile, int k) -> NodeLanes& {
+    auto& share = grid.shares[static_cast<std::size_t>(&share_of(grid, tile) - grid.shares.data())];
+    const Tile<3>& of = grid.tiles[static_cast<std::size_t>(tile)];
+    return share.v[static_cast<std::size_t>(of.block[static_cast<std::size_t>(k)])][7];
+  };
+  ASSERT_NE(&share_of(grid, 8), &share_of(grid, 9));
+  first_nodes(grid, share_of(grid, 9), grid.tiles[9].block[0])[7] = NodeLanes{1.0, 2.0, 3.0, 4.0};
+  EXPECT_EQ(block_9(8, 4)[2], 3.0);  // the first share that sees it is tile 8's
+  EXPECT_EQ(block_9(9, 0)[2], 0.0);
+  hand_on_velocities(grid);
+  EXPECT_EQ(block_9(9, 0)[2], 3.0);
+  lay_tiles<3>(grid, std::vector<Tile<3>>(grid.tiles), false, 2);
+  EXPECT_EQ(block_9(8, 4)[2], 3.0);
+  EXPECT_EQ(block_9(9, 0)[2], 3.0);
 }
 
 }  // namespace
