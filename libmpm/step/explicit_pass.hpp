@@ -250,4 +250,10 @@ PassSums pass_over_points(const Mix& mix, const Law& law, const ExplicitSettings
   return all;
 }
 
+template <Pass pass, class Space, class Law>
+PassSums pass_over_points(const Mix& mix, const Law& law, const ExplicitSettings& settings,
+                          const PassInput& input, ExplicitState<Space>& state) {
+  return pass_over_points<pass, Space>(mix, law, settings, input, state, [](Share<Space::dim>&) {});
+}
+
 }  // namespace tremie::detail

@@ -23,13 +23,10 @@ ExplicitState<Space> start_explicit(Body<Space>& body, const Law& law, const Exp
   detail::choose_next_step(body, law, settings, state);
   const detail::PassInput input{.impulse_dt = state.next_dt};
   look_into_wall_cells(state);
-  const auto nothing_before = [](Share<Space::dim>&) {};
   if (settings.stress == StressUpdate::last)
-    detail::pass_over_points<detail::first_sums, Space>(body.mix, law, settings, input, state,
-                                                        nothing_before);
+    detail::pass_over_points<detail::first_sums, Space>(body.mix, law, settings, input, state);
   else
-    detail::pass_over_points<detail::first_momenta, Space>(body.mix, law, settings, input, state,
-                                                           nothing_before);
+    detail::pass_over_points<detail::first_momenta, Space>(body.mix, law, settings, input, state);
   return state;
 }
 
