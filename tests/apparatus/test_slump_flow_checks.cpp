@@ -19,11 +19,15 @@ lift_speed = "instant"
 frames = false
 )";
 
-bool marked_as_thin(const std::vector<std::string>& overrides) {
+bool marked_as(const char* what, const std::vector<std::string>& overrides) {
   const auto outcome = scene::run(scene::read_text(thin, "thin.toml", overrides));
   for (const auto& reason : outcome.checks.reasons)
-    if (reason.find("thinner than a cell") != std::string::npos) return true;
+    if (reason.find(what) != std::string::npos) return true;
   return false;
+}
+
+bool marked_as_thin(const std::vector<std::string>& overrides) {
+  return marked_as("thinner than", overrides);
 }
 
 // After 5 s this body is 18 to 30 mm thick, whatever the scheme: one cell of 40 mm cannot shear, three of 10
@@ -32,6 +36,33 @@ TEST(SlumpFlowChecks, ABodyThinnerThanACellIsMarked) {
   EXPECT_TRUE(marked_as_thin({"model.cell=40 mm"}));
   EXPECT_TRUE(marked_as_thin({"model.cell=40 mm", "model.scheme=explicit", "model.yield=papanastasiou"}));
   EXPECT_FALSE(marked_as_thin({"model.cell=10 mm"}));
+}
+
+// At a coefficient of 0.05 the floor bears 11 Pa and cannot shear a concrete of 54 Pa: 9.3 mm of it on cells
+// of 10 mm spread to 867 mm, 884 mm on cells of 2.5 mm. Concrete that flows below its yield stress is
+// sheared: 8 % off. A coefficient of 0.35 bears 262 Pa under 32 mm.
+TEST(SlumpFlowChecks, AFloorThatBearsLessThanTheYieldStressCountsAsSliding) {
+  const auto on = [](const char* coefficient, const char* cell, const char* yield) {
+    return marked_as_thin({"mix.yield_stress=54 Pa", "floor.contact=friction",
+                           std::string("floor.coefficient=") + coefficient, std::string("model.cell=") + cell,
+                           std::string("model.yield=") + yield});
+  };
+  EXPECT_FALSE(on("0.05", "[\"20 mm\", \"10 mm\"]", "exact"));
+  EXPECT_TRUE(on("0.05", "40 mm", "exact"));
+  EXPECT_TRUE(on("0.1", "20 mm", "papanastasiou"));
+  EXPECT_TRUE(on("0.35", "40 mm", "exact"));
+}
+
+// No friction is none by either name: after 0.4 s the concrete is three quarters of a 20 mm cell thick, after
+// 0.7 s less than half.
+TEST(SlumpFlowChecks, AFloorWithoutFrictionIsMarkedAsAFreeOneIs) {
+  for (const char* time : {"0.4 s", "0.7 s"}) {
+    const std::string duration = std::string("test.duration=") + time;
+    const bool free = marked_as_thin({"model.cell=20 mm", duration, "floor.contact=free_slip"});
+    EXPECT_EQ(free, std::string(time) == "0.7 s");
+    EXPECT_EQ(free, marked_as_thin(
+                        {"model.cell=20 mm", duration, "floor.contact=friction", "floor.coefficient=0"}));
+  }
 }
 
 // A fill of 300 mm at K = 1 MPa starts 0.43 % compressed: 1.8 % is three times that and half a per cent more.
