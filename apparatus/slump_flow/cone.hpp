@@ -80,6 +80,19 @@ inline RigidWall<2> lifted_wall(const Scene& scene, double reach) {
   };
 }
 
+/// Share of the volume that stands above the lifted cone's rim, but not within its wall.
+template <int D>
+double share_behind_wall(const Scene& scene, double time, const Points<D>& points) {
+  const double rim = rim_height(scene, time);
+  double behind = 0.0, all = 0.0;
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const double above_rim = points.x[p][D - 1] - rim, r = points.x[p].template head<D - 1>().norm();
+    all += points.volume(p);
+    if (above_rim > 0.0 && r > inner_radius(scene.cone, above_rim)) behind += points.volume(p);
+  }
+  return behind / all;
+}
+
 /// The wall that a wall in the section (r, z) makes when it is turned about the axis.
 inline RigidWall<3> revolved(const RigidWall<2>& section) {
   return [=](const Vec<3>& x, double time) -> std::optional<WallView<3>> {

@@ -108,6 +108,7 @@ Outcome run_explicit_in(const Scene& scene, const Law& law, const Observer& obse
   engine::judge(body, start_mass, outcome.checks, outcome.cost);
   engine::judge_volume(outcome.series.front().volume_change, outcome.checks);
   judge_depth(scene, outcome);
+  judge_lift(outcome);
   outcome.cost.bytes_per_point = explicit_bytes_per_point<D>(body.points.thixotropic());
   outcome.final_frame = engine::frame_of(body);
   if (observer.on_frame) observer.on_frame(outcome.final_frame);

@@ -54,6 +54,8 @@ struct Results {
   std::optional<double> flocculation_mean_start = {}, flocculation_mean_end = {};
   double shear_rate_mean_peak = 0.0;         ///< [1/s]
   std::optional<double> mean_velocity = {};  ///< (SF - 200 mm) / (2 t_stop) [m/s]
+  /// Share of the volume behind the wall of the cone when its rim has risen by a cell, or at the end.
+  std::optional<double> through_the_cone = {};
 };
 
 struct Outcome {
