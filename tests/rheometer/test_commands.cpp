@@ -255,6 +255,13 @@ TEST_F(Commands, CellRefusesWhatIsNoScene) {
   expect_refused("cell both.toml", {"history"});
 }
 
+TEST_F(Commands, ASceneOfTheOtherCommandIsSentThere) {
+  write("loop.toml", loop);
+  expect_refused("run loop.toml", {"loop.toml:1: apparatus", "`tremie cell loop.toml`"});
+  write("slump.toml", "apparatus = \"slump_flow\"\nmix = \"mix_a\"\n");
+  expect_refused("cell slump.toml", {"slump.toml:1: apparatus", "`tremie run slump.toml`"});
+}
+
 TEST_F(Commands, TheSceneOfTheHouseRuns) {
   for (const char* name : {"cell_hysteresis_loop", "cell_parametric"}) {
     const Result r = tremie("cell '" TREMIE_SCENES "/" + std::string(name) + ".toml' --out " + name);
