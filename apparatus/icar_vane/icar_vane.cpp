@@ -107,7 +107,7 @@ Outcome run_section(const Scene& scene, const Section& section, const Law& law, 
   engine::judge(body, start_mass, outcome.checks, outcome.cost);
   outcome.results.profile = profile(body, section, scene.model.cell[0]);
   read_instrument(scene, outcome);
-  check_torques_agree(outcome);
+  check_torques_agree(scene, outcome);
   check_against_reference(scene, outcome);
   outcome.final_frame = section.whole(engine::frame_of(body), turned);
   if (observer.on_frame) observer.on_frame(outcome.final_frame);

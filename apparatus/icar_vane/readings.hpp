@@ -17,7 +17,7 @@ void read_instrument(const Scene& scene, Outcome& outcome);
 
 /// Torques on the blades, on the wall (with the rate of angular momentum) and from the power must agree at
 /// the end; a reason where they do not.
-void check_torques_agree(Outcome& outcome);
+void check_torques_agree(const Scene& scene, Outcome& outcome);
 
 /// Adds a reason where a Couette section's torque at the end is not that of the radial equations, which its
 /// own three readings cannot tell when all of them follow one wrong stress.
