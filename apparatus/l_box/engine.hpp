@@ -68,6 +68,25 @@ inline void judge_bars(const Scene& scene, Checks& checks) {
                              " mm do not resolve the bars of 12 mm: a model.cell of at most 6 mm");
 }
 
+/// Depths and how far they reach are the grid's where a few cells make them: below these the passing ratio is
+/// up to 40 % off (lbox_cells.md).
+inline constexpr double least_behind_the_gate = 3.5, least_at_the_end = 1.0, least_along = 3.0;  // [cells]
+
+inline void judge_cells(const Scene& scene, const Results& r, Checks& checks) {
+  const auto [across, up] = scene.model.cell;
+  char text[160] = "";
+  if (r.h1 < least_behind_the_gate * up)
+    std::snprintf(text, sizeof text, "the concrete behind the gate is %.2g cells deep, less than %.2g",
+                  r.h1 / up, least_behind_the_gate);
+  else if (r.h2 && *r.h2 < least_at_the_end * up)
+    std::snprintf(text, sizeof text, "the concrete at the channel's end is thinner than a cell, %.3g mm",
+                  1e3 * *r.h2);
+  else if (scene.box.column_length < least_along * across)
+    std::snprintf(text, sizeof text, "the column is %.2g cells long, less than %.2g",
+                  scene.box.column_length / across, least_along);
+  if (text[0] != 0) checks.reasons.push_back(std::string(text) + ": a smaller model.cell");
+}
+
 template <class Space, class Law>
 Outcome run_in(const Scene& scene, const Law& law, const Observer& observer) {
   Body<Space> body = filled_column<Space>(scene);
@@ -105,6 +124,7 @@ Outcome run_in(const Scene& scene, const Law& law, const Observer& observer) {
   engine::judge(body, start_mass, outcome.checks, outcome.cost);
   engine::judge_volume(outcome.series.front().volume_change, outcome.checks);
   judge_bars(scene, outcome.checks);
+  judge_cells(scene, outcome.results, outcome.checks);
   outcome.final_frame = engine::frame_of(body);
   if (observer.on_frame) observer.on_frame(outcome.final_frame);
   return outcome;
