@@ -161,7 +161,8 @@ class TwoEndedCholesky {
   int n_ = 0, below_ = 0;
   std::array<End, 2> ends_;
   Matrix middle_;
-  Eigen::LLT<Matrix> llt_;
+  /// A factor from the start: what Eigen leaves unset in an empty one may not be copied.
+  Eigen::LLT<Matrix> llt_{Matrix::Identity(1, 1)};
 };
 
 }  // namespace tremie
