@@ -74,7 +74,7 @@ struct Share {
 
 template <int D>
 struct TileGrid {
-  static constexpr int tile_nodes = power(tile_span, D), block_nodes = power(tile_cells, D);
+  static constexpr int tile_nodes = power(tile_span, D);
   using Buffer = NodeCube<tile_nodes>;
 
   std::array<Axis, D> axes;
@@ -87,7 +87,6 @@ struct TileGrid {
   std::vector<TileRows> rows;  ///< a buffer: what the points reached; all else in it is zero
 
   int n_tiles() const { return static_cast<int>(tiles.size()); }
-  int n_blocks() const { return static_cast<int>(blocks.size()); }
   int filled_buffer(int tile) const { return tiles[static_cast<std::size_t>(tile)].buffer[turn]; }
 };
 
