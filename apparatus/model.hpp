@@ -20,6 +20,7 @@ enum class MethodKind { automatic, admm, newton };
 enum class ShapeKind { b_spline, gimp };
 enum class PressureKind { cell, point };
 enum class TransferKind { apic, flip };
+enum class PrecisionKind { both_double, single_sums };
 enum class ContactKind { no_slip, friction, free_slip };
 
 struct Floor {
@@ -37,9 +38,10 @@ struct Model {
   ShapeKind shape = ShapeKind::b_spline;
   PressureKind pressure = PressureKind::cell;  ///< one divergence a cell or a point, explicit schemes alone
   TransferKind transfer = TransferKind::apic;
-  double flip_blend = 0.95;         ///< share of FLIP, transfer = flip alone
-  std::optional<double> time_step;  ///< fixed step [s]; empty: chosen at every step
-  double step_scale = 1.0;          ///< on the longest step that is chosen; no scene key, for error estimates
+  PrecisionKind precision = PrecisionKind::both_double;  ///< of points and sums, explicit schemes alone
+  double flip_blend = 0.95;                              ///< share of FLIP, transfer = flip alone
+  std::optional<double> time_step;                       ///< fixed step [s]; empty: chosen at every step
+  double step_scale = 1.0;  ///< on the longest step that is chosen; no scene key, for error estimates
   std::array<double, 2> cell = {0.01, 0.005};  ///< [m] across, up
   bool even_out =
       true;  ///< keep cells inside the body full (libmpm/transfer/even_out.hpp); no scene key, for studies

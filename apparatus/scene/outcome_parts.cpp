@@ -30,6 +30,10 @@ void add_model_uses(const Model& model, std::vector<std::string>& lines) {
                                                   : "regularisation: of the yield law");
   lines.push_back(model.transfer == TransferKind::flip ? "FLIP blend: in the transfer"
                                                        : "FLIP blend: left out (model.transfer = \"apic\")");
+  if (model.scheme != SchemeKind::implicit)
+    lines.push_back(model.precision == PrecisionKind::single_sums
+                        ? "sums between points and grid: in single precision; points in double"
+                        : "sums between points and grid: in double precision");
 }
 
 ResultValue word_or_null(const std::string& word) {

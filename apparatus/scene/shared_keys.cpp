@@ -33,6 +33,8 @@ const Words<MethodKind> method_words{
 const Words<ShapeKind> shape_words{{"b_spline", ShapeKind::b_spline}, {"gimp", ShapeKind::gimp}};
 const Words<PressureKind> pressure_words{{"cell", PressureKind::cell}, {"point", PressureKind::point}};
 const Words<TransferKind> transfer_words{{"apic", TransferKind::apic}, {"flip", TransferKind::flip}};
+const Words<PrecisionKind> precision_words{{"double", PrecisionKind::both_double},
+                                           {"single", PrecisionKind::single_sums}};
 
 Section material_section(const std::string& bulk_modulus) {
   return {
@@ -244,6 +246,12 @@ Section model_section(const std::vector<std::string>& spaces, const ModelDefault
                .fallback = "cell",
                .only_with = Condition{"scheme", {"explicit", "explicit_usf"}},
                .help = "one divergence a cell, against locking, or one a point"},
+              {.name = "precision",
+               .kind = Kind::choice,
+               .words = names(precision_words),
+               .fallback = "double",
+               .only_with = Condition{"scheme", {"explicit", "explicit_usf"}},
+               .help = "of the sums between points and grid; single with transfer = apic"},
               {.name = "transfer", .kind = Kind::choice, .words = names(transfer_words), .fallback = "apic"},
               {.name = "flip_blend",
                .kind = Kind::number,
@@ -283,6 +291,7 @@ Model read_model(const Values& values) {
   if (values.has("model.method")) model.method = values.choice("model.method", method_words);
   model.shape = values.choice("model.shape", shape_words);
   if (values.has("model.pressure")) model.pressure = values.choice("model.pressure", pressure_words);
+  if (values.has("model.precision")) model.precision = values.choice("model.precision", precision_words);
   model.transfer = values.choice("model.transfer", transfer_words);
   if (values.has("model.flip_blend")) model.flip_blend = values.number("model.flip_blend");
   model.time_step = values.number_unless("model.time_step", "auto");

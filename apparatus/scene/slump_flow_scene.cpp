@@ -24,6 +24,7 @@ regularisation  = "5 s"
 scheme          = "explicit_usf"
 shape           = "gimp"
 pressure        = "cell"
+precision       = "single"
 time_step       = "1e-4 s"
 cell            = "15 mm"
 points_per_cell = 2
@@ -70,8 +71,17 @@ void settle_model(Values& values) {
     values.set_number("model.points_per_cell", 2, Layer::fallback, note);
 }
 
+/// FLIP sums in double precision alone.
+void settle_precision(Values& values) {
+  if (!values.has("model.precision") || values.word("model.precision") != "single") return;
+  if (values.word("model.transfer") == "flip")
+    values.drop_beside("model.precision", "model.transfer",
+                       "is \"single\", which goes with model.transfer = \"apic\" alone");
+}
+
 void settle(Values& values) {
   settle_model(values);
+  settle_precision(values);
   settle_mix(values);
   settle_floor(values);
 }

@@ -17,6 +17,7 @@ inline ExplicitSettings explicit_settings(const Scene& scene) {
   settings.transfer = common.transfer;
   settings.cell_pressure = scene.model.pressure == PressureKind::cell;
   settings.fixed_dt = scene.model.time_step;
+  settings.single_precision = scene.model.precision == PrecisionKind::single_sums;
   settings.friction_coefficient = common.friction_coefficient;
   settings.wall_gap = common.wall_gap;
   settings.wall_speed = scene.lift_speed.value_or(0.0);

@@ -94,20 +94,23 @@ double spread(const Points<2>& points, double cell) {
 }
 
 double spread(const Points<3>& points, double cell, bool quarter) {
-  constexpr int directions = 16;  // over the full turn; opposite ones make a diameter
+  // 16 directions over the full turn, opposite ones make a diameter; a quarter has four of its own.
+  const int directions = quarter ? 4 : 16;
+  const double turn = 2.0 * std::numbers::pi / 16.0;
   const std::vector<std::size_t> far = points_far_out(points, cell);
+  std::vector<double> size;
+  for (std::size_t p : far) size.push_back(section_size(points, p));
   double sum = 0.0;
   std::vector<Weighted> out;
   for (int k = 0; k < directions; ++k) {
-    const double angle = 2.0 * std::numbers::pi * (k + 0.5) / directions;
+    const double angle = turn * (k + 0.5);
     const double ex = std::cos(angle), ey = std::sin(angle);
     out.clear();
-    for (std::size_t p : far)
+    for (std::size_t i = 0; i < far.size(); ++i)
       for (int mirror = 0; mirror < (quarter ? 4 : 1); ++mirror) {
-        const double x = mirror & 1 ? -points.x[p][0] : points.x[p][0];
-        const double y = mirror & 2 ? -points.x[p][1] : points.x[p][1];
-        if (const double a = ex * x + ey * y; a > 0.0)
-          out.push_back({a, points.volume(p), section_size(points, p)});
+        const Vec<3>& at = points.x[far[i]];
+        const double x = mirror & 1 ? -at[0] : at[0], y = mirror & 2 ? -at[1] : at[1];
+        if (const double a = ex * x + ey * y; a > 0.0) out.push_back({a, 0.0, size[i]});
       }
     sum += reach_of(out, cell);
   }

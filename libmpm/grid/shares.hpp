@@ -47,28 +47,64 @@ std::int64_t cost_of(const Tile<D>& tile) {
   return 30 + 10 * (tile.last_group - tile.first_group) + 6 * tile.mixed_groups;
 }
 
-/// Where the shares' tiles begin, and the end: neighbouring tiles that cost about as much.
+/// Shares of neighbouring tiles that cost about as much.
 template <int D>
-std::vector<int> share_out(const std::vector<Tile<D>>& tiles, int n_shares) {
+void cut_into_shares(std::vector<Tile<D>>& tiles, int n_shares) {
   std::int64_t all = 0, so_far = 0;
   for (const Tile<D>& tile : tiles) all += cost_of(tile);
-  std::vector<int> first{0};
-  for (std::size_t t = 0; t < tiles.size(); ++t) {
+  int share = 0;
+  for (Tile<D>& tile : tiles) {
     // A tile is on the side of a border that has its middle.
-    const std::int64_t middle = 2 * so_far + cost_of(tiles[t]);
-    while (middle * n_shares >= 2 * all * std::ssize(first)) first.push_back(static_cast<int>(t));
-    so_far += cost_of(tiles[t]);
+    const std::int64_t middle = 2 * so_far + cost_of(tile);
+    while (middle * n_shares >= 2 * all * (share + 1)) ++share;
+    tile.share = share;
+    so_far += cost_of(tile);
   }
-  first.resize(static_cast<std::size_t>(n_shares) + 1, static_cast<int>(tiles.size()));
-  return first;
 }
 
-/// Share number s, of tiles first ... last - 1 and the blocks that they see, numbered in it from here on.
+/// How many tiles on either side of a border may change it.
+inline constexpr int border_tiles = 8;
+/// What an exchange must gain, for the longer border that it makes.
+inline constexpr std::int64_t border_cost = 60;
+
+/// Moves a tile across the border of shares s and s + 1, or exchanges two, if that makes their costs more
+/// even: a border between two tiles leaves up to one tile's cost between them.
 template <int D>
-Share<D> take_share(TileGrid<D>& grid, int s, int first, int last, bool flip) {
-  Share<D> share{.first_tile = first, .last_tile = last};
+void make_even(std::vector<Tile<D>>& tiles, int s) {
+  std::int64_t more = 0;  // what s costs more
+  std::vector<Tile<D>*> before, behind;
+  for (Tile<D>& tile : tiles) {
+    if (tile.share == s) before.push_back(&tile), more += cost_of(tile);
+    if (tile.share == s + 1) behind.push_back(&tile), more -= cost_of(tile);
+  }
+  before.erase(before.begin(), before.end() - std::min<std::ptrdiff_t>(border_tiles, std::ssize(before)));
+  behind.resize(std::min<std::size_t>(border_tiles, behind.size()));
+  before.push_back(nullptr), behind.push_back(nullptr);
+  Tile<D>*give = nullptr, *take = nullptr;
+  std::int64_t least = std::abs(more) - border_cost;
+  for (Tile<D>* a : before)
+    for (Tile<D>* b : behind) {
+      const std::int64_t left = std::abs(more - 2 * (a ? cost_of(*a) : 0) + 2 * (b ? cost_of(*b) : 0));
+      if (left < least) least = left, give = a, take = b;
+    }
+  if (give) give->share = s + 1;
+  if (take) take->share = s;
+}
+
+template <int D>
+void share_out(std::vector<Tile<D>>& tiles, int n_shares) {
+  cut_into_shares<D>(tiles, n_shares);
+  for (int s = 0; s + 1 < n_shares; ++s) make_even<D>(tiles, s);
+}
+
+/// Share number s: its tiles and the blocks that they see, numbered in it from here on.
+template <int D>
+Share<D> take_share(TileGrid<D>& grid, int s, bool flip) {
+  Share<D> share;
+  for (int t = 0; t < grid.n_tiles(); ++t)
+    if (grid.tiles[static_cast<std::size_t>(t)].share == s) share.tiles.push_back(t);
   const auto each_block = [&](auto visit) {
-    for (int t = share.first_tile; t < share.last_tile; ++t)
+    for (const int t : share.tiles)
       for (int& b : grid.tiles[static_cast<std::size_t>(t)].block) visit(b);
   };
   each_block([&](int b) { share.blocks.push_back(b); });
@@ -93,7 +129,7 @@ void give_buffers(TileGrid<D>& grid, bool flip) {
   for (std::size_t s = 0; s < grid.shares.size(); ++s)
     for (const int b : grid.shares[s].blocks)
       for (const int t : grid.blocks[static_cast<std::size_t>(b)].tile)
-        if (t >= 0 && (t < grid.shares[s].first_tile || t >= grid.shares[s].last_tile))
+        if (t >= 0 && grid.tiles[static_cast<std::size_t>(t)].share != static_cast<int>(s))
           at_border[static_cast<std::size_t>(t)] = 1;
   int n = 0;
   for (std::size_t t = 0; t < grid.tiles.size(); ++t) {
@@ -101,7 +137,10 @@ void give_buffers(TileGrid<D>& grid, bool flip) {
     buffer[0] = n++;
     buffer[1] = at_border[t] != 0 ? n++ : buffer[0];
   }
-  grid.sums.resize(static_cast<std::size_t>(n));
+  if (grid.single)
+    grid.single_sums.resize(static_cast<std::size_t>(n));
+  else
+    grid.sums.resize(static_cast<std::size_t>(n));
   grid.rows.assign(static_cast<std::size_t>(n), all_rows<D>);
   if (flip) grid.forces.resize(static_cast<std::size_t>(n));
 }
@@ -132,10 +171,9 @@ void lay_tiles(TileGrid<D>& grid, std::vector<Tile<D>> tiles, bool flip,
   grid.tiles = std::move(tiles);
   grid.blocks = {}, grid.shares = {};
   detail::join_blocks<D>(grid);
-  const std::vector<int> first = detail::share_out<D>(grid.tiles, n_shares);
+  detail::share_out<D>(grid.tiles, n_shares);
   for (int s = 0; s < n_shares; ++s) {
-    const auto at = static_cast<std::size_t>(s);
-    grid.shares.push_back(detail::take_share<D>(grid, s, first[at], first[at + 1], flip));
+    grid.shares.push_back(detail::take_share<D>(grid, s, flip));
     detail::keep_velocities<D>(old, from, grid, grid.shares.back());
   }
   detail::give_buffers<D>(grid, flip);
@@ -151,8 +189,7 @@ void for_each_share(TileGrid<D>& grid, Visit visit) {
 /// The share that a tile is in.
 template <int D>
 const Share<D>& share_of(const TileGrid<D>& grid, int tile) {
-  return *std::partition_point(grid.shares.begin(), grid.shares.end(),
-                               [&](const Share<D>& share) { return share.last_tile <= tile; });
+  return grid.shares[static_cast<std::size_t>(grid.tiles[static_cast<std::size_t>(tile)].share)];
 }
 
 /// Block b of a share where the first share that sees it has it.

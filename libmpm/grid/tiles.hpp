@@ -31,8 +31,41 @@ inline constexpr int tile_span = 2 * tile_cells;  ///< controls that a tile sees
 /// where there is none.
 using NodeLanes [[gnu::vector_size(32)]] = double;
 
+/// The same in single precision.
+using SingleNode [[gnu::vector_size(16)]] = float;
+
+inline NodeLanes in_double(const NodeLanes& node) { return node; }
+inline NodeLanes in_double(const SingleNode& node) { return __builtin_convertvector(node, NodeLanes); }
+inline void add_to(NodeLanes& node, const NodeLanes& a) { node += a; }
+inline void add_to(SingleNode& node, const NodeLanes& a) { node += __builtin_convertvector(a, SingleNode); }
+
 /// Two controls side by side.
 using TwoNodes [[gnu::vector_size(64), gnu::may_alias]] = double;
+using TwoSingles [[gnu::vector_size(32), gnu::may_alias]] = float;
+
+inline TwoNodes both(const NodeLanes& a, const NodeLanes& b) {
+  return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+inline TwoSingles both(const SingleNode& a, const SingleNode& b) {
+  return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+
+/// A control and the next, from any one on.
+inline TwoNodes load_two(const NodeLanes* from) {
+  TwoNodes two;
+  std::memcpy(&two, from, sizeof two);
+  return two;
+}
+inline TwoSingles load_two(const SingleNode* from) {
+  TwoSingles two;
+  std::memcpy(&two, from, sizeof two);
+  return two;
+}
+template <class Two, class Node>
+void store_two(const Two& two, Node* to) {
+  static_assert(sizeof(Two) == 2 * sizeof(Node));
+  std::memcpy(to, &two, sizeof two);
+}
 
 /// Rows of the controls that a tile sees, one bit each; the direction before the last runs fastest.
 using TileRows = std::uint64_t;
@@ -46,6 +79,7 @@ struct Tile {
   int mixed_groups = 0;                  ///< of these, groups of points of several cells
   std::array<int, power(2, D)> block{};  ///< blocks at + offset, in its share; the last direction fastest
   std::array<int, 2> buffer{};           ///< what its points give in every other pass, in turn
+  int share = -1;                        ///< that it is in
 };
 
 template <int D>
@@ -56,9 +90,10 @@ struct NodeBlock {
   std::uint64_t on_walls = 0;           ///< its controls on flat walls, one bit each
 };
 
-/// The controls that a tile sees, aligned so that an even one and the next make one vector of eight.
-template <int n>
-struct alignas(64) NodeCube : std::array<NodeLanes, n> {};
+/// The controls that a tile sees, aligned so that an even one and the next make one vector of eight. In
+/// single precision four are taken at once, from any one on: there is room behind the last.
+template <class Node, int n>
+struct alignas(64) NodeCube : std::array<Node, n + (std::is_same_v<Node, SingleNode> ? 4 : 0)> {};
 
 template <int D>
 using BlockNodes = std::array<NodeLanes, power(tile_cells, D)>;
@@ -66,7 +101,7 @@ using BlockNodes = std::array<NodeLanes, power(tile_cells, D)>;
 /// What one thread passes over.
 template <int D>
 struct Share {
-  int first_tile = 0, last_tile = 0;        ///< [first, last)
+  std::vector<int> tiles = {};              ///< in rising order
   std::vector<int> blocks = {};             ///< that these tiles see
   std::vector<BlockNodes<D>> v = {};        ///< of each: velocities, in the rows that a tile reaches
   std::vector<BlockNodes<D>> v_start = {};  ///< before the step's forces, for FLIP alone
@@ -75,7 +110,8 @@ struct Share {
 template <int D>
 struct TileGrid {
   static constexpr int tile_nodes = power(tile_span, D);
-  using Buffer = NodeCube<tile_nodes>;
+  using Buffer = NodeCube<NodeLanes, tile_nodes>;
+  using SingleBuffer = NodeCube<SingleNode, tile_nodes>;
 
   std::array<Axis, D> axes;
   std::vector<Tile<D>> tiles;
@@ -84,11 +120,22 @@ struct TileGrid {
   int turn = 0;                ///< which of a tile's buffers was filled last
   std::vector<Buffer> sums;    ///< a buffer: momentum and mass that the points give
   std::vector<Buffer> forces;  ///< a buffer: impulse of the stresses, for FLIP alone
+  bool single = false;         ///< sums are kept in single precision, in these:
+  std::vector<SingleBuffer> single_sums;
   std::vector<TileRows> rows;  ///< a buffer: what the points reached; all else in it is zero
 
   int n_tiles() const { return static_cast<int>(tiles.size()); }
   int filled_buffer(int tile) const { return tiles[static_cast<std::size_t>(tile)].buffer[turn]; }
 };
+
+/// The buffers of sums, of either precision.
+template <class Node, int D>
+auto& sums_of(TileGrid<D>& grid) {
+  if constexpr (std::is_same_v<Node, SingleNode>)
+    return grid.single_sums;
+  else
+    return grid.sums;
+}
 
 /// Distance between neighbours in direction d within a cube of `span` entries a direction.
 template <int D>
@@ -127,11 +174,11 @@ TileRows stencil_rows(int base) {
   return three << (base / tile_span);
 }
 
-template <int D>
-void clear_rows(TileRows rows, NodeCube<power(tile_span, D)>& cube) {
+template <class Node, int n>
+void clear_rows(TileRows rows, NodeCube<Node, n>& cube) {
   for_each_row(rows, [&](int row) {
-    auto* const two = reinterpret_cast<TwoNodes*>(&cube[static_cast<std::size_t>(row * tile_span)]);
-    two[0] = two[1] = two[2] = two[3] = TwoNodes{};
+    auto* const from = reinterpret_cast<TwoNodes*>(&cube[static_cast<std::size_t>(row * tile_span)]);
+    for (std::size_t i = 0; i < tile_span * sizeof(Node) / sizeof(TwoNodes); ++i) from[i] = TwoNodes{};
   });
 }
 
@@ -162,14 +209,15 @@ int row_in_cube(int k, int row) {
 }
 
 /// Copies rows of a tile's blocks into one cube of controls.
-template <int D>
+template <int D, class Node>
 void read_blocks(const Tile<D>& tile, TileRows rows, const std::vector<BlockNodes<D>>& blocks,
-                 std::array<NodeLanes, power(tile_span, D)>& cube) {
+                 NodeCube<Node, power(tile_span, D)>& cube) {
   for (int k = 0; k < power(2, D); ++k) {
     const auto& block = blocks[static_cast<std::size_t>(tile.block[k])];
     for_each_row(rows_of_block<D>(rows, k), [&](int row) {
       const int to = row_in_cube<D>(k, row);
-      for (int i = 0; i < tile_cells; ++i) cube[to + i] = block[row * tile_cells + i];
+      for (int i = 0; i < tile_cells; ++i)
+        cube[to + i] = __builtin_convertvector(block[row * tile_cells + i], Node);
     });
   }
 }
@@ -180,29 +228,52 @@ enum class RowsOf {
   all_tiles   ///< those that any tile reaches, for what sees all controls
 };
 
+namespace detail {
+
+/// Rows of a block that a tile reaches, which has it as its k-th, and its buffer.
+template <int D, class Buffer>
+struct ReachedRows {
+  const Buffer* buffer;
+  int k;
+  unsigned reached;
+};
+
+/// Adds four controls of a row to `low` and `high`.
+inline void add_row(const NodeLanes* row, TwoNodes& low, TwoNodes& high) {
+  const auto* from = reinterpret_cast<const TwoNodes*>(row);
+  low += from[0], high += from[1];
+}
+inline void add_row(const SingleNode* row, TwoNodes& low, TwoNodes& high) {
+  const auto* from = reinterpret_cast<const TwoSingles*>(row);
+  low += __builtin_convertvector(from[0], TwoNodes), high += __builtin_convertvector(from[1], TwoNodes);
+}
+
+}  // namespace detail
+
 /// Visits rows of block b with the sums over the tiles' buffers: visit(row, totals of its controls).
-template <int D, class Visit>
-void sum_tiles(const TileGrid<D>& grid, const Share<D>& share, RowsOf rows_of, int b,
-               const std::vector<typename TileGrid<D>::Buffer>& buffers, Visit visit) {
+template <int D, class Buffer, class Visit>
+void sum_tiles(const TileGrid<D>& grid, int share, RowsOf rows_of, int b, const std::vector<Buffer>& buffers,
+               Visit visit) {
   const NodeBlock<D>& block = grid.blocks[static_cast<std::size_t>(b)];
-  unsigned wanted = 0, reached_by[power(2, D)];
-  const typename TileGrid<D>::Buffer* buffer[power(2, D)];
+  unsigned wanted = 0;
+  std::array<detail::ReachedRows<D, Buffer>, power(2, D)> from;
+  std::size_t n = 0;
   for (int k = 0; k < power(2, D); ++k) {
     const int tile = block.tile[k];
-    reached_by[k] = 0;
     if (tile < 0) continue;
     const auto at = static_cast<std::size_t>(grid.filled_buffer(tile));
-    reached_by[k] = rows_of_block<D>(grid.rows[at], k);
-    buffer[k] = &buffers[at];
-    if (rows_of == RowsOf::all_tiles || (tile >= share.first_tile && tile < share.last_tile))
-      wanted |= reached_by[k];
+    const unsigned reached = rows_of_block<D>(grid.rows[at], k);
+    if (reached == 0) continue;
+    from[n++] = {&buffers[at], k, reached};
+    if (rows_of == RowsOf::all_tiles || grid.tiles[static_cast<std::size_t>(tile)].share == share)
+      wanted |= reached;
   }
   for_each_row(wanted, [&](int row) {
     TwoNodes low = {}, high = {};
-    for (int k = 0; k < power(2, D); ++k) {
-      if ((reached_by[k] >> row & 1) == 0) continue;
-      const auto* from = reinterpret_cast<const TwoNodes*>(&(*buffer[k])[row_in_cube<D>(k, row)]);
-      low += from[0], high += from[1];
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto& [buffer, k, reached] = from[i];
+      if ((reached >> row & 1) != 0)
+        detail::add_row(&(*buffer)[static_cast<std::size_t>(row_in_cube<D>(k, row))], low, high);
     }
     std::array<NodeLanes, tile_cells> total;
     std::memcpy(&total[0], &low, sizeof low), std::memcpy(&total[2], &high, sizeof high);

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 #ifdef __AVX512F__
 #include <immintrin.h>
 #endif
@@ -18,6 +19,35 @@ using OctetMask [[gnu::vector_size(64)]] = std::int64_t;
 inline Octet all_lanes(double x) { return Octet{x, x, x, x, x, x, x, x}; }
 inline Octet max(const Octet& a, const Octet& b) { return a > b ? a : b; }
 inline Octet min(const Octet& a, const Octet& b) { return a < b ? a : b; }
+
+/// Singles numbers in single precision.
+using Singles [[gnu::vector_size(64)]] = float;
+inline constexpr std::size_t singles_size = 16;
+
+inline Singles max(const Singles& a, const Singles& b) { return a > b ? a : b; }
+inline Singles min(const Singles& a, const Singles& b) { return a < b ? a : b; }
+
+inline Singles sqrt(const Singles& a) {
+  Singles r;
+  for (std::size_t l = 0; l < singles_size; ++l) r[l] = __builtin_sqrtf(a[l]);
+  return r;
+}
+
+/// The number type of a vector of them, or of one.
+template <class T>
+using ScalarOf = std::conditional_t<std::is_same_v<T, Singles>, float, double>;
+
+/// Two octets as one vector of singles, and one half of such a vector as an octet.
+inline Singles to_single(const Octet& a, const Octet& b) {
+  using Half [[gnu::vector_size(32)]] = float;
+  return __builtin_shufflevector(__builtin_convertvector(a, Half), __builtin_convertvector(b, Half), 0, 1, 2,
+                                 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+}
+inline Octet to_double(const Singles& a, int half) {
+  return half == 0
+             ? __builtin_convertvector(__builtin_shufflevector(a, a, 0, 1, 2, 3, 4, 5, 6, 7), Octet)
+             : __builtin_convertvector(__builtin_shufflevector(a, a, 8, 9, 10, 11, 12, 13, 14, 15), Octet);
+}
 
 inline double largest(const Octet& a) {
   double m = a[0];
@@ -62,6 +92,16 @@ inline Octet polynomial(const Octet& x, const double (&c)[14]) {
 
 /// Whole number next to x, |x| < 2^51.
 inline Octet nearest(const Octet& x) { return (x + detail::round_to_whole) - detail::round_to_whole; }
+
+/// The same for |x| < 2^22.
+inline Singles nearest(const Singles& x) {
+  constexpr float round_to_whole = 12582912.0F;  // 1.5 * 2^23
+  return (x + round_to_whole) - round_to_whole;
+}
+inline Singles floor(const Singles& x) {
+  const Singles near = nearest(x);
+  return near > x ? near - 1 : near;
+}
 
 /// Largest whole number that is not above x, |x| < 2^51.
 inline Octet floor(const Octet& x) {

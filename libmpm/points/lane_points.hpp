@@ -188,7 +188,9 @@ inline constexpr std::size_t own_group = 5;
 using GroupSlots = std::array<std::int32_t, octet_size>;
 
 /// Groups of one cell's points first, of several cells' points at the end. Returns how many the latter are.
-inline std::size_t form_groups(const SortKey* first, const SortKey* last, std::vector<GroupSlots>& groups) {
+/// Those of `packed` points are full but for the last, whatever cells they hold, and are not counted.
+inline std::size_t form_groups(const SortKey* first, const SortKey* last, bool packed,
+                               std::vector<GroupSlots>& groups) {
   std::vector<std::int32_t> left;
   const auto add = [&](const auto* from, std::size_t n, auto slot) {
     GroupSlots group;
@@ -197,6 +199,8 @@ inline std::size_t form_groups(const SortKey* first, const SortKey* last, std::v
     groups.push_back(group);
   };
   const auto of_key = [](const SortKey& key) { return key.slot(); };
+  for (; packed && first != last; first += std::min<std::ptrdiff_t>(octet_size, last - first))
+    add(first, static_cast<std::size_t>(std::min<std::ptrdiff_t>(octet_size, last - first)), of_key);
   while (first != last) {
     const SortKey* end =
         std::find_if(first, last, [&](const SortKey& key) { return key.cell() != first->cell(); });
@@ -268,9 +272,10 @@ struct SortedTiles {
 };
 
 /// Sorts the points by tile and cell into groups of eight. `stencil_shift`: 0 where a point's stencil begins
-/// with its cell, 1/2 where it is that of the nearest corner (GIMP).
+/// with its cell, 1/2 where it is that of the nearest corner (GIMP). `packed`: groups need not be of one cell.
 template <int D>
-SortedTiles<D> sort_into_tiles(const std::array<Axis, D>& axes, double stencil_shift, LanePoints<D>& lanes) {
+SortedTiles<D> sort_into_tiles(const std::array<Axis, D>& axes, double stencil_shift, LanePoints<D>& lanes,
+                               bool packed = false) {
   detail::wrap_points<D>(axes, lanes);
   std::vector<detail::SortKey> keys;
   const auto box = detail::sort_keys<D>(axes, stencil_shift, lanes, keys);
@@ -283,7 +288,7 @@ SortedTiles<D> sort_into_tiles(const std::array<Axis, D>& axes, double stencil_s
     const detail::SortKey* end =
         std::find_if(first, last, [&](const detail::SortKey& key) { return tile_number(key) != number; });
     Tile<D> tile{.at = box.tile(number), .first_group = static_cast<int>(groups.size())};
-    tile.mixed_groups = static_cast<int>(detail::form_groups(first, end, groups));
+    tile.mixed_groups = static_cast<int>(detail::form_groups(first, end, packed, groups));
     tile.last_group = static_cast<int>(groups.size());
     sorted.mixed += tile.mixed_groups;
     sorted.tiles.push_back(tile);

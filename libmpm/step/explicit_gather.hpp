@@ -49,10 +49,10 @@ struct LaneSums {
   }
 };
 
-/// Grid fields at eight points.
+/// Grid fields at eight points, as far as a pass reads them.
 template <int D>
 struct Fields {
-  Octet v[4] = {}, v_start[4] = {}, L[D][4] = {}, moment[D][4] = {};  ///< L[b][a] = dv_a/dx_b
+  Octet v[4], v_start[4], L[D][4], moment[D][4];  ///< L[b][a] = dv_a/dx_b
 };
 
 template <int D>

@@ -23,7 +23,7 @@ void apply_walls(const std::array<Axis, D>& axes, const Shape<D>& shape, const W
     } else {
       const double pressing = low ? std::max(0.0, -v[d]) : std::max(0.0, v[d]);
       v[d] = 0.0;
-      if (kind != FaceKind::friction) continue;
+      if (kind != FaceKind::friction || friction_coefficient * pressing == 0.0) continue;
       double slip = 0.0;
       for (int e = 0; e < D; ++e)
         if (e != d) slip += (v[e] - wall[e]) * (v[e] - wall[e]);
@@ -58,15 +58,16 @@ std::uint64_t nodes_on_walls(const std::array<Axis, D>& axes, const Shape<D>& sh
 
 /// Makes the velocities of a share's controls from the sums over the tiles: `update(v, totals, b, k)` those
 /// of the four controls v of block b from k on. Flat walls come after it.
-template <class Space, class Update>
+template <class Space, class Buffer, class Update>
 void update_nodes(const Body<Space>& body, const ExplicitState<Space>& state, double friction_coefficient,
-                  const std::vector<typename TileGrid<Space::dim>::Buffer>& buffers, Update update,
-                  RowsOf rows_of, Share<Space::dim>& share) {
+                  const std::vector<Buffer>& buffers, Update update, RowsOf rows_of,
+                  Share<Space::dim>& share) {
   constexpr int D = Space::dim;
   const TileGrid<D>& grid = state.grid;
+  const auto number = static_cast<int>(&share - grid.shares.data());
   for (std::size_t b = 0; b < share.blocks.size(); ++b) {
     const NodeBlock<D>& block = grid.blocks[static_cast<std::size_t>(share.blocks[b])];
-    sum_tiles<D>(grid, share, rows_of, share.blocks[b], buffers,
+    sum_tiles<D>(grid, number, rows_of, share.blocks[b], buffers,
                  [&](int row, const std::array<NodeLanes, tile_cells>& total) {
                    const int first = row * tile_cells;
                    NodeLanes* const v = &share.v[b][static_cast<std::size_t>(first)];
@@ -112,14 +113,17 @@ void velocities_from_sums(const Body<Space>& body, const ExplicitState<Space>& s
       v[i][D] = inverse[i];
     }
   };
-  update_nodes(body, state, friction, state.grid.sums, divide, rows_of, share);
+  if (state.grid.single)
+    update_nodes(body, state, friction, state.grid.single_sums, divide, rows_of, share);
+  else
+    update_nodes(body, state, friction, state.grid.sums, divide, rows_of, share);
 }
 
 /// Adds impulses of the stresses and gravity to velocities that are there already.
-template <class Space>
+template <class Space, class Buffer>
 void add_impulses(const Body<Space>& body, const ExplicitState<Space>& state, double friction,
-                  const std::vector<typename TileGrid<Space::dim>::Buffer>& impulses, bool flip,
-                  const Vec<Space::dim>& gravity_impulse, RowsOf rows_of, Share<Space::dim>& share) {
+                  const std::vector<Buffer>& impulses, bool flip, const Vec<Space::dim>& gravity_impulse,
+                  RowsOf rows_of, Share<Space::dim>& share) {
   constexpr int D = Space::dim;
   const NodeLanes pull = as_lanes<D>(gravity_impulse);
   const auto add = [&](NodeLanes* v, const std::array<NodeLanes, tile_cells>& total, std::size_t b,

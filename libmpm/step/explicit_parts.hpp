@@ -25,7 +25,8 @@ inline constexpr double passes_for_sorting = 4.0;
 template <class Space>
 void sort_points(const ExplicitSettings& settings, ExplicitState<Space>& state) {
   constexpr int D = Space::dim;
-  auto sorted = sort_into_tiles<D>(state.grid.axes, state.shape.stencil_shift(), state.points);
+  auto sorted = sort_into_tiles<D>(state.grid.axes, state.shape.stencil_shift(), state.points,
+                                   settings.single_precision);
   lay_tiles(state.grid, std::move(sorted.tiles), settings.transfer.flip);
   for (NodeBlock<D>& block : state.grid.blocks)
     block.on_walls = nodes_on_walls<D>(state.grid.axes, state.shape, block.at);

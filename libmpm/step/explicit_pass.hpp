@@ -7,31 +7,44 @@
 #include "libmpm/space/gradients.hpp"
 #include "libmpm/step/explicit_gather.hpp"
 #include "libmpm/step/pressure_cells.hpp"
+#include "libmpm/transfer/single_sums.hpp"
 
 namespace tremie::detail {
 
-/// Deviatoric stress and its hoop part, times volume; the pressure's part is added to the stress or, with one
-/// row a cell, kept apart.
-template <int D>
-struct GroupStress {
-  Octet sigma[D][D] = {}, hoop = {}, pressure = {};  ///< times volume [Pa m^3]
+/// Strain rate of points side by side.
+template <class Space, class Lanes>
+struct StrainRate {
+  Lanes q[Space::n_strain], divergence, gamma_dot;  ///< [1/s]
 };
 
-/// Updates volume and flocculation of group g over dt and returns its stress. `hold`: the volume that its
-/// viscous part is integrated over, in units of the points' own.
-template <class Space, class Law>
-GroupStress<Space::dim> update_state(const Mix& mix, const Law& law, bool cell_pressure, double dt,
-                                     const Fields<Space::dim>& fields, const Octet& cell_divergence,
-                                     const Octet& hold, LanePoints<Space::dim>& points, std::size_t g,
-                                     LaneSums& sums) {
-  constexpr int D = Space::dim, ns = Space::n_strain;
-  Octet L[D][D], q[ns], divergence, tau_y = all_lanes(mix.tau_0);
+/// slope[b][a] = dv_a/dx_b; v_0 and x_0 the first components of velocity and place.
+template <class Space, class Lanes, std::size_t n>
+StrainRate<Space, Lanes> strain_rate(const Lanes (&slope)[Space::dim][n], const Lanes& v_0,
+                                     const Lanes& x_0) {
+  constexpr int D = Space::dim;
+  Lanes L[D][D];
   for (int a = 0; a < D; ++a)
-    for (int b = 0; b < D; ++b) L[a][b] = fields.L[b][a];
-  strain_rate_of<Space, Octet>(L, fields.v[0], points.x[0][g], q, divergence);
-  Octet q2 = q[0] * q[0];
-  for (int k = 1; k < ns; ++k) q2 += q[k] * q[k];
-  const Octet gamma_dot = sqrt(q2);
+    for (int b = 0; b < D; ++b) L[a][b] = slope[b][a];
+  StrainRate<Space, Lanes> rate;
+  strain_rate_of<Space, Lanes>(L, v_0, x_0, rate.q, rate.divergence);
+  Lanes q2 = rate.q[0] * rate.q[0];
+  for (int k = 1; k < Space::n_strain; ++k) q2 += rate.q[k] * rate.q[k];
+  rate.gamma_dot = sqrt(q2);
+  return rate;
+}
+
+/// What eight points oppose to the flow, times volume.
+struct Resistance {
+  Octet viscosity, pressure;  ///< [Pa s m^3], [Pa m^3]
+};
+
+/// Updates volume and flocculation of group g over dt. `hold`: the volume that its viscous part is integrated
+/// over, in units of the points' own.
+template <int D, class Law>
+Resistance update_state(const Mix& mix, const Law& law, double dt, const Octet& gamma_dot,
+                        const Octet& divergence, const Octet& hold, LanePoints<D>& points, std::size_t g,
+                        LaneSums& sums) {
+  Octet tau_y = all_lanes(mix.tau_0);
   if (points.thixotropic()) {
     Octet& lambda = points.lambda[g];
     if (dt > 0.0)
@@ -41,41 +54,72 @@ GroupStress<Space::dim> update_state(const Mix& mix, const Law& law, bool cell_p
     sums.lambda = max(sums.lambda, lambda);
   }
   Octet& ln_J = points.ln_J[g];
-  ln_J += dt * (cell_pressure ? cell_divergence : divergence);
-  const Octet volume = points.V0[g] * exp(ln_J),
-              viscosity = hold * volume * (mix.mu + secant(law, gamma_dot, tau_y));
+  ln_J += dt * divergence;
+  const Octet volume = points.V0[g] * exp(ln_J);
   sums.volume += volume, sums.volume_rate += volume * gamma_dot;
+  return {hold * volume * (mix.mu + secant(law, gamma_dot, tau_y)), volume * (-mix.K * ln_J)};
+}
 
-  GroupStress<D> stress;
-  stress.pressure = volume * (-mix.K * ln_J);
-  for (Octet& s : q) s *= viscosity;
-  const Octet in_tensor = cell_pressure ? Octet{} : stress.pressure;
-  stress_tensor_of<Space, Octet>(q, in_tensor, stress.sigma, stress.hoop);
+/// Stress and its hoop part, times volume, without the pressure where that goes by the cell.
+template <int D, class Lanes>
+struct LaneStress {
+  Lanes sigma[D][D], hoop;  ///< [Pa m^3]
+};
+
+template <class Space, class Lanes>
+LaneStress<Space::dim, Lanes> stress_of(const StrainRate<Space, Lanes>& rate, const Lanes& viscosity,
+                                        const Lanes& pressure) {
+  Lanes s[Space::n_strain];
+  for (int k = 0; k < Space::n_strain; ++k) s[k] = rate.q[k] * viscosity;
+  LaneStress<Space::dim, Lanes> stress;
+  stress_tensor_of<Space, Lanes>(s, pressure, stress.sigma, stress.hoop);
   return stress;
 }
 
 /// 1/inertia in each direction [1/m^2], by one division. On a wall one control has all the weight: no slope
 /// can be seen there, and none is given.
-template <int D>
-std::array<Octet, D> inverse_inertia(const std::array<Axis, D>& axes, const Weights<D>& weights) {
-  std::array<Octet, D> cells;  // in cells^2
-  OctetMask seen[D];
-  Octet product = all_lanes(1.0);
+template <int D, class Lanes>
+std::array<Lanes, D> inverse_inertia(const std::array<Axis, D>& axes, const Lanes* inertia) {
+  using Real = ScalarOf<Lanes>;
+  const auto per_cell = [&](int d) { return static_cast<Real>(1.0 / (axes[d].h * axes[d].h)); };
+  const Lanes one = 1 - Lanes{};
+  Lanes cells[D];  // in cells^2
+  decltype(one > one) seen[D];
+  Lanes product = one;
   for (int d = 0; d < D; ++d) {
-    cells[d] = weights.inertia[d] * (1.0 / (axes[d].h * axes[d].h));
-    seen[d] = cells[d] > 1e-12;
-    cells[d] = seen[d] ? cells[d] : all_lanes(1.0);
+    cells[d] = inertia[d] * per_cell(d);
+    seen[d] = cells[d] > static_cast<Real>(1e-12);
+    cells[d] = seen[d] ? cells[d] : one;
     product *= cells[d];
   }
-  const Octet inverse = 1.0 / product;
-  std::array<Octet, D> of;
+  const Lanes inverse = one / product;
+  std::array<Lanes, D> of;
   for (int d = 0; d < D; ++d) {
-    Octet others = inverse * (1.0 / (axes[d].h * axes[d].h));
+    Lanes others = inverse * per_cell(d);
     for (int e = 0; e < D; ++e)
       if (e != d) others *= cells[e];
-    of[d] = seen[d] ? others : Octet{};
+    of[d] = seen[d] ? others : Lanes{};
   }
   return of;
+}
+
+/// Moves group g with velocities v.
+template <int D>
+void move_places(const std::array<Axis, D>& axes, double dt, const Octet* v, LanePoints<D>& points,
+                 std::size_t g, LaneSums& sums) {
+  Octet speed2 = {};
+  for (int d = 0; d < D; ++d) {
+    Octet& x = points.x[d][g];
+    x += dt * v[d];
+    const Axis& a = axes[d];
+    if (a.wall_low()) x = max(x, all_lanes(a.origin + 1e-6 * a.h));
+    if (a.wall_high()) x = min(x, all_lanes(a.origin + a.length() - 1e-6 * a.h));
+    speed2 += points.v[d][g] * points.v[d][g];
+    const Octet cells = (dt / a.h) * (v[d] < 0.0 ? -v[d] : v[d]);
+    sums.ran_away |= ~(cells < 0.5);
+    sums.farthest = max(sums.farthest, cells);
+  }
+  sums.speed2 = max(sums.speed2, speed2);
 }
 
 /// New velocities and places of group g.
@@ -83,22 +127,13 @@ template <int D>
 void move_group(const std::array<Axis, D>& axes, const Transfer& transfer, double dt,
                 const Weights<D>& weights, const Fields<D>& fields, LanePoints<D>& points, std::size_t g,
                 LaneSums& sums) {
-  Octet speed2 = {};
   for (int d = 0; d < D; ++d) {
-    Octet &v = points.v[d][g], &x = points.x[d][g];
+    Octet& v = points.v[d][g];
     v = transfer.flip ? fields.v[d] + transfer.flip_blend * (v - fields.v_start[d]) : fields.v[d];
-    x += dt * fields.v[d];
-    const Axis& a = axes[d];
-    if (a.wall_low()) x = max(x, all_lanes(a.origin + 1e-6 * a.h));
-    if (a.wall_high()) x = min(x, all_lanes(a.origin + a.length() - 1e-6 * a.h));
-    speed2 += v * v;
-    const Octet cells = (dt / a.h) * (fields.v[d] < 0.0 ? -fields.v[d] : fields.v[d]);
-    sums.ran_away |= ~(cells < 0.5);
-    sums.farthest = max(sums.farthest, cells);
   }
-  sums.speed2 = max(sums.speed2, speed2);
+  move_places<D>(axes, dt, fields.v, points, g, sums);
   if (transfer.flip) return;
-  const std::array<Octet, D> inverse = inverse_inertia<D>(axes, weights);
+  const std::array<Octet, D> inverse = inverse_inertia<D>(axes, weights.inertia.data());
   for (int b = 0; b < D; ++b)
     for (int a = 0; a < D; ++a) points.C[a * D + b][g] = fields.moment[b][a] * inverse[b];
 }
@@ -107,7 +142,7 @@ void move_group(const std::array<Axis, D>& axes, const Transfer& transfer, doubl
 /// apart.
 template <Pass pass, class Space>
 void scatter_points(bool flip, bool apart, double impulse_dt, const Weights<Space::dim>& weights,
-                    const GroupStress<Space::dim>& stress, int n, const LanePoints<Space::dim>& points,
+                    const LaneStress<Space::dim, Octet>& stress, int n, const LanePoints<Space::dim>& points,
                     std::size_t g, Cube<Space::dim>& sums, Cube<Space::dim>& forces) {
   constexpr int D = Space::dim;
   constexpr bool hooped = pass.stress && std::is_same_v<Space, Axisymmetric>;
@@ -152,82 +187,171 @@ TileRows rows_reached(const Weights<D>& weights, int n) {
   return rows;
 }
 
-/// One tile.
+/// Pressure cells of a group's points.
+using GroupCells = std::array<int, octet_size>;
+
+/// What a pass has in hand over one tile. Node: of the controls that the tile sees.
+template <Pass pass, class Space, class Law, class Node>
+struct TilePass {
+  static constexpr int D = Space::dim;
+  using Cube = NodeCube<Node, TileGrid<D>::tile_nodes>;
+
+  const Mix& mix;
+  const Law& law;
+  const ExplicitSettings& settings;
+  const PassInput& input;
+  const ExplicitState<Space>& state;
+  const Tile<D>& tile;
+  LanePoints<D>& points;
+  const Cube &v, &v_start;  ///< velocities, and those before the step's forces for FLIP
+  Cube &sums, &forces;      ///< what points add to; the same unless FLIP must tell forces from momentum
+  TileRows& rows;           ///< that they reach
+  const HeldCells<D>* held;
+
+  bool cells;                                   ///< pressures go by the cell, and there are any in this pass
+  PressureCells<Space, Node>&before, &pressed;  ///< cells of the points as they were, and as they push
+  const GroupCells* entered;                    ///< of each group, where all have entered `before`
+  StencilFrame<D> frame;
+  LaneSums& reduced;
+};
+
+/// Pressure cells of group g as it is at the start of the pass, where the pass has a use for them.
+template <Pass pass, class Space, class Law, class Node>
+GroupCells cells_of_group(const TilePass<pass, Space, Law, Node>& in, std::size_t g) {
+  constexpr int D = Space::dim;
+  if (in.entered) return in.entered[g - static_cast<std::size_t>(in.tile.first_group)];
+  GroupCells cell{};
+  if (in.cells || in.held)
+    find_pressure_cells<D>(in.state.grid.axes, in.state.shape, in.tile.at, places_of<D>(in.points, g), cell);
+  return cell;
+}
+
+/// Updates the state of group g, of which n points are real and have their pressures in `cell`.
+template <Pass pass, class Space, class Law, class Node>
+Resistance resistance_of_group(TilePass<pass, Space, Law, Node>& in, std::size_t g, int n,
+                               const Octet& gamma_dot, Octet divergence, const GroupCells& cell) {
+  constexpr int D = Space::dim;
+  if (in.cells)
+    for (int l = 0; l < n; ++l)
+      divergence[l] = pass.gather ? in.before.divergence(in.v, cell[static_cast<std::size_t>(l)]) : 0.0;
+  const Octet hold = in.held ? hold_of_group<D>(*in.held, cell) : all_lanes(1.0);
+  return update_state<D>(in.mix, in.law, in.input.dt, gamma_dot, divergence, hold, in.points, g, in.reduced);
+}
+
+/// Gives the pressures of group g to its cells, in which it is entered if it was not or has moved since.
+template <Pass pass, class Space, class Law, class Node>
+void push_cells(TilePass<pass, Space, Law, Node>& in, std::size_t g, int n, const Octet& pressure,
+                GroupCells& cell) {
+  if (!pass.gather || pass.move) in.pressed.add_group(in.points, g, cell);
+  in.pressed.push(cell, n, in.input.impulse_dt * pressure);
+}
+
+/// Eight points.
 template <Pass pass, class Space, class Law>
+void visit_group(TilePass<pass, Space, Law, NodeLanes>& in, std::size_t g) {
+  constexpr int D = Space::dim;
+  const bool flip = in.settings.transfer.flip;
+  const int n = filled<D>(in.points, g);
+  Weights<D> weights;
+  const auto place = [&] {
+    constexpr Wanted wanted{.slopes = pass.stress, .moments = pass.move};
+    weigh<D, wanted>(in.frame, places_of<D>(in.points, g), weights);
+  };
+  place();
+  Fields<D> fields;
+  if (pass.gather)
+    gather_for<pass, D>(in.v, in.v_start, weights, n, flip, fields);
+  else
+    fields = {};
+  in.reduced.mixed += weights.together ? 0 : 1;
+  Resistance resistance;
+  LaneStress<D, Octet> stress;
+  GroupCells cell;
+  if (pass.stress) {
+    cell = cells_of_group(in, g);
+    const auto rate = strain_rate<Space, Octet>(fields.L, fields.v[0], in.points.x[0][g]);
+    resistance = resistance_of_group(in, g, n, rate.gamma_dot, rate.divergence, cell);
+    stress = stress_of<Space, Octet>(rate, resistance.viscosity, in.cells ? Octet{} : resistance.pressure);
+  }
+  if (pass.move && pass.gather) {
+    move_group<D>(in.state.grid.axes, in.settings.transfer, in.input.dt, weights, fields, in.points, g,
+                  in.reduced);
+    place();
+  }
+  if (in.cells) push_cells(in, g, n, resistance.pressure, cell);
+  in.rows |= rows_reached<D>(weights, n);
+  scatter_points<pass, Space>(flip, &in.forces != &in.sums, in.input.impulse_dt, weights, stress, n,
+                              in.points, g, in.sums, in.forces);
+}
+
+/// All groups of a tile.
+template <Pass pass, class Space, class Law>
+void visit_groups(TilePass<pass, Space, Law, NodeLanes>& in) {
+  for (int g = in.tile.first_group; g < in.tile.last_group; ++g) visit_group(in, static_cast<std::size_t>(g));
+}
+
+/// Enters all points of the tile into their pressure cells.
+template <Pass pass, class Space, class Law, class Node>
+void enter_pressure_cells(TilePass<pass, Space, Law, Node>& in, std::vector<GroupCells>& of_group) {
+  const auto first = static_cast<std::size_t>(in.tile.first_group);
+  of_group.resize(static_cast<std::size_t>(in.tile.last_group) - first);
+  for (std::size_t i = 0; i < of_group.size(); ++i) in.before.add_group(in.points, first + i, of_group[i]);
+  in.entered = of_group.data();
+}
+
+/// One tile.
+template <Pass pass, class Node, class Space, class Law>
 PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& settings,
                         const PassInput& input, int t, const Share<Space::dim>& share,
                         ExplicitState<Space>& state) {
   constexpr int D = Space::dim;
   TileGrid<D>& grid = state.grid;
-  LanePoints<D>& points = state.points;
   const Tile<D>& tile = grid.tiles[t];
-  const bool flip = settings.transfer.flip, cells = settings.cell_pressure;
-  const bool apart = flip && pass.move && pass.stress;  // FLIP must tell forces from momentum
-  Cube<D> v, v_start;
+  const auto buffer = static_cast<std::size_t>(tile.buffer[1 - grid.turn]);
+  const bool flip = settings.transfer.flip;
+  auto& sums = sums_of<Node>(grid)[buffer];
+  auto* forces = &sums;
+  if constexpr (std::is_same_v<Node, NodeLanes>)
+    if (flip && pass.move && pass.stress) forces = &grid.forces[buffer];
+  NodeCube<Node, TileGrid<D>::tile_nodes> v, v_start;
   const TileRows reached = grid.rows[grid.filled_buffer(t)];
   if (pass.gather) read_blocks<D>(tile, reached, share.v, v);
   if (pass.gather && pass.move && flip) read_blocks<D>(tile, reached, share.v_start, v_start);
-  const int buffer = tile.buffer[1 - grid.turn];
-  auto& sums = grid.sums[buffer];
-  auto& forces = apart ? grid.forces[buffer] : sums;
-  TileRows& rows = grid.rows[buffer];
-  clear_rows<D>(rows, sums);
-  if (apart) clear_rows<D>(rows, forces);
-  rows = 0;
-  const auto first = static_cast<std::size_t>(tile.first_group),
-             last = static_cast<std::size_t>(tile.last_group);
+  clear_rows(grid.rows[buffer], sums);
+  if (forces != &sums) clear_rows(grid.rows[buffer], *forces);
+  grid.rows[buffer] = 0;
   const HeldCells<D>* held = pass.stress ? state.holding.of(t) : nullptr;
-  const bool pressed_anew = pass.gather && pass.move;  // by the cells that the points have moved to
-  PressureCells<Space> before(grid.axes, state.shape, tile.at, settings.stress, held, pass.stress && cells),
-      after(grid.axes, state.shape, tile.at, settings.stress, held, pass.stress && cells && pressed_anew);
-  PressureCells<Space>& pushed = pressed_anew ? after : before;
-  static thread_local std::vector<std::array<int, octet_size>> cells_before;
-  if (pass.stress && cells && pass.gather) {
-    cells_before.resize(last - first);
-    for (std::size_t g = first; g < last; ++g) before.add_group(points, g, cells_before[g - first]);
-    before.read_divergences(v);
-  }
+  const bool cell_pressure = pass.stress && settings.cell_pressure;
+  constexpr bool pressed_anew = pass.gather && pass.move;  // by the cells that points have moved to
+  const auto no_cells = [&](bool wanted) {
+    return PressureCells<Space, Node>(grid.axes, state.shape, tile.at, settings.stress, held, wanted);
+  };
+  PressureCells<Space, Node> before = no_cells(cell_pressure),
+                             after = no_cells(cell_pressure && pressed_anew);
   LaneSums reduced;
-  const StencilFrame<D> frame = stencil_frame<D>(grid.axes, state.shape, tile.at);
-
-  for (std::size_t g = first; g < last; ++g) {
-    const int n = filled<D>(points, g);
-    Weights<D> weights;
-    const auto place = [&] {
-      constexpr Wanted wanted{.slopes = pass.stress, .moments = pass.move};
-      weigh<D, wanted>(frame, places_of<D>(points, g), weights);
-    };
-    place();
-    Fields<D> fields;
-    if (pass.gather) gather_for<pass, D>(v, v_start, weights, n, flip, fields);
-    reduced.mixed += weights.together ? 0 : 1;
-    GroupStress<D> stress;
-    std::array<int, octet_size> cell{};
-    if (pass.stress) {
-      Octet divergence = {};
-      if (cells && pass.gather) cell = cells_before[g - first];
-      for (int l = 0; l < n && cells && pass.gather; ++l)
-        divergence[l] = before.divergence(cell[static_cast<std::size_t>(l)]);
-      Octet hold = all_lanes(1.0);
-      if (held) {
-        if (!cells || !pass.gather)
-          find_pressure_cells<D>(grid.axes, state.shape, tile.at, places_of<D>(points, g), cell);
-        hold = hold_of_group<D>(*held, cell);
-      }
-      stress = update_state<Space>(mix, law, cells, input.dt, fields, divergence, hold, points, g, reduced);
-    }
-    if (pass.move && pass.gather) {
-      move_group<D>(grid.axes, settings.transfer, input.dt, weights, fields, points, g, reduced);
-      place();
-    }
-    if (pass.stress && cells) {
-      if (!pass.gather || pass.move) pushed.add_group(points, g, cell);
-      pushed.push(cell, n, input.impulse_dt * stress.pressure);
-    }
-    rows |= rows_reached<D>(weights, n);
-    scatter_points<pass, Space>(flip, apart, input.impulse_dt, weights, stress, n, points, g, sums, forces);
-  }
-  if (pass.stress && cells) pushed.scatter_impulses(forces);
+  TilePass<pass, Space, Law, Node> in{.mix = mix,
+                                      .law = law,
+                                      .settings = settings,
+                                      .input = input,
+                                      .state = state,
+                                      .tile = tile,
+                                      .points = state.points,
+                                      .v = v,
+                                      .v_start = v_start,
+                                      .sums = sums,
+                                      .forces = *forces,
+                                      .rows = grid.rows[buffer],
+                                      .held = held,
+                                      .cells = cell_pressure,
+                                      .before = before,
+                                      .pressed = pressed_anew ? after : before,
+                                      .entered = nullptr,
+                                      .frame = stencil_frame<D>(grid.axes, state.shape, tile.at),
+                                      .reduced = reduced};
+  static thread_local std::vector<GroupCells> entered;
+  if (in.cells && pass.gather && before.follows_points()) enter_pressure_cells(in, entered);
+  visit_groups(in);
+  if (in.cells) in.pressed.scatter_impulses(*forces);
   return reduced.reduced();
 }
 
@@ -240,8 +364,10 @@ PassSums pass_over_points(const Mix& mix, const Law& law, const ExplicitSettings
   std::vector<PassSums> reduced(state.grid.tiles.size());
   for_each_share(state.grid, [&](Share<D>& share) {
     before(share);
-    for (int t = share.first_tile; t < share.last_tile; ++t)
-      reduced[t] = pass_over_tile<pass, Space>(mix, law, settings, input, t, share, state);
+    for (const int t : share.tiles)
+      reduced[t] = settings.single_precision
+                       ? pass_over_tile<pass, SingleNode, Space>(mix, law, settings, input, t, share, state)
+                       : pass_over_tile<pass, NodeLanes, Space>(mix, law, settings, input, t, share, state);
   });
   state.grid.turn = 1 - state.grid.turn;
   PassSums all;

@@ -5,7 +5,7 @@
 #include "libmpm/contact/impulses.hpp"
 #include "libmpm/step/explicit_nodes.hpp"
 #include "libmpm/step/explicit_parts.hpp"
-#include "libmpm/step/explicit_pass.hpp"
+#include "libmpm/step/explicit_single.hpp"
 #include "libmpm/step/wall_cells.hpp"
 
 namespace tremie {
@@ -17,6 +17,7 @@ ExplicitState<Space> start_explicit(Body<Space>& body, const Law& law, const Exp
   ExplicitState<Space> state;
   state.shape = shape;
   state.grid.axes = body.grid.axes;
+  state.grid.single = settings.single_precision;
   take_points<Space::dim>(body.points, !settings.transfer.flip, state.points);
   detail::sort_points(settings, state);
   for (double lambda : body.points.lambda) state.lambda_max = std::max(state.lambda_max, lambda);
@@ -89,8 +90,11 @@ detail::PassSums stress_first(Body<Space>& body, const Law& law, const ExplicitS
       body, law, settings, {dt, dt}, state, velocities, sort, [&] { detail::sort_points(settings, state); });
 
   const auto impulses = [&](Share<Space::dim>& share) {
-    detail::add_impulses(body, state, settings.friction_coefficient, state.grid.sums, settings.transfer.flip,
-                         pull, rows_of, share);
+    const auto add = [&](const auto& sums_of_tiles) {
+      detail::add_impulses(body, state, settings.friction_coefficient, sums_of_tiles, settings.transfer.flip,
+                           pull, rows_of, share);
+    };
+    state.grid.single ? add(state.grid.single_sums) : add(state.grid.sums);
   };
   sums.add(detail::controls_then_points<detail::motion_pass>(
       body, law, settings, {dt, 0.0}, state, impulses, bool{wall},

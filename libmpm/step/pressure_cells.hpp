@@ -20,11 +20,13 @@
 
 namespace tremie::detail {
 
-template <class Space>
+/// Node: of the tile's controls that the rows read and push.
+template <class Space, class Node>
 class PressureCells {
  public:
   static constexpr int D = Space::dim, n = power(tile_pressure_cells, D);
-  using Cube = std::array<NodeLanes, TileGrid<D>::tile_nodes>;
+  using Real = std::remove_cvref_t<decltype(Node{}[0])>;
+  using Cube = NodeCube<Node, TileGrid<D>::tile_nodes>;
 
   /// `held`: the tile's cells at walls that hold, if there are any. Without `wanted` nothing may be entered.
   PressureCells(const std::array<Axis, D>& axes, const Shape<D>& shape, const Index<D>& tile,
@@ -38,10 +40,13 @@ class PressureCells {
     slot_.fill(-1);
     for (int d = 0; d < D; ++d) {
       origin_[d] = axes[d].origin, per_cell_[d] = 1.0 / axes[d].h, first_[d] = tile[d] * tile_cells;
-      along_[d][d] = per_cell_[d];
-      for (int e = 0; e < D; ++e) across_[d][e] = e == d ? 0.0 : 1.0;
+      along_[d][d] = static_cast<Real>(per_cell_[d]);
+      for (int e = 0; e < D; ++e) across_[d][e] = e == d ? 0 : 1;
     }
   }
+
+  /// Whether a row's place is known only when all points have entered.
+  bool follows_points() const { return follows_; }
 
   /// Enters the cells of the points of group g, with their places.
   void add_group(const LanePoints<D>& points, std::size_t g, std::array<int, octet_size>& cells) {
@@ -65,30 +70,12 @@ class PressureCells {
       if (moment[l][D] > 0.0) row_of(cells[l]).moment += moment[l];
   }
 
-  void read_divergences(const Cube& v) {
-    for (int i = 0; i < count_; ++i) {
-      Row& row = rows_[i];
-      settle(row);
-      if (at_corners()) {
-        NodeLanes total = {};
-        with_corners(row, [&](int at, const NodeLanes& slopes) { total += slopes * v[at]; });
-        row.divergence = 0.0;
-        for (int d = 0; d < D; ++d) row.divergence += total[d];
-        continue;
-      }
-      with_row(row, [&](int base, const auto& weights, double x_0) {
-        constexpr int width = std::remove_cvref_t<decltype(weights)>::n_controls;
-        const auto at = gather<D, width, slopes_only>(&v[base], weights);
-        double L[D][D], q[Space::n_strain];
-        for (int a = 0; a < D; ++a)
-          for (int b = 0; b < D; ++b) L[a][b] = at.slope[b][a];
-        const double v_0 = at.value[0];
-        strain_rate_of<Space, double>(L, v_0, x_0, q, row.divergence);
-      });
-    }
+  /// Divergence of a cell whose points have all entered, read from the velocities the first time.
+  double divergence(const Cube& v, int cell) {
+    Row& row = row_of(cell);
+    if (!row.read) row.read = true, row.divergence = read_divergence(v, row);
+    return row.divergence;
   }
-
-  double divergence(int cell) const { return rows_[slot_[cell]].divergence; }
 
   /// Adds the impulses of n points, pressure times volume times step.
   void push(const std::array<int, octet_size>& cells, int points, const Octet& impulse) {
@@ -104,7 +91,9 @@ class PressureCells {
       Row& row = rows_[i];
       settle(row);
       if (at_corners()) {
-        with_corners(row, [&](int at, const NodeLanes& slopes) { sums[at] += row.impulse * slopes; });
+        with_corners(row, [&](int at, const auto& slopes) {
+          store_two(load_two(&sums[at]) + static_cast<Real>(row.impulse) * slopes, &sums[at]);
+        });
         continue;
       }
       with_row(row, [&](int base, const auto& weights, double x_0) {
@@ -121,15 +110,39 @@ class PressureCells {
  private:
   struct Row {  // without defaults: most of a tile's cells are never entered
     int cell;
-    bool settled;
+    bool settled, read;
     double divergence, impulse, x_0;
     NodeLanes moment;  ///< mass times place, and mass; once settled, the place in the cell
   };
 
+  double read_divergence(const Cube& v, Row& row) {
+    settle(row);
+    double divergence = 0.0;
+    if (at_corners()) {
+      decltype(load_two(&v[0])) total = {};
+      with_corners(row, [&](int at, const auto& slopes) { total += slopes * load_two(&v[at]); });
+      const Node both = __builtin_shufflevector(total, total, 0, 1, 2, 3) +
+                        __builtin_shufflevector(total, total, 4, 5, 6, 7);
+      Real sum = both[0];
+      for (int d = 1; d < D; ++d) sum += both[d];
+      return static_cast<double>(sum);
+    }
+    with_row(row, [&](int base, const auto& weights, double x_0) {
+      constexpr int width = std::remove_cvref_t<decltype(weights)>::n_controls;
+      const auto at = gather<D, width, slopes_only>(&v[base], weights);
+      double L[D][D], q[Space::n_strain];
+      for (int a = 0; a < D; ++a)
+        for (int b = 0; b < D; ++b) L[a][b] = at.slope[b][a];
+      const double v_0 = at.value[0];
+      strain_rate_of<Space, double>(L, v_0, x_0, q, divergence);
+    });
+    return divergence;
+  }
+
   Row& row_of(int cell) {
     if (slot_[cell] < 0) {
       slot_[cell] = static_cast<std::int16_t>(count_);
-      rows_[count_] = Row{cell, false, 0.0, 0.0, 0.0, NodeLanes{}};
+      rows_[count_] = Row{cell, false, false, 0.0, 0.0, 0.0, NodeLanes{}};
       ++count_;
     }
     return rows_[slot_[cell]];
@@ -171,28 +184,29 @@ class PressureCells {
     return shape_.kind == ShapeFunctions::gimp && !std::is_same_v<Space, Axisymmetric>;
   }
 
-  /// use(control, slopes in all directions) at the cell's corners.
+  /// use(control, slopes in all directions of it and of the next) along the cell's edges in the last
+  /// direction.
   template <class Use>
   void with_corners(const Row& row, Use use) const {
     const Index<D> at = index_of(row.cell);
-    NodeLanes side[D][2];  // a corner's slopes are the product of its sides in all directions
+    Node side[D][2];  // a corner's slopes are the product of its sides in all directions
     int base = 0;
     for (int d = 0; d < D; ++d) {
       base = base * tile_span + at[d] + 2;
-      const double s = row.moment[d];
-      side[d][0] = (1.0 - s) * across_[d] - along_[d];
+      const auto s = static_cast<Real>(row.moment[d]);
+      side[d][0] = (1 - s) * across_[d] - along_[d];
       side[d][1] = s * across_[d] + along_[d];
     }
-    for (int k = 0; k < power(2, D); ++k) {
-      int control = base;
-      NodeLanes slopes = side[0][k >> (D - 1)];
-      control += (k >> (D - 1)) * stride<D>(tile_span, 0);
-      for (int d = 1; d < D; ++d) {
-        const int up = (k >> (D - 1 - d)) & 1;
-        slopes *= side[d][up];
-        control += up * stride<D>(tile_span, d);
+    const auto last = both(side[D - 1][0], side[D - 1][1]);
+    for (int i = 0; i < 2; ++i) {
+      if constexpr (D == 2) {
+        use(base + i * tile_span, last * both(side[0][i], side[0][i]));
+      } else {
+        for (int j = 0; j < 2; ++j) {
+          const Node edge = side[0][i] * side[1][j];
+          use(base + (i * tile_span + j) * tile_span, last * both(edge, edge));
+        }
       }
-      use(control, slopes);
     }
   }
 
@@ -228,7 +242,7 @@ class PressureCells {
   bool follows_;  ///< the rows' places are those of the points
   const HeldCells<D>* held_;
   NodeLanes origin_ = {}, per_cell_ = {}, first_ = {};
-  NodeLanes across_[D] = {}, along_[D] = {};  ///< ones but in direction d; 1/h in it
+  Node across_[D] = {}, along_[D] = {};  ///< ones but in direction d; 1/h in it
   int count_ = 0;
   std::array<std::int16_t, n> slot_;
   std::array<Row, n> rows_;

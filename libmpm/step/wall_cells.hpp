@@ -168,11 +168,12 @@ void look_into_wall_cells(ExplicitState<Space>& state) {
       for (int d = D - 1, rest = k; d >= 0; --d, rest /= tile_pressure_cells)
         cell[d] = axes[d].cell(tile.at[d] * tile_cells + rest % tile_pressure_cells - 2);
       HeldCell<D>& one = held[static_cast<std::size_t>(k)];
-      one.hold = static_cast<float>(hold_of<Space>(fills, axes, cell));
+      one.hold = 1.0F;
       one.place.fill(0.5F);
       const detail::HeldAt wall = detail::held_at<D>(axes, cell);
-      if (wall.into != 0)
-        one.place[static_cast<std::size_t>(wall.axis)] = static_cast<float>(fills.height(cell));
+      if (wall.into == 0) continue;
+      one.hold = static_cast<float>(hold_of<Space>(fills, axes, cell));
+      one.place[static_cast<std::size_t>(wall.axis)] = static_cast<float>(fills.height(cell));
     }
   }
 }

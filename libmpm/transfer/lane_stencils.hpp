@@ -42,12 +42,20 @@ struct Weights {
 inline constexpr int tile_pressure_cells = tile_cells + 3;
 
 /// What a tile's weights need of one axis; cells and corners are counted from the tile's first.
-struct StencilAxis {
-  double h, ih, origin, first;       ///< (x - origin) ih - first is the place in cells
-  double half, inverse;              ///< GIMP: of a point's extent, and 1/(2 half)
-  bool walls;                        ///< whether one of these is in sight:
-  double low = 1e300, high = 1e300;  ///< cell (GIMP: corner) at a low and at a high wall
+template <class Real>
+struct StencilAxisOf {
+  Real h, ih, origin, first;     ///< (x - origin) ih - first is the place in cells
+  Real half, inverse;            ///< GIMP: of a point's extent, and 1/(2 half)
+  bool walls;                    ///< whether one of these is in sight:
+  Real low = 1e30, high = 1e30;  ///< cell (GIMP: corner) at a low and at a high wall
 };
+using StencilAxis = StencilAxisOf<double>;
+using SingleStencilAxis = StencilAxisOf<float>;
+
+inline SingleStencilAxis in_single(const StencilAxis& a) {
+  const auto f = [](double x) { return static_cast<float>(x); };
+  return {f(a.h), f(a.ih), f(a.origin), f(a.first), f(a.half), f(a.inverse), a.walls, f(a.low), f(a.high)};
+}
 
 template <int D>
 struct StencilFrame {
@@ -75,33 +83,36 @@ StencilFrame<D> stencil_frame(const std::array<Axis, D>& axes, const Shape<D>& s
 namespace detail {
 
 /// s: place in the cell.
-[[gnu::always_inline]] inline void b_spline_weights(const StencilAxis& axis, const Octet& cell,
-                                                    const Octet& s, Octet (&w)[3], Octet (&dw)[3],
-                                                    Octet (&arm)[3]) {
-  const Octet t = 1.0 - s;
-  Octet a = all_lanes(0.5), b = a;
+template <class Real, class Lanes>
+[[gnu::always_inline]] inline void b_spline_weights(const StencilAxisOf<Real>& axis, const Lanes& cell,
+                                                    const Lanes& s, Lanes (&w)[3], Lanes (&dw)[3],
+                                                    Lanes (&arm)[3]) {
+  const Lanes t = 1.0 - s;
+  Lanes a = 0.5 - Lanes{}, b = a;
   if (axis.walls) a = cell == axis.low ? a + a : a, b = cell == axis.high ? b + b : b;
-  const Octet at = a * t, bs = b * s;
-  w[0] = at * t, dw[0] = (-2.0 * axis.ih) * at;
-  w[2] = bs * s, dw[2] = (2.0 * axis.ih) * bs;
+  const Lanes at = a * t, bs = b * s;
+  w[0] = at * t, dw[0] = (-2 * axis.ih) * at;
+  w[2] = bs * s, dw[2] = (2 * axis.ih) * bs;
   w[1] = 1.0 - w[0] - w[2], dw[1] = -dw[0] - dw[2];
   arm[0] = axis.h * (a - 1.0 - s), arm[1] = axis.h * (0.5 - s), arm[2] = axis.h * (2.0 - b - s);
 }
 
 /// u: distance from the nearest corner, in cells. A point whose extent would reach beyond a wall is taken
 /// without extent: linear hats, whose control on the wall sets the velocity of the whole wall.
-[[gnu::always_inline]] inline void gimp_weights(const StencilAxis& axis, const Octet& corner, const Octet& u,
-                                                Octet (&w)[3], Octet (&dw)[3], Octet (&arm)[3]) {
-  constexpr double none = 1e-16;
-  Octet half = all_lanes(axis.half), inverse = all_lanes(axis.inverse);
+template <class Real, class Lanes>
+[[gnu::always_inline]] inline void gimp_weights(const StencilAxisOf<Real>& axis, const Lanes& corner,
+                                                const Lanes& u, Lanes (&w)[3], Lanes (&dw)[3],
+                                                Lanes (&arm)[3]) {
+  constexpr Real none = static_cast<Real>(1e-16), one_over_none = static_cast<Real>(0.5e16);
+  Lanes half = axis.half - Lanes{}, inverse = axis.inverse - Lanes{};
   if (axis.walls) {
-    const OctetMask wall = (corner == axis.low) | (corner == axis.high);
-    half = wall ? all_lanes(none) : half, inverse = wall ? all_lanes(0.5 / none) : inverse;
+    const auto wall = (corner == axis.low) | (corner == axis.high);
+    half = wall ? none - Lanes{} : half, inverse = wall ? one_over_none - Lanes{} : inverse;
   }
   // How much of the extent lies below and above the corner, and how far from it the rest is.
-  const Octet zero = {}, whole = half + half;
-  const Octet below = min(max(half - u, zero), whole), above = min(max(half + u, zero), whole);
-  const Octet share_0 = below * inverse, share_2 = above * inverse;
+  const Lanes zero = {}, whole = half + half;
+  const Lanes below = min(max(half - u, zero), whole), above = min(max(half + u, zero), whole);
+  const Lanes share_0 = below * inverse, share_2 = above * inverse;
   dw[0] = -axis.ih * share_0, dw[2] = axis.ih * share_2;
   w[0] = 0.5 * below * share_0 + max(-u - half, zero);
   w[2] = 0.5 * above * share_2 + max(u - half, zero);
@@ -196,12 +207,11 @@ struct Gathered {
   NodeLanes moment[wanted.moments && R > 0 ? R : 1] = {};
 };
 
-template <int D, int n, Wanted wanted, int d = 0>
-[[gnu::always_inline]] inline Gathered<D - d, wanted> gather(const NodeLanes* node,
-                                                             const PointWeights<D, n>& p) {
+template <int D, int n, Wanted wanted, int d = 0, class Node>
+[[gnu::always_inline]] inline Gathered<D - d, wanted> gather(const Node* node, const PointWeights<D, n>& p) {
   Gathered<D - d, wanted> sum;
   if constexpr (d == D) {
-    sum.value = *node;
+    sum.value = in_double(*node);
   } else {
     for (int k = 0; k < n; ++k) {
       const auto part = gather<D, n, wanted, d + 1>(node + k * stride<D>(tile_span, d), p);
@@ -221,24 +231,23 @@ template <int D, int n, Wanted wanted, int d = 0>
 
 /// Adds to every control value times w plus, for each direction e, slope[e] times the gradient's and
 /// moment[e] times the arm's component e.
-template <int D, int n, int d = 0>
-[[gnu::always_inline]] inline void scatter(NodeLanes* node, const PointWeights<D, n>& p,
+template <int D, int n, int d = 0, class Node>
+[[gnu::always_inline]] inline void scatter(Node* node, const PointWeights<D, n>& p,
                                            const NodeLanes (&along)[D][n], const NodeLanes& carried,
                                            const NodeLanes& weight) {
   for (int k = 0; k < n; ++k) {
     const NodeLanes next = p.w[d][k] * carried + weight * along[d][k];
-    NodeLanes* const at = node + k * stride<D>(tile_span, d);
+    Node* const at = node + k * stride<D>(tile_span, d);
     if constexpr (d == D - 1)
-      *at += next;
+      add_to(*at, next);
     else
       scatter<D, n, d + 1>(at, p, along, next, p.w[d][k] * weight);
   }
 }
 
-template <int D, int n>
-[[gnu::always_inline]] inline void scatter(NodeLanes* node, const PointWeights<D, n>& p,
-                                           const NodeLanes& value, const NodeLanes (&slope)[D],
-                                           const NodeLanes (&moment)[D]) {
+template <int D, int n, class Node>
+[[gnu::always_inline]] inline void scatter(Node* node, const PointWeights<D, n>& p, const NodeLanes& value,
+                                           const NodeLanes (&slope)[D], const NodeLanes (&moment)[D]) {
   NodeLanes along[D][n];
   for (int d = 0; d < D; ++d)
     for (int k = 0; k < n; ++k) along[d][k] = p.dw[d][k] * slope[d] + p.wa[d][k] * moment[d];

@@ -1,0 +1,143 @@
+#pragma once
+
+// The pass over the points with shape functions and sums in single precision: sixteen points at once, two
+// groups of eight. Places, volumes, flocculation and stress stay in double precision.
+
+#include "libmpm/step/explicit_pass.hpp"
+
+namespace tremie::detail {
+
+/// Two groups of eight side by side; the second is the first again, with no point of its own, at a tile's
+/// end.
+struct GroupPair {
+  std::size_t g[2];
+  int n[2];  ///< real points
+  std::size_t real() const { return static_cast<std::size_t>(n[0] + n[1]); }
+};
+
+/// State and stress of a pair; what it opposes to the flow is found group by group.
+template <Pass pass, class Space, class Law>
+LaneStress<Space::dim, Singles> stress_of_pair(TilePass<pass, Space, Law, SingleNode>& in,
+                                               const GroupPair& pair, const SingleFields<Space::dim>& read,
+                                               const GroupCells (&cell)[2], Octet (&pressure)[2]) {
+  const Singles x_0 = to_single(in.points.x[0][pair.g[0]], in.points.x[0][pair.g[1]]);
+  const auto rate = strain_rate<Space, Singles>(read.along, read.value[0], x_0);
+  Resistance of[2] = {};
+  for (int half = 0; half < 2 && pair.n[half] > 0; ++half) {
+    of[half] = resistance_of_group(in, pair.g[half], pair.n[half], to_double(rate.gamma_dot, half),
+                                   to_double(rate.divergence, half), cell[half]);
+    pressure[half] = of[half].pressure;
+  }
+  const Singles in_tensor = in.cells ? Singles{} : to_single(of[0].pressure, of[1].pressure);
+  return stress_of<Space, Singles>(rate, to_single(of[0].viscosity, of[1].viscosity), in_tensor);
+}
+
+/// Moves a pair with what it read, and keeps its affine velocities.
+template <Pass pass, class Space, class Law>
+void move_pair(TilePass<pass, Space, Law, SingleNode>& in, const GroupPair& pair,
+               const SingleWeights<Space::dim>& weights, SingleFields<Space::dim>& read) {
+  constexpr int D = Space::dim;
+  const auto& axes = in.state.grid.axes;
+  const std::array<Singles, D> inverse = inverse_inertia<D>(axes, weights.inertia);
+  for (int b = 0; b < D; ++b)
+    for (int a = 0; a < D; ++a) read.along[b][a] *= inverse[b];
+  for (int half = 0; half < 2 && pair.n[half] > 0; ++half) {
+    const std::size_t g = pair.g[half];
+    Octet v[D];
+    for (int d = 0; d < D; ++d) in.points.v[d][g] = v[d] = to_double(read.value[d], half);
+    move_places<D>(axes, in.input.dt, v, in.points, g, in.reduced);
+    for (int b = 0; b < D; ++b)
+      for (int a = 0; a < D; ++a) in.points.C[a * D + b][g] = to_double(read.along[b][a], half);
+  }
+}
+
+/// Velocities and affine velocities of a pair as they are kept.
+template <int D>
+SingleFields<D> kept_motion(const LanePoints<D>& points, const GroupPair& pair) {
+  const std::size_t a = pair.g[0], b = pair.g[1];
+  SingleFields<D> motion;
+  for (int i = 0; i < D; ++i) {
+    motion.value[i] = to_single(points.v[i][a], points.v[i][b]);
+    for (int j = 0; j < D; ++j)
+      motion.along[j][i] = to_single(points.C[i * D + j][a], points.C[i * D + j][b]);
+  }
+  return motion;
+}
+
+/// Momentum, mass and impulses of a pair to the controls; returns the rows that they are in.
+template <Pass pass, class Space>
+TileRows scatter_pair(double impulse_dt, const SingleWeights<Space::dim>& weights,
+                      const LaneStress<Space::dim, Singles>& stress, const SingleFields<Space::dim>& motion,
+                      const GroupPair& pair, const LanePoints<Space::dim>& points, SingleNode* sums) {
+  constexpr int D = Space::dim;
+  constexpr bool hooped = pass.stress && std::is_same_v<Space, Axisymmetric>;
+  constexpr Given given{.values = pass.move || hooped, .slopes = pass.stress, .moments = pass.move};
+  const auto dt = static_cast<float>(impulse_dt);
+  SingleSpread<D> spread;
+  if (given.values)
+    for (Singles& value : spread.value) value = Singles{};
+  if (pass.move) {
+    const Singles mass = spread.value[D] = to_single(points.mass[pair.g[0]], points.mass[pair.g[1]]);
+    for (int i = 0; i < D; ++i) {
+      spread.value[i] = mass * motion.value[i];
+      for (int j = 0; j < D; ++j) {
+        spread.moment[j][i] = mass * motion.along[j][i];
+        spread.value[i] += spread.moment[j][i] * weights.middle[j];
+      }
+    }
+  }
+  for (int i = 0; i < D && pass.stress; ++i)
+    for (int j = 0; j < D; ++j) spread.slope[j][i] = -dt * stress.sigma[i][j];
+  if (hooped) spread.value[0] -= dt * stress.hoop / to_single(points.x[0][pair.g[0]], points.x[0][pair.g[1]]);
+  return scatter_single<D, given>(weights, spread, pair.real(), sums);
+}
+
+template <Pass pass, class Space, class Law>
+void visit_pair(TilePass<pass, Space, Law, SingleNode>& in, const GroupPair& pair) {
+  constexpr int D = Space::dim;
+  SingleWeights<D> weights;
+  const auto place = [&] {
+    constexpr Wanted wanted{.slopes = pass.stress, .moments = pass.move};
+    weigh_single<D, wanted>(
+        in.frame, {places_of<D>(in.points, pair.g[0]), places_of<D>(in.points, pair.g[1])}, weights);
+  };
+  place();
+  LaneStress<D, Singles> stress;
+  Octet pressure[2];
+  GroupCells cell[2];
+  SingleFields<D> read;
+  if (pass.stress) {
+    for (int half = 0; half < 2; ++half) cell[half] = cells_of_group(in, pair.g[half]);
+    if (pass.gather)
+      gather_slopes<D, std::is_same_v<Space, Axisymmetric>>(in.v.data(), weights, pair.real(), read);
+    else
+      read = {};
+    stress = stress_of_pair(in, pair, read, cell, pressure);
+  }
+  if (pass.move && pass.gather) {
+    gather_moments<D>(in.v.data(), weights, pair.real(), read);
+    move_pair(in, pair, weights, read);
+    place();
+  } else if (pass.move) {
+    read = kept_motion<D>(in.points, pair);
+  }
+  for (int half = 0; half < 2 && pair.n[half] > 0 && in.cells; ++half)
+    push_cells(in, pair.g[half], pair.n[half], pressure[half], cell[half]);
+  in.rows |=
+      scatter_pair<pass, Space>(in.input.impulse_dt, weights, stress, read, pair, in.points, in.sums.data());
+}
+
+/// All groups of a tile, two by two.
+template <Pass pass, class Space, class Law>
+void visit_groups(TilePass<pass, Space, Law, SingleNode>& in) {
+  constexpr int D = Space::dim;
+  const auto first = static_cast<std::size_t>(in.tile.first_group),
+             last = static_cast<std::size_t>(in.tile.last_group);
+  for (std::size_t g = first; g < last; g += 2) {
+    GroupPair pair{{g, g}, {filled<D>(in.points, g), 0}};
+    if (g + 1 < last) pair.g[1] = g + 1, pair.n[1] = filled<D>(in.points, g + 1);
+    visit_pair(in, pair);
+  }
+}
+
+}  // namespace tremie::detail
