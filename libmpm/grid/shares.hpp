@@ -44,7 +44,7 @@ void join_blocks(TileGrid<D>& grid) {
 /// explicit.md).
 template <int D>
 std::int64_t cost_of(const Tile<D>& tile) {
-  return 30 + 10 * (tile.last_group - tile.first_group) + 6 * tile.mixed_groups;
+  return 15 + 10 * (tile.last_group - tile.first_group) + 6 * tile.mixed_groups;
 }
 
 /// Shares of neighbouring tiles that cost about as much.
@@ -177,13 +177,13 @@ void lay_tiles(TileGrid<D>& grid, std::vector<Tile<D>> tiles, bool flip,
     detail::keep_velocities<D>(old, from, grid, grid.shares.back());
   }
   detail::give_buffers<D>(grid, flip);
+  if (!grid.crew || grid.crew->size() != n_shares) grid.crew = std::make_unique<Crew>(n_shares);
 }
 
 /// Visits each share, in a thread of its own.
 template <int D, class Visit>
 void for_each_share(TileGrid<D>& grid, Visit visit) {
-#pragma omp parallel for schedule(static, 1)
-  for (std::size_t s = 0; s < grid.shares.size(); ++s) visit(grid.shares[s]);
+  grid.crew->run([&](int s) { visit(grid.shares[static_cast<std::size_t>(s)]); });
 }
 
 /// The share that a tile is in.

@@ -18,9 +18,11 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <vector>
 
 #include "libmpm/grid/active_grid.hpp"
+#include "libmpm/grid/crew.hpp"
 
 namespace tremie {
 
@@ -117,6 +119,7 @@ struct TileGrid {
   std::vector<Tile<D>> tiles;
   std::vector<NodeBlock<D>> blocks;
   std::vector<Share<D>> shares;
+  std::unique_ptr<Crew> crew;  ///< a thread for each share
   int turn = 0;                ///< which of a tile's buffers was filled last
   std::vector<Buffer> sums;    ///< a buffer: momentum and mass that the points give
   std::vector<Buffer> forces;  ///< a buffer: impulse of the stresses, for FLIP alone
@@ -238,15 +241,29 @@ struct ReachedRows {
   unsigned reached;
 };
 
-/// Adds four controls of a row to `low` and `high`.
-inline void add_row(const NodeLanes* row, TwoNodes& low, TwoNodes& high) {
-  const auto* from = reinterpret_cast<const TwoNodes*>(row);
-  low += from[0], high += from[1];
-}
-inline void add_row(const SingleNode* row, TwoNodes& low, TwoNodes& high) {
-  const auto* from = reinterpret_cast<const TwoSingles*>(row);
-  low += __builtin_convertvector(from[0], TwoNodes), high += __builtin_convertvector(from[1], TwoNodes);
-}
+/// Four controls of a row, and sums of them.
+struct FourNodes {
+  TwoNodes low = {}, high = {};
+  void add(const NodeLanes* row) {
+    const auto* from = reinterpret_cast<const TwoNodes*>(row);
+    low += from[0], high += from[1];
+  }
+  std::array<NodeLanes, tile_cells> total() const {
+    std::array<NodeLanes, tile_cells> of;
+    std::memcpy(&of[0], &low, sizeof low), std::memcpy(&of[2], &high, sizeof high);
+    return of;
+  }
+};
+struct FourSingleNodes {
+  using Four [[gnu::vector_size(64), gnu::may_alias]] = float;
+  Four sum = {};
+  void add(const SingleNode* row) { sum += *reinterpret_cast<const Four*>(row); }
+  std::array<NodeLanes, tile_cells> total() const {
+    std::array<SingleNode, tile_cells> of;
+    std::memcpy(&of, &sum, sizeof of);
+    return {in_double(of[0]), in_double(of[1]), in_double(of[2]), in_double(of[3])};
+  }
+};
 
 }  // namespace detail
 
@@ -254,6 +271,8 @@ inline void add_row(const SingleNode* row, TwoNodes& low, TwoNodes& high) {
 template <int D, class Buffer, class Visit>
 void sum_tiles(const TileGrid<D>& grid, int share, RowsOf rows_of, int b, const std::vector<Buffer>& buffers,
                Visit visit) {
+  using Four = std::conditional_t<std::is_same_v<Buffer, typename TileGrid<D>::SingleBuffer>,
+                                  detail::FourSingleNodes, detail::FourNodes>;
   const NodeBlock<D>& block = grid.blocks[static_cast<std::size_t>(b)];
   unsigned wanted = 0;
   std::array<detail::ReachedRows<D, Buffer>, power(2, D)> from;
@@ -269,15 +288,12 @@ void sum_tiles(const TileGrid<D>& grid, int share, RowsOf rows_of, int b, const 
       wanted |= reached;
   }
   for_each_row(wanted, [&](int row) {
-    TwoNodes low = {}, high = {};
+    Four sum;
     for (std::size_t i = 0; i < n; ++i) {
       const auto& [buffer, k, reached] = from[i];
-      if ((reached >> row & 1) != 0)
-        detail::add_row(&(*buffer)[static_cast<std::size_t>(row_in_cube<D>(k, row))], low, high);
+      if ((reached >> row & 1) != 0) sum.add(&(*buffer)[static_cast<std::size_t>(row_in_cube<D>(k, row))]);
     }
-    std::array<NodeLanes, tile_cells> total;
-    std::memcpy(&total[0], &low, sizeof low), std::memcpy(&total[2], &high, sizeof high);
-    visit(row, total);
+    visit(row, sum.total());
   });
 }
 

@@ -236,7 +236,8 @@ template <int D>
 void permute_points(const std::vector<GroupSlots>& groups, LanePoints<D>& lanes) {
   std::vector<std::vector<Octet>*> arrays;
   for_each_array<D>(lanes, true, true, [&](std::vector<Octet>& array, auto) { arrays.push_back(&array); });
-#pragma omp parallel
+  constexpr std::size_t many = 20000;  // below, waking OpenMP's threads takes longer
+#pragma omp parallel if (groups.size() > many)
   {
     std::vector<Octet> scratch;
 #pragma omp for schedule(dynamic)
@@ -272,7 +273,8 @@ struct SortedTiles {
 };
 
 /// Sorts the points by tile and cell into groups of eight. `stencil_shift`: 0 where a point's stencil begins
-/// with its cell, 1/2 where it is that of the nearest corner (GIMP). `packed`: groups need not be of one cell.
+/// with its cell, 1/2 where it is that of the nearest corner (GIMP). `packed`: groups need not be of one
+/// cell.
 template <int D>
 SortedTiles<D> sort_into_tiles(const std::array<Axis, D>& axes, double stencil_shift, LanePoints<D>& lanes,
                                bool packed = false) {

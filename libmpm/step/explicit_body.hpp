@@ -77,8 +77,8 @@ struct ExplicitState {
   std::vector<std::array<int, 3>> near_wall;  ///< tile, group and lane of what may touch a rigid wall soon
   double wall_drift = 1e300;                  ///< since they were looked for [m]
   std::int64_t sorts = 0;
-  std::int64_t mixed_groups = 0;  ///< of points of several cells, when they were sorted
-  std::int64_t mixed_since = 0;   ///< more than those, summed over the passes since
+  std::int64_t mixed_groups = 0;  ///< PassSums::mixed when they were sorted; below 0: not known yet
+  std::int64_t mixed_since = 0;   ///< more than that, summed over the passes since
 };
 
 }  // namespace tremie

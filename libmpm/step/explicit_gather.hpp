@@ -26,7 +26,7 @@ struct PassSums {
   double speed2 = 0.0;    ///< largest, squared [m^2/s^2]
   double volume = 0.0, volume_rate = 0.0, lambda = 0.0;
   bool ran_away = false;
-  std::int64_t mixed = 0;  ///< groups of points of several cells
+  std::int64_t mixed = 0;  ///< groups of points of several cells; in single precision runs of one stencil
 
   void add(const PassSums& other) {
     farthest = std::max(farthest, other.farthest), speed2 = std::max(speed2, other.speed2);

@@ -21,6 +21,8 @@ inline constexpr double drift_allowed = 0.45;
 /// Sorting takes as long as this many passes over points that are no longer with those of their cell, more
 /// than over those that are.
 inline constexpr double passes_for_sorting = 4.0;
+/// In single precision it takes as long as this many runs of one stencil more, for each group.
+inline constexpr double runs_for_sorting = 60.0;
 
 template <class Space>
 void sort_points(const ExplicitSettings& settings, ExplicitState<Space>& state) {
@@ -31,7 +33,7 @@ void sort_points(const ExplicitSettings& settings, ExplicitState<Space>& state) 
   for (NodeBlock<D>& block : state.grid.blocks)
     block.on_walls = nodes_on_walls<D>(state.grid.axes, state.shape, block.at);
   state.drift = 0.0;
-  state.mixed_groups = sorted.mixed;
+  state.mixed_groups = settings.single_precision ? -1 : sorted.mixed;
   state.mixed_since = 0;
   state.wall_drift = state.holding.drift = 1e300;
   ++state.sorts;
@@ -40,9 +42,9 @@ void sort_points(const ExplicitSettings& settings, ExplicitState<Space>& state) 
 /// Whether the points have drifted too far, or sorting them again pays.
 template <class Space>
 bool should_sort(const ExplicitState<Space>& state) {
-  const double paid = static_cast<double>(state.mixed_since);
-  return state.drift > drift_allowed ||
-         paid > passes_for_sorting * static_cast<double>(state.points.groups());
+  const double paid = static_cast<double>(state.mixed_since),
+               price = state.grid.single ? runs_for_sorting : passes_for_sorting;
+  return state.drift > drift_allowed || paid > price * static_cast<double>(state.points.groups());
 }
 
 /// The limits of the step to come, and its length.

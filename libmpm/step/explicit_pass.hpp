@@ -372,6 +372,7 @@ PassSums pass_over_points(const Mix& mix, const Law& law, const ExplicitSettings
   state.grid.turn = 1 - state.grid.turn;
   PassSums all;
   for (const PassSums& one : reduced) all.add(one);
+  if (state.mixed_groups < 0) state.mixed_groups = all.mixed;
   state.mixed_since += std::max<std::int64_t>(0, all.mixed - state.mixed_groups);
   return all;
 }

@@ -64,11 +64,11 @@ SingleFields<D> kept_motion(const LanePoints<D>& points, const GroupPair& pair) 
   return motion;
 }
 
-/// Momentum, mass and impulses of a pair to the controls; returns the rows that they are in.
+/// Momentum, mass and impulses of a pair to the controls.
 template <Pass pass, class Space>
-TileRows scatter_pair(double impulse_dt, const SingleWeights<Space::dim>& weights,
-                      const LaneStress<Space::dim, Singles>& stress, const SingleFields<Space::dim>& motion,
-                      const GroupPair& pair, const LanePoints<Space::dim>& points, SingleNode* sums) {
+Reached scatter_pair(double impulse_dt, const SingleWeights<Space::dim>& weights,
+                     const LaneStress<Space::dim, Singles>& stress, const SingleFields<Space::dim>& motion,
+                     const GroupPair& pair, const LanePoints<Space::dim>& points, SingleNode* sums) {
   constexpr int D = Space::dim;
   constexpr bool hooped = pass.stress && std::is_same_v<Space, Axisymmetric>;
   constexpr Given given{.values = pass.move || hooped, .slopes = pass.stress, .moments = pass.move};
@@ -123,8 +123,10 @@ void visit_pair(TilePass<pass, Space, Law, SingleNode>& in, const GroupPair& pai
   }
   for (int half = 0; half < 2 && pair.n[half] > 0 && in.cells; ++half)
     push_cells(in, pair.g[half], pair.n[half], pressure[half], cell[half]);
-  in.rows |=
+  const Reached reached =
       scatter_pair<pass, Space>(in.input.impulse_dt, weights, stress, read, pair, in.points, in.sums.data());
+  in.rows |= reached.rows;
+  in.reduced.mixed += reached.runs;
 }
 
 /// All groups of a tile, two by two.

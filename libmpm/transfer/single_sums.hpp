@@ -292,18 +292,25 @@ template <int D, Given given>
 
 }  // namespace detail
 
+/// Rows that points add to, and how many runs of points with the same stencil they are.
+struct Reached {
+  TileRows rows = 0;
+  int runs = 0;
+};
+
 /// Adds what the first n of sixteen points spread to their controls in the tile's cube. The control behind a
-/// stencil's row is added nothing. Returns the rows that they are in.
+/// stencil's row is added nothing.
 template <int D, Given given>
-[[gnu::noipa]] TileRows scatter_single(const SingleWeights<D>& p, const SingleSpread<D>& spread,
-                                       std::size_t n, SingleNode* sums) {
+[[gnu::noipa]] Reached scatter_single(const SingleWeights<D>& p, const SingleSpread<D>& spread, std::size_t n,
+                                      SingleNode* sums) {
   detail::SingleRows<D> rows;
   detail::carry_to_rows<D, given>(p, spread, rows);
-  TileRows reached = 0;
+  Reached reached;
   for (std::size_t first = 0, last; first < n; first = last) {
     for (last = first + 1; last < n && p.base[last] == p.base[first];) ++last;
     detail::add_run<D, given>(rows, first, last, sums + p.base[first]);
-    reached |= stencil_rows<D>(p.base[first]);
+    reached.rows |= stencil_rows<D>(p.base[first]);
+    ++reached.runs;
   }
   return reached;
 }

@@ -39,10 +39,12 @@ struct Set {
   ExplicitSettings settings;
   ExplicitState<Space> state;
 
-  Set(bool thixotropic, bool gimp, StressUpdate stress, bool cell_pressure)
-      : Set(block<Space>(thixotropic), gimp, stress, cell_pressure) {}
-  Set(Body<Space> filled, bool gimp, StressUpdate stress, bool cell_pressure) : body(std::move(filled)) {
+  Set(bool thixotropic, bool gimp, StressUpdate stress, bool cell_pressure, bool single = false)
+      : Set(block<Space>(thixotropic), gimp, stress, cell_pressure, single) {}
+  Set(Body<Space> filled, bool gimp, StressUpdate stress, bool cell_pressure, bool single = false)
+      : body(std::move(filled)) {
     settings.stress = stress;
+    settings.single_precision = single;
     settings.cell_pressure = cell_pressure;
     settings.fixed_dt = 1e-5;
     Shape<Space::dim> shape;
@@ -68,13 +70,19 @@ void pass_of(benchmark::State& run) {
 template <class Space, bool thixotropic>
 void law_alone(benchmark::State& run) {
   Set<Space> set(thixotropic, false, StressUpdate::last, false);
-  detail::Fields<Space::dim> fields;
-  fields.L[0][0] = all_lanes(0.3), fields.L[0][1] = all_lanes(0.7);
+  Octet slope[Space::dim][Space::dim] = {};
+  slope[0][0] = all_lanes(0.3), slope[0][1] = all_lanes(0.7);
   detail::LaneSums sums;
   for (auto _ : run)
-    for (std::size_t g = 0; g < set.state.points.groups(); ++g)
-      benchmark::DoNotOptimize(detail::update_state<Space>(set.body.mix, law, false, 1e-9, fields, Octet{},
-                                                           all_lanes(1.0), set.state.points, g, sums));
+    for (std::size_t g = 0; g < set.state.points.groups(); ++g) {
+      benchmark::DoNotOptimize(slope);
+      const auto rate = detail::strain_rate<Space, Octet>(slope, Octet{}, set.state.points.x[0][g]);
+      const auto resistance =
+          detail::update_state<Space::dim>(set.body.mix, law, 1e-9, rate.gamma_dot, rate.divergence,
+                                           all_lanes(1.0), set.state.points, g, sums);
+      benchmark::DoNotOptimize(
+          detail::stress_of<Space, Octet>(rate, resistance.viscosity, resistance.pressure));
+    }
   set.count(run);
 }
 
@@ -88,19 +96,20 @@ void sort_alone(benchmark::State& run) {
 }
 
 /// range(0): threads.
-template <class Space, bool thixotropic, bool gimp, StressUpdate stress, bool cell_pressure>
+template <class Space, bool thixotropic, bool gimp, StressUpdate stress, bool cell_pressure,
+          bool single = false>
 void whole_step(benchmark::State& run) {
   omp_set_num_threads(static_cast<int>(run.range(0)));
-  Set<Space> set(thixotropic, gimp, stress, cell_pressure);
+  Set<Space> set(thixotropic, gimp, stress, cell_pressure, single);
   for (auto _ : run) explicit_step(set.body, law, set.settings, set.state);
   set.count(run);
 }
 
 /// range(0): cells a direction. A run of one size alone tells by its peak memory what a point needs.
-template <bool gimp, StressUpdate stress>
+template <bool gimp, StressUpdate stress, bool single = false>
 void step_by_size(benchmark::State& run) {
   omp_set_num_threads(1);
-  Set<ThreeD> set(block<ThreeD>(true, static_cast<int>(run.range(0))), gimp, stress, true);
+  Set<ThreeD> set(block<ThreeD>(true, static_cast<int>(run.range(0))), gimp, stress, true, single);
   for (auto _ : run) explicit_step(set.body, law, set.settings, set.state);
   set.count(run);
 }
@@ -124,6 +133,19 @@ BENCHMARK(whole_step<ThreeD, false, false, last, true>)->Name("3D/USL, splines")
 BENCHMARK(whole_step<ThreeD, true, false, last, true>)->Name("3D/USL, splines, thixotropic")->Arg(1);
 BENCHMARK(whole_step<ThreeD, false, true, first, true>)->Name("3D/USF, GIMP")->Arg(1)->Arg(2)->UseRealTime();
 BENCHMARK(whole_step<ThreeD, true, true, first, true>)->Name("3D/USF, GIMP, thixotropic")->Arg(1);
+BENCHMARK(whole_step<ThreeD, false, false, last, false, true>)
+    ->Name("3D/USL, splines, pressure by the point, single")
+    ->Arg(1)
+    ->Arg(2)
+    ->UseRealTime();
+BENCHMARK(whole_step<ThreeD, false, true, first, true, true>)
+    ->Name("3D/USF, GIMP, single")
+    ->Arg(1)
+    ->Arg(2)
+    ->UseRealTime();
+BENCHMARK(whole_step<ThreeD, true, true, first, true, true>)
+    ->Name("3D/USF, GIMP, thixotropic, single")
+    ->Arg(1);
 BENCHMARK(whole_step<PlaneStrain, false, false, last, false>)
     ->Name("plane/USL, splines, pressure by the point")
     ->Arg(1);
@@ -135,6 +157,11 @@ BENCHMARK(whole_step<Axisymmetric, true, false, last, true>)
     ->Name("axisymmetric/USL, splines, thixotropic")
     ->Arg(1);
 BENCHMARK(step_by_size<false, last>)->Name("3D/size, USL, splines, thixotropic")->Arg(12)->Arg(24)->Arg(48);
+BENCHMARK(step_by_size<true, first, true>)
+    ->Name("3D/size, USF, GIMP, thixotropic, single")
+    ->Arg(12)
+    ->Arg(24)
+    ->Arg(48);
 BENCHMARK(step_by_size<true, first>)->Name("3D/size, USF, GIMP, thixotropic")->Arg(12)->Arg(24)->Arg(48);
 
 }  // namespace

@@ -206,8 +206,7 @@ TEST(ExplicitThreads, SameBits) {
 
 // Sums in single precision take a collapsing block where sums in double do. In a tenth of a second it falls
 // by more than a cell. Roundings grow where points go from one cell into the next, in double precision as
-// well: one point may be off by a hundredth of a cell, all of them together by what the roundings themselves
-// are.
+// well: one point may be off by a hundredth of a cell, all of them together by a hundredth of that.
 TEST(ExplicitSingle, CollapsesAsInDoublePrecision) {
   omp_set_num_threads(1);
   constexpr double h = 0.02;
