@@ -169,6 +169,8 @@ Frame frame_of(const Body<Space>& body) {
   const auto& points = body.points;
   Frame frame;
   frame.time = body.time;
+  frame.position.reserve(points.size()), frame.velocity.reserve(points.size());
+  frame.volume.reserve(points.size()), frame.pressure.reserve(points.size());
   for (std::size_t p = 0; p < points.size(); ++p) {
     frame.position.push_back(in_space<Space>(points.x[p]));
     frame.velocity.push_back(in_space<Space>(points.v[p]));

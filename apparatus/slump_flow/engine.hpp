@@ -44,6 +44,7 @@ Body<Space> filled_cone(const Scene& scene) {
     fill(scene.cone, scene.mix, gravity, h / n, h_up / n_up, body.points);
   else
     fill(scene.cone, scene.mix, gravity, h / n, h_up / n_up, is_quarter(scene), body.points);
+  shrink(body.points);
   engine::rest(body, scene.rest);
   return body;
 }

@@ -22,11 +22,22 @@ namespace tremie {
 template <int D>
 struct ContactPoint {
   int cell = 0;
-  std::array<double, power(3, D)> N;  ///< shape values in that cell
-  Vec<D> normal;                      ///< from the wall into the concrete
-  double target = 0.0;                ///< least normal velocity [m/s]
-  double stiffness = 0.0;             ///< penalty [kg/s]
   bool active = false;
+  std::array<std::array<double, 3>, D> one;  ///< shape values in that cell, direction by direction
+  Vec<D> normal;                             ///< from the wall into the concrete
+  double target = 0.0;                       ///< least normal velocity [m/s]
+  double stiffness = 0.0;                    ///< penalty [kg/s]
+
+  /// Of all controls.
+  std::array<double, power(3, D)> shape() const {
+    std::array<double, power(3, D)> N;
+    for (int k = 0; k < power(3, D); ++k) {
+      const Index<D> o = local_offset<D>(k);
+      N[k] = 1.0;
+      for (int d = 0; d < D; ++d) N[k] *= one[d][o[d]];
+    }
+    return N;
+  }
 };
 
 /// A node on a wall with Coulomb friction, or one that the side walls of a width-averaged section hold.
@@ -44,8 +55,9 @@ struct FrictionNode {
 template <int D>
 double normal_velocity(const ContactPoint<D>& c, const std::vector<std::array<int, power(3, D)>>& cell_nodes,
                        const std::vector<Vec<D>>& v) {
+  const auto N = c.shape();
   Vec<D> u = Vec<D>::Zero();
-  for (int i = 0; i < power(3, D); ++i) u += c.N[i] * v[cell_nodes[c.cell][i]];
+  for (int i = 0; i < power(3, D); ++i) u += N[i] * v[cell_nodes[c.cell][i]];
   return c.normal.dot(u);
 }
 
@@ -69,9 +81,9 @@ void add_contact_forces(const std::vector<ContactPoint<D>>& contact,
                         const std::vector<Vec<D>>& v, Eigen::VectorXd& R) {
   for (const ContactPoint<D>& c : contact) {
     if (!c.active) continue;
+    const auto N = c.shape();
     const double force = c.stiffness * (c.target - normal_velocity(c, cell_nodes, v));
-    for (int i = 0; i < power(3, D); ++i)
-      R.segment<D>(cell_nodes[c.cell][i] * D) += force * c.N[i] * c.normal;
+    for (int i = 0; i < power(3, D); ++i) R.segment<D>(cell_nodes[c.cell][i] * D) += force * N[i] * c.normal;
   }
 }
 
@@ -80,8 +92,9 @@ void add_contact_stiffness(const std::vector<ContactPoint<D>>& contact, BlockSys
   using CellMatrix = typename BlockSystem<D>::CellMatrix;
   for (const ContactPoint<D>& c : contact) {
     if (!c.active) continue;
+    const auto N = c.shape();
     Vec<power(3, D) * D> row;
-    for (int i = 0; i < power(3, D); ++i) row.template segment<D>(i * D) = c.N[i] * c.normal;
+    for (int i = 0; i < power(3, D); ++i) row.template segment<D>(i * D) = N[i] * c.normal;
     const CellMatrix K = c.stiffness * row * row.transpose();
     system.add_cell(c.cell, K);
   }

@@ -43,7 +43,7 @@ std::vector<ContactPoint<D>> find_contact(const ActiveGrid<D>& grid, const Point
       const Vec<D> s = local_coordinates<D>(grid.axes, grid.cell_index[c], points.x[p]);
       ContactPoint<D> contact_point;
       contact_point.cell = c;
-      contact_point.N = stencil<D>(grid.axes, grid.cell_index[c], s).N;
+      for (int d = 0; d < D; ++d) contact_point.one[d] = splines(grid.axes[d], grid.cell_index[c][d], s[d]).N;
       contact_point.normal = view->normal;
       // The wall already stands where it is at the end of the step: what is missing of the gap is closed by
       // then, at most a tenth of a cell a step so that a deep overlap does not shoot a point off.
@@ -64,6 +64,7 @@ std::vector<ContactPoint<D>> find_contact(const ActiveGrid<D>& grid, const Point
       contact_point.stiffness = std::max(penalty, needed) * points.mass[p] / dt;
       contact.push_back(contact_point);
     }
+  contact.shrink_to_fit();
   return contact;
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "libmpm/grid/axis.hpp"
+#include "libmpm/grid/room.hpp"
 #include "libmpm/points/points.hpp"
 #include "libmpm/space/spaces.hpp"
 
@@ -171,7 +172,9 @@ void sort_points_by_cell(ActiveGrid<D>& grid, const std::vector<Index<D>>& cell)
     cell_slot[p] = static_cast<int>(grid.cell_map.offset(cell[p]));
     ++count[static_cast<std::size_t>(cell_slot[p])];
   }
-  grid.cell_index.clear();
+  const auto active = static_cast<std::size_t>(count.size()) -
+                      static_cast<std::size_t>(std::count(count.begin(), count.end(), 0));
+  make_room(grid.cell_index, active), grid.cell_index.clear();
   grid.cell_begin.assign(1, 0);
   for_each_index(grid.cell_map, [&](const Index<D>& i, std::size_t o) {
     if (count[o] == 0) return;
@@ -180,7 +183,7 @@ void sort_points_by_cell(ActiveGrid<D>& grid, const std::vector<Index<D>>& cell)
     grid.cell_begin.push_back(grid.cell_begin.back() + count[o]);
   });
   std::vector<int> next(grid.cell_begin.begin(), grid.cell_begin.end() - 1);
-  grid.order.resize(cell.size());
+  make_room(grid.order, cell.size());
   for (std::size_t p = 0; p < cell.size(); ++p) {
     const int c = slot[static_cast<std::size_t>(cell_slot[p])];
     grid.order[static_cast<std::size_t>(next[static_cast<std::size_t>(c)]++)] = static_cast<int>(p);
@@ -206,13 +209,15 @@ void number_nodes(ActiveGrid<D>& grid) {
   for (const Index<D>& cell : grid.cell_index)
     for (int k = 0; k < ActiveGrid<D>::n_local; ++k)
       grid.node_map.value[grid.node_map.offset(control(cell, k))] = 0;
+  const auto& map = grid.node_map.value;
+  make_room(grid.node_index, static_cast<std::size_t>(std::count(map.begin(), map.end(), 0)));
   grid.node_index.clear();
   for_each_index(grid.node_map, [&](const Index<D>& j, std::size_t o) {
     if (grid.node_map.value[o] < 0) return;
     grid.node_map.value[o] = grid.n_nodes();
     grid.node_index.push_back(j);
   });
-  grid.cell_nodes.resize(grid.cell_index.size());
+  make_room(grid.cell_nodes, grid.cell_index.size());
   for (std::size_t c = 0; c < grid.cell_index.size(); ++c)
     for (int k = 0; k < ActiveGrid<D>::n_local; ++k)
       grid.cell_nodes[c][k] = grid.node_map.value[grid.node_map.offset(control(grid.cell_index[c], k))];

@@ -1,10 +1,11 @@
 #include "libmpm/io/vtp.hpp"
 
-#include <algorithm>
+#include <array>
 #include <bit>
+#include <cerrno>
 #include <cstdint>
-#include <cstring>
-#include <numeric>
+#include <fstream>
+#include <functional>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
@@ -16,67 +17,114 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the header says LittleEndian");
 
-/// Appends `bytes` in base64.
-void append_base64(std::string_view bytes, std::string& text) {
-  constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t n = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t group = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      group = group << 8 | (k < n ? static_cast<std::uint8_t>(bytes[i + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k) text += k <= n ? digits[group >> (18 - 6 * k) & 63u] : '=';
-  }
-}
-
-/// The appended block: each array is its length in bytes (64 bit) and its bytes, in base64, which leaves the
-/// file well-formed XML.
-class Appended {
+/// Base64 of bytes that come in parts, straight into a stream.
+class Base64 {
  public:
-  /// Adds an array and returns its offset for the header.
-  template <class T>
-  std::size_t add(const std::vector<T>& values) {
-    const std::size_t offset = text_.size();
-    const std::uint64_t length = values.size() * sizeof(T);
-    std::string bytes(reinterpret_cast<const char*>(&length), sizeof length);
-    bytes.append(reinterpret_cast<const char*>(values.data()), length);
-    append_base64(bytes, text_);
-    return offset;
+  explicit Base64(std::ostream& out) : out_(out) {}
+  void add(const void* data, std::size_t size) {
+    const auto* bytes = static_cast<const std::uint8_t*>(data);
+    for (std::size_t i = 0; i < size; ++i) {
+      held_[n_++] = bytes[i];
+      if (n_ == 3) put();
+    }
   }
-  const std::string& text() const { return text_; }
+  /// Ends the text.
+  void finish() {
+    if (n_ > 0) put();
+    flush();
+  }
 
  private:
-  std::string text_;
+  void put() {
+    constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (k < n_ ? held_[k] : 0u);
+    for (std::size_t k = 0; k < 4; ++k) text_[size_++] = k <= n_ ? digits[group >> (18 - 6 * k) & 63u] : '=';
+    n_ = 0;
+    if (size_ == text_.size()) flush();
+  }
+  void flush() {
+    out_.write(text_.data(), static_cast<std::streamsize>(size_));
+    size_ = 0;
+  }
+
+  std::ostream& out_;
+  std::array<std::uint8_t, 3> held_{};
+  std::array<char, 4096> text_;
+  std::size_t n_ = 0, size_ = 0;
 };
 
-std::vector<float> as_float(std::span<const double> values) {
-  std::vector<float> result(values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) result[i] = static_cast<float>(values[i]);
-  return result;
+/// An array of the appended block: its length in bytes (64 bit) and its bytes, in base64, which leaves the
+/// file well-formed XML.
+struct Array {
+  std::size_t values, bytes_of_one;
+  std::function<void(Base64&, std::size_t)> add;  ///< one value
+
+  std::uint64_t bytes() const { return values * bytes_of_one; }
+  std::size_t characters() const { return (sizeof(std::uint64_t) + bytes() + 2) / 3 * 4; }
+  void write(std::ostream& out) const {
+    Base64 text(out);
+    const std::uint64_t length = bytes();
+    text.add(&length, sizeof length);
+    for (std::size_t i = 0; i < values; ++i) add(text, i);
+    text.finish();
+  }
+};
+
+template <class T, class Value>
+Array array_of(std::size_t n, Value value) {
+  return {n, sizeof(T), [value](Base64& text, std::size_t i) {
+            const T one = value(i);
+            text.add(&one, sizeof one);
+          }};
+}
+Array as_float(std::span<const double> values) {
+  return array_of<float>(values.size(), [values](std::size_t i) { return static_cast<float>(values[i]); });
 }
 
-void data_array(std::ostringstream& xml, const char* type, const std::string& name, int components,
-                std::size_t offset) {
-  xml << "<DataArray type=\"" << type << "\" Name=\"" << name << "\" NumberOfComponents=\"" << components
-      << "\" format=\"appended\" offset=\"" << offset << "\"/>\n";
-}
+/// The file's head and, after it, its arrays one by one: none of them is held as text.
+class Poly {
+ public:
+  std::ostringstream xml;
+
+  void array(const char* type, const std::string& name, int components, Array values) {
+    xml << "<DataArray type=\"" << type << "\" Name=\"" << name << "\" NumberOfComponents=\"" << components
+        << "\" format=\"appended\" offset=\"" << offset_ << "\"/>\n";
+    offset_ += values.characters();
+    arrays_.push_back(std::move(values));
+  }
+  void write(const std::filesystem::path& file) const {
+    errno = 0;
+    std::ofstream stream(file, std::ios::binary);
+    stream << xml.view() << '_';
+    for (const Array& values : arrays_) values.write(stream);
+    stream << "\n</AppendedData>\n</VTKFile>\n";
+    stream.close();
+    if (!stream) fail_to_write(file);
+  }
+
+ private:
+  std::vector<Array> arrays_;
+  std::size_t offset_ = 0;
+};
 
 /// One vertex cell a point: without cells ParaView shows nothing.
-void vertices(std::ostringstream& xml, Appended& appended, std::size_t n) {
-  std::vector<std::int64_t> connectivity(n), offsets(n);
-  std::iota(connectivity.begin(), connectivity.end(), std::int64_t{0});
-  std::iota(offsets.begin(), offsets.end(), std::int64_t{1});
-  xml << "<Verts>\n";
-  data_array(xml, "Int64", "connectivity", 1, appended.add(connectivity));
-  data_array(xml, "Int64", "offsets", 1, appended.add(offsets));
-  xml << "</Verts>\n";
+void vertices(Poly& poly, std::size_t n) {
+  using Number = std::int64_t;
+  const auto number = [](std::size_t i) { return static_cast<Number>(i); };
+  poly.xml << "<Verts>\n";
+  poly.array("Int64", "connectivity", 1, array_of<Number>(n, number));
+  poly.array("Int64", "offsets", 1,
+             array_of<Number>(n, [](std::size_t i) { return static_cast<Number>(i + 1); }));
+  poly.xml << "</Verts>\n";
 }
 
 }  // namespace
 
 void write_vtp(const std::filesystem::path& file, double time, std::span<const std::array<double, 3>> points,
                std::span<const PointField> fields) {
-  Appended appended;
-  std::ostringstream xml;
+  Poly poly;
+  std::ostringstream& xml = poly.xml;
   xml.precision(17);
   xml << "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
          "header_type=\"UInt64\">\n<PolyData>\n<FieldData>\n"
@@ -86,17 +134,17 @@ void write_vtp(const std::filesystem::path& file, double time, std::span<const s
       << "\">\n<Points>\n";
   const std::span<const double> coordinates(points.empty() ? nullptr : points.front().data(),
                                             3 * points.size());
-  data_array(xml, "Float32", "Points", 3, appended.add(as_float(coordinates)));
+  poly.array("Float32", "Points", 3, as_float(coordinates));
   xml << "</Points>\n";
-  vertices(xml, appended, points.size());
+  vertices(poly, points.size());
   xml << "<PointData>\n";
   for (const PointField& field : fields) {
     if (field.values.size() != points.size() * static_cast<std::size_t>(field.components))
       throw std::invalid_argument("write_vtp: field " + field.name + " does not fit the points");
-    data_array(xml, "Float32", field.name, field.components, appended.add(as_float(field.values)));
+    poly.array("Float32", field.name, field.components, as_float(field.values));
   }
-  xml << "</PointData>\n</Piece>\n</PolyData>\n<AppendedData encoding=\"base64\">\n_";
-  write_text(file, xml.str() + appended.text() + "\n</AppendedData>\n</VTKFile>\n");
+  xml << "</PointData>\n</Piece>\n</PolyData>\n<AppendedData encoding=\"base64\">\n";
+  poly.write(file);
 }
 
 void write_pvd(const std::filesystem::path& file, std::span<const std::pair<double, std::string>> frames) {

@@ -86,10 +86,7 @@ void write_back(LanePoints<D>& lanes, const std::array<Axis, D>& axes, Points<D>
 /// Takes over the points, eight by eight as they come: to be sorted. Theirs give up the room to grow.
 template <int D>
 void take_points(Points<D>& points, bool affine, LanePoints<D>& lanes) {
-  points.x.shrink_to_fit(), points.v.shrink_to_fit(), points.C.shrink_to_fit();
-  for (std::vector<double>* array :
-       {&points.mass, &points.V0, &points.ln_J, &points.lambda, &points.gamma_dot})
-    array->shrink_to_fit();
+  shrink(points);
   const std::size_t groups = (points.size() + octet_size - 1) / octet_size;
   lanes.id.assign(groups, {});
   const auto copy = [&](std::vector<Octet>& to, auto member) {

@@ -32,6 +32,15 @@ std::int64_t bytes_per_point(bool thixotropic) {
   return static_cast<std::int64_t>(doubles * sizeof(double));
 }
 
+/// Gives back the room to grow.
+template <int D>
+void shrink(Points<D>& points) {
+  points.x.shrink_to_fit(), points.v.shrink_to_fit(), points.C.shrink_to_fit();
+  for (std::vector<double>* array :
+       {&points.mass, &points.V0, &points.ln_J, &points.lambda, &points.gamma_dot})
+    array->shrink_to_fit();
+}
+
 /// Adds a point at rest.
 template <int D>
 void add_point(Points<D>& points, const Vec<D>& x, double mass, double V0, double ln_J) {

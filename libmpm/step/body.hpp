@@ -51,8 +51,6 @@ struct WallVelocities {
   }
 };
 
-struct Nothing {};
-
 /// A body of one mix on its grid: everything that a step reads and writes.
 template <class Space>
 struct Body {

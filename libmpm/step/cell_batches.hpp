@@ -6,13 +6,16 @@
 // direction at a time: about 1,000 operations for the nine gradient components at eight places where the rows
 // of the strain matrix would cost 3,200. Cells are taken sixteen at a time, one a vector lane, in double
 // precision or, for the products of a linear solve, in single. What a cell gives its nodes is stored, and
-// each node adds up its cells in their order: the bits do not depend on the threads.
+// each node adds up its cells in their order: the bits do not depend on the threads. In a large body that
+// room is a ring: some batches at a time store theirs, and the nodes whose last cell was among them add up.
 
 #include <Eigen/LU>
 #include <array>
+#include <cstddef>
 #include <vector>
 
 #include "libmpm/grid/active_grid.hpp"
+#include "libmpm/grid/room.hpp"
 #include "libmpm/step/cell_lanes.hpp"
 
 namespace tremie {
@@ -24,9 +27,26 @@ struct PlaceTensors {
   Lanes<Scalar> g[3][3][8];
 };
 
-/// What each cell gives each of its nodes, node_stride numbers for each 27 cell + local node.
-template <class Scalar>
-using CellForces = std::vector<Scalar>;
+/// Room for what cells give their nodes, in either precision: they are not needed at the same time.
+class CellForces {
+ public:
+  void make_room(std::size_t vectors) {
+    tremie::make_room(room_, vectors * sizeof(NodeValue<double>));
+    static_assert(sizeof(NodeValue<float>) <= sizeof(NodeValue<double>));
+  }
+  void give_back() { tremie::give_back(room_); }
+  template <class Scalar>
+  Scalar* values() {
+    return reinterpret_cast<Scalar*>(room_.data());  // bytes in which numbers come to be when written
+  }
+  template <class Scalar>
+  const Scalar* values() const {
+    return reinterpret_cast<const Scalar*>(room_.data());
+  }
+
+ private:
+  std::vector<std::byte> room_;
+};
 
 class CellBatches {
  public:
@@ -35,31 +55,43 @@ class CellBatches {
 
   int n_cells() const { return n_cells_; }
   int n_nodes() const { return n_nodes_; }
-  int n_batches() const { return static_cast<int>(nodes_.size()); }
-  /// Room for scatter(): whole batches.
-  template <class Scalar>
-  void make_room(CellForces<Scalar>& forces) const {
-    forces.resize(nodes_.size() * batch_size * 27 * node_stride<Scalar>);
-  }
+  int n_batches() const { return static_cast<int>(ends_.size()); }
+  /// Room for scatter().
+  void make_room(CellForces& forces) const { forces.make_room(static_cast<std::size_t>(ring_) * of_cell); }
 
   /// Gradients of the nodal vector field v in a batch.
   template <class Scalar>
   void gradients(int batch, const Scalar* v, PlaceTensors<Scalar>& out) const;
   /// Gives each node of the batch's cells sum_k T_k grad N.
   template <class Scalar>
-  void scatter(int batch, const PlaceTensors<Scalar>& T, CellForces<Scalar>& forces) const;
+  void scatter(int batch, const PlaceTensors<Scalar>& T, CellForces& forces) const;
   /// Sum at node i of what its cells were given.
   template <class Scalar>
-  NodeValue<Scalar> gathered(int i, const CellForces<Scalar>& forces) const {
+  NodeValue<Scalar> gathered(int i, const CellForces& forces) const {
+    const Scalar* from = forces.values<Scalar>();
+    const int mask = ring_ * of_cell - 1;
     NodeValue<Scalar> sum = NodeValue<Scalar>::Zero();
-    for (int e = node_begin_[i]; e < node_begin_[i + 1]; ++e)
-      sum += Eigen::Map<const NodeValue<Scalar>>(
-          &forces[node_stride<Scalar> * static_cast<std::size_t>(node_entry_[e])]);
+    for (const int *e = entries_begin(i), *end = entries_end(i); e != end; ++e)
+      sum += Eigen::Map<const NodeValue<Scalar>>(from + node_stride<Scalar> *
+                                                            static_cast<std::ptrdiff_t>(*e & mask));
     return sum;
   }
-  /// Cells of node i in their order, as 27 cell + local node.
+  /// Calls give(batch) for every batch, which scatters, and take(node) for every node when all of its cells
+  /// have. To be called by all threads of a parallel region.
+  template <class Give, class Take>
+  void sweep_in_region(Give give, Take take) const {
+    for (const Chunk& chunk : chunks_) {
+#pragma omp for schedule(static)
+      for (int b = chunk.first_batch; b < chunk.last_batch; ++b) give(b);
+#pragma omp for schedule(static)
+      for (int i = chunk.first_node; i < chunk.last_node; ++i) take(complete_[static_cast<std::size_t>(i)]);
+    }
+  }
+  /// Cells of node i in their order: cell_of() and local_of() tell what an entry means.
   const int* entries_begin(int i) const { return &node_entry_[node_begin_[i]]; }
   const int* entries_end(int i) const { return node_entry_.data() + node_begin_[i + 1]; }
+  static int cell_of(int entry) { return entry / of_cell; }
+  static int local_of(int entry) { return entry % of_cell; }
 
  private:
   // The three splines of a direction as seen from the middle control u1: with a = f (u0 - u1), c = g (u2 -
@@ -67,7 +99,18 @@ class CellBatches {
   // t = 1 - s.
   static constexpr double near_ = 0.78867513459481288, far_ = 1.0 - near_;
 
-  using Nodes = std::array<std::array<int, batch_size>, 27>;
+  static constexpr int of_cell = 32;         ///< entries of a cell, of which 27 are used: a power of two
+  static constexpr int chunk_batches = 128;  ///< what their cells give stays in the second cache
+  /// Batches that go together, and the nodes complete_[first_node .. last_node) whose last cells they have.
+  struct Chunk {
+    int first_batch, last_batch, first_node, last_node;
+  };
+  void plan_sweep();
+
+  /// Local nodes 3 j, 3 j + 1, 3 j + 2 of a cell follow each other in number too, unless the last axis is
+  /// periodic: of nine lines the first nodes are kept, else all 27.
+  using Nodes = std::array<int, batch_size>;
+  int kept_nodes() const { return lines_ ? 9 : 27; }
   struct Ends {
     Lanes<float> low[3], high[3];
   };
@@ -88,9 +131,13 @@ class CellBatches {
 
   int n_cells_ = 0, n_nodes_ = 0;
   double inverse_h_[3] = {1.0, 1.0, 1.0};
-  std::vector<Nodes> nodes_;
+  bool lines_ = true;
+  std::vector<Nodes> nodes_;  ///< kept_nodes() of each batch
   std::vector<Ends> ends_;
   std::vector<int> node_begin_, node_entry_;
+  std::vector<Chunk> chunks_;
+  std::vector<int> complete_;  ///< nodes in the order in which they are complete
+  int ring_ = batch_size;      ///< cells that the room for forces holds, a power of two
 };
 
 inline void CellBatches::lay_out(const ActiveGrid<3>& grid) {
@@ -98,14 +145,16 @@ inline void CellBatches::lay_out(const ActiveGrid<3>& grid) {
   n_nodes_ = grid.n_nodes();
   for (int d = 0; d < 3; ++d) inverse_h_[d] = 1.0 / grid.axes[d].h;
   const int n = (n_cells_ + batch_size - 1) / batch_size;
-  nodes_.resize(n);
-  ends_.resize(n);
+  lines_ = !grid.axes[2].periodic;
+  const int kept = kept_nodes(), step = 27 / kept;
+  tremie::make_room(nodes_, static_cast<std::size_t>(n) * kept);
+  tremie::make_room(ends_, static_cast<std::size_t>(n));
 #pragma omp parallel for schedule(static)
   for (int b = 0; b < n; ++b)
     for (int l = 0; l < batch_size; ++l) {
       const int c =
           std::min(b * batch_size + l, n_cells_ - 1);  // lanes beyond the last cell repeat it, unheard
-      for (int k = 0; k < 27; ++k) nodes_[b][k][l] = grid.cell_nodes[c][k];
+      for (int j = 0; j < kept; ++j) nodes_[b * kept + j][l] = grid.cell_nodes[c][step * j];
       for (int d = 0; d < 3; ++d) {
         const Axis& a = grid.axes[d];
         const int i = grid.cell_index[c][d];
@@ -117,10 +166,38 @@ inline void CellBatches::lay_out(const ActiveGrid<3>& grid) {
   for (const auto& nodes : grid.cell_nodes)
     for (int i : nodes) ++node_begin_[i + 1];
   for (int i = 0; i < n_nodes_; ++i) node_begin_[i + 1] += node_begin_[i];
-  node_entry_.resize(static_cast<std::size_t>(n_cells_) * 27);
+  tremie::make_room(node_entry_, static_cast<std::size_t>(n_cells_) * 27);
   std::vector<int> next(node_begin_.begin(), node_begin_.end() - 1);
   for (int c = 0; c < n_cells_; ++c)
-    for (int k = 0; k < 27; ++k) node_entry_[next[grid.cell_nodes[c][k]]++] = c * 27 + k;
+    for (int k = 0; k < 27; ++k) node_entry_[next[grid.cell_nodes[c][k]]++] = c * of_cell + k;
+  plan_sweep();
+}
+
+/// Chunks of batches, and a ring of cells that holds all cells of every node until its last one has given.
+inline void CellBatches::plan_sweep() {
+  const int chunk_cells = chunk_batches * batch_size;
+  const int n = std::max(1, (n_cells_ + chunk_cells - 1) / chunk_cells);
+  const auto first_cell = [&](int i) { return cell_of(*entries_begin(i)); };
+  const auto chunk_of = [&](int i) { return cell_of(entries_end(i)[-1]) / chunk_cells; };
+  std::vector<int> begin(static_cast<std::size_t>(n) + 1, 0);
+  int needed = 0;
+  for (int i = 0; i < n_nodes_; ++i) {
+    const int chunk = chunk_of(i);
+    ++begin[static_cast<std::size_t>(chunk) + 1];
+    needed = std::max(needed, (chunk + 1) * chunk_cells - first_cell(i));
+  }
+  needed = std::min(needed, n_batches() * batch_size);
+  for (ring_ = batch_size; ring_ < needed;) ring_ *= 2;
+  chunks_.clear();
+  for (int k = 0; k < n; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    begin[at + 1] += begin[at];
+    chunks_.push_back(
+        {k * chunk_batches, std::min((k + 1) * chunk_batches, n_batches()), begin[at], begin[at + 1]});
+  }
+  tremie::make_room(complete_, static_cast<std::size_t>(n_nodes_));
+  for (int i = 0; i < n_nodes_; ++i)
+    complete_[static_cast<std::size_t>(begin[static_cast<std::size_t>(chunk_of(i))]++)] = i;
 }
 
 template <class Scalar>
@@ -128,11 +205,14 @@ void CellBatches::gradients(int batch, const Scalar* v, PlaceTensors<Scalar>& ou
   constexpr auto near = static_cast<Scalar>(near_), far = static_cast<Scalar>(far_);
   constexpr auto near2 = static_cast<Scalar>(0.5 * near_ * near_),
                  far2 = static_cast<Scalar>(0.5 * far_ * far_);
-  const Nodes& nodes = nodes_[batch];
   const Factors<Scalar> ends = factors<Scalar>(batch);
   const auto& inverse_h = ends.inverse_h;
   Lanes<Scalar> u[3][27];
-  for (int k = 0; k < 27; ++k) load_nodes(v, nodes[k].data(), u[0][k], u[1][k], u[2][k]);
+  const Nodes* nodes = &nodes_[static_cast<std::size_t>(batch * kept_nodes())];
+  for (int k = 0; k < 27; ++k) {
+    const int* first = nodes[lines_ ? k / 3 : k].data();
+    load_nodes(v + (lines_ ? node_stride<Scalar> * (k % 3) : 0), first, u[0][k], u[1][k], u[2][k]);
+  }
   for (int d = 0; d < 3; ++d) {
     Lanes<Scalar> X[2][9], dX[2][9];
     for (int j = 0; j < 9; ++j) {
@@ -175,7 +255,7 @@ void CellBatches::gradients(int batch, const Scalar* v, PlaceTensors<Scalar>& ou
 }
 
 template <class Scalar>
-void CellBatches::scatter(int batch, const PlaceTensors<Scalar>& T, CellForces<Scalar>& forces) const {
+void CellBatches::scatter(int batch, const PlaceTensors<Scalar>& T, CellForces& forces) const {
   constexpr auto near = static_cast<Scalar>(near_), far = static_cast<Scalar>(far_);
   constexpr auto near2 = static_cast<Scalar>(0.5 * near_ * near_),
                  far2 = static_cast<Scalar>(0.5 * far_ * far_);
@@ -224,8 +304,9 @@ void CellBatches::scatter(int batch, const PlaceTensors<Scalar>& T, CellForces<S
     }
   }
   constexpr int stride = node_stride<Scalar>;
-  Scalar* out = &forces[static_cast<std::size_t>(batch) * batch_size * 27 * stride];
-  for (int k = 0; k < 27; ++k) store_lanes(u[0][k], u[1][k], u[2][k], out + stride * k, 27);
+  const int first = batch * batch_size & (ring_ - 1);
+  Scalar* out = forces.values<Scalar>() + static_cast<std::ptrdiff_t>(first) * of_cell * stride;
+  for (int k = 0; k < 27; ++k) store_lanes(u[0][k], u[1][k], u[2][k], out + stride * k, of_cell);
 }
 
 }  // namespace tremie

@@ -18,12 +18,15 @@ template <class Space, class Law>
 StepReport implicit_step(Body<Space>& body, const Law& law, const StepSettings& settings,
                          const RigidWall<Space::dim>& wall = {}) {
   constexpr int D = Space::dim;
-  const IndexMap<D> old_cells = body.grid.cell_map, old_nodes = body.grid.node_map;
+  IndexMap<D> old_cells = std::move(body.grid.cell_map), old_nodes;
+  if (!body.friction.empty()) old_nodes = std::move(body.grid.node_map);
 
   // Points to grid.
   activate(body.grid, body.points);
   point_to_grid(body.grid, body.points, body.nodes);
-  detail::carry_duals<Space>(old_cells, body.grid, body.duals);
+  if constexpr (D == 3) give_back(body.points.C);  // the grid has it now, and gives another one back
+  detail::carry_duals(old_cells, law, settings, body);
+  old_cells = {};
   lay_out_quadrature<Space>(body.grid, body.points, body.mix.tau_0, body.mix.K, body.quadrature,
                             settings.fitted_places);
   body.v = body.nodes.v;
@@ -31,27 +34,34 @@ StepReport implicit_step(Body<Space>& body, const Law& law, const StepSettings& 
   // The step's convex problem and its solution, the velocities at the end of the step. One that does not
   // converge is tried again over half the time; so is a long one in which something starts to fall.
   const std::vector<Vec<D>> v_old = body.nodes.v;
-  const Duals<Space> guess = body.duals;
+  const int attempts = settings.fixed_dt ? 1 : most_attempts;
+  std::optional<Duals<Space>> guess;
+  if (attempts > 1) guess = body.duals;
   std::optional<YieldProblem<Space>> posed;
   SolveReport solve;
   double dt = detail::choose_dt(body, settings);
   bool good = false;
-  for (int attempt = 0; attempt < (settings.fixed_dt ? 1 : most_attempts) && !good; ++attempt) {
-    if (attempt > 0) dt *= 0.5, body.duals = guess;
+  for (int attempt = 0; attempt < attempts && !good; ++attempt) {
+    if (attempt > 0) dt *= 0.5, body.duals = *guess;
     detail::pose(body, settings, wall, v_old, old_nodes, dt, posed);
     solve = detail::solve_step(*posed, law, settings, body);
     const bool falls =
         !settings.fixed_dt && dt > settings.dt_max && detail::starts_to_fall(body, settings, dt);
     good = solve.converged && !falls;
   }
+  guess.reset();
   const YieldProblem<Space>& problem = *posed;
   if (detail::runs_away(body, settings.strays, dt)) {
     body.v = v_old;
+    if constexpr (D == 3) affine_from_grid<D>(body.grid, v_old, body.points);
     return {.dt = dt, .converged = false, .failed = true, .iterations = solve.iterations};
   }
   body.friction = problem.friction;
   body.bound = problem.bound;
-  if (settings.keep_forces) detail::keep_forces(problem, body);
+  if (settings.keep_forces) detail::keep_forces(problem, law, body);
+
+  give_back(posed->contact);
+  if constexpr (D == 3) body.space_system.forces.give_back();
 
   // Grid to points: state first, where the points were, then the move.
   if (body.points.thixotropic()) detail::update_flocculation(body, dt, body.points);
@@ -59,9 +69,10 @@ StepReport implicit_step(Body<Space>& body, const Law& law, const StepSettings& 
   std::vector<double> gamma_dot;
   const double shear_rate_mean = detail::shear_rates(problem, settings, body, gamma_dot);
   const bool even = Space::advects && settings.even_out.on, measured = settings.time_error > 0.0;
-  const std::vector<Vec<D>> v_before = measured ? body.points.v : std::vector<Vec<D>>{};
   const std::vector<Vec<D>> u =
       even ? detail::evening_shift(problem, settings, gamma_dot, body) : std::vector<Vec<D>>{};
+  if constexpr (D == 3) body.space_system.preconditioner.give_back();
+  const std::vector<Vec<D>> v_before = measured ? body.points.v : std::vector<Vec<D>>{};
   grid_to_point(body.grid, body.v, v_old, settings.transfer, Space::advects ? dt : 0.0, body.points,
                 body.motion);
   if (settings.strays > 0.0) hold_strays<D>(body.grid.axes, dt, body.points);

@@ -84,8 +84,9 @@ inline void PressureEntries::find_columns(const std::vector<Index<3>>& at) {
     column_at_[across(column.across)] = static_cast<int>(k);
     size += static_cast<std::size_t>(kept * column.size());
   }
-  entries_.assign(size + slack, 0.0f);
-  place_.resize(at.size()), column_.resize(at.size()), first_.resize(at.size());
+  make_room(entries_, size + slack);
+  std::fill(entries_.begin(), entries_.end(), 0.0f);
+  make_room(place_, at.size()), make_room(column_, at.size()), make_room(first_, at.size());
   for (int c = 0; c < n; ++c) {
     column_[c] = column_at_[across({at[c][0], at[c][1]})];
     const Column& column = columns_[column_[c]];

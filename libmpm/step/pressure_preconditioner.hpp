@@ -25,16 +25,20 @@ namespace tremie {
 
 class PressurePreconditioner {
  public:
-  using Rows = std::vector<std::array<Vec<3>, 27>>;
-
-  /// `b`: rows of each cell's mean divergence [1/m]; `G_inverse`: node blocks, zero where a wall prescribes;
-  /// `stiffness`: C [J s], a cell with 0 is left out; `ratio`: of the largest C to the stiffness of D in a
-  /// cell. False where S is not positive definite.
-  bool build(const ActiveGrid<3>& grid, const CellBatches& batches, const Rows& b,
+  /// `G_inverse`: node blocks, zero where a wall prescribes; `stiffness`: C [J s], a cell with 0 is left out;
+  /// `ratio`: of the largest C to the stiffness of D in a cell. False where S is not positive definite.
+  bool build(const ActiveGrid<3>& grid, const CellBatches& batches, const Quadrature<ThreeD>& quadrature,
              const std::vector<Mat<3, 3>>& G_inverse, const std::vector<double>& stiffness, double ratio);
   /// Decides whether S is to be factorised: up to so many operations. Before build().
   void lay_out(const ActiveGrid<3>& grid, double most_band_operations);
   bool factorised() const { return by_band_; }
+  /// Gives back the room of a large body until the next build().
+  void give_back() {
+    if (by_band_) return;
+    rows_ = {};
+    iteration_ = {};
+  }
+  const PressureRows& rows() const { return rows_; }
   /// z = P^-1 r, four numbers a node.
   void apply(const CellBatches& batches, const ActiveGrid<3>& grid, const Eigen::VectorXf& r,
              Eigen::VectorXf& z);
@@ -114,17 +118,18 @@ void PressurePreconditioner::fill_by_boxes(const ActiveGrid<3>& grid, Add add) c
     add(c, c, rows_.softness[c]);
     if (rows_.left_out[c]) continue;
     std::array<Eigen::Vector4f, 27> w;
-    for (int k = 0; k < 27; ++k)
-      w[k] = PressureRows::times(rows_.G_inverse[grid.cell_nodes[c][k]], rows_.row[27 * c + k]);
+    for (std::size_t k = 0; k < 27; ++k)
+      w[k] = PressureRows::times(rows_.G_inverse[grid.cell_nodes[c][k]], rows_.of_cell(c)[k]);
     for_each_neighbour(grid, c, [&](int other, const Index<3>& offset) {
       Index<3> low, high;
       for (int d = 0; d < 3; ++d) low[d] = std::max(0, offset[d]), high[d] = std::min(2, 2 + offset[d]);
-      const int shift = 27 * other - 9 * offset[0] - 3 * offset[1] - offset[2];
+      const auto& theirs = rows_.of_cell(other);
+      const int shift = -9 * offset[0] - 3 * offset[1] - offset[2];
       Eigen::Vector4f sum = Eigen::Vector4f::Zero();
       for (int i = low[0]; i <= high[0]; ++i)
         for (int j = low[1]; j <= high[1]; ++j)
           for (int k = 9 * i + 3 * j + low[2]; k <= 9 * i + 3 * j + high[2]; ++k)
-            sum += w[k].cwiseProduct(rows_.row[shift + k]);
+            sum += w[k].cwiseProduct(theirs[shift + k]);
       add(c, other, sum.sum());
       return other != c;  // those behind are entered by themselves
     });
@@ -140,9 +145,10 @@ void PressurePreconditioner::fill_by_nodes(const ActiveGrid<3>& grid, const Cell
     add(c, c, rows_.softness[c]);
     for (int k = 0; k < 27 && !rows_.left_out[c]; ++k) {
       const int i = grid.cell_nodes[c][k];
-      const Eigen::Vector4f w = PressureRows::times(rows_.G_inverse[i], rows_.row[27 * c + k]);
+      const Eigen::Vector4f w = PressureRows::times(rows_.G_inverse[i], rows_.of_cell(c)[k]);
       for (const int* e = batches.entries_begin(i); e != batches.entries_end(i); ++e)
-        if (const int other = *e / 27; number_[other] <= number_[c]) add(c, other, w.dot(rows_.row[*e]));
+        if (const int other = CellBatches::cell_of(*e); number_[other] <= number_[c])
+          add(c, other, w.dot(rows_.of_entry(*e)));
     }
   }
 }
@@ -167,11 +173,12 @@ inline void PressurePreconditioner::lay_out(const ActiveGrid<3>& grid, double mo
 }
 
 inline bool PressurePreconditioner::build(const ActiveGrid<3>& grid, const CellBatches& batches,
-                                          const Rows& b, const std::vector<Mat<3, 3>>& G_inverse,
+                                          const Quadrature<ThreeD>& quadrature,
+                                          const std::vector<Mat<3, 3>>& G_inverse,
                                           const std::vector<double>& stiffness, double ratio) {
   // What S^-1 misses, C makes ratio times as large.
   reduction_ = std::clamp(0.3 / ratio, 5e-4, 1e-2);
-  rows_.build(grid, batches, b, G_inverse, stiffness);
+  rows_.build(grid, batches, quadrature, G_inverse, stiffness, by_band_);
   if (!by_band_) {
     auto& S = iteration_.entries;
     S.reset(grid);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libmpm/step/cell_batches.hpp"
+#include "libmpm/step/quadrature.hpp"
 
 namespace tremie {
 
@@ -18,88 +19,132 @@ class PressureRows {
     return G[0] * r[0] + G[1] * r[1] + G[2] * r[2];
   }
 
-  /// `b`: rows of each cell's mean divergence [1/m]; `G_inverse`: node blocks, zero where a wall prescribes;
-  /// `stiffness`: C [J s], a cell with 0 is left out.
-  void build(const ActiveGrid<3>& grid, const CellBatches& batches,
-             const std::vector<std::array<Vec<3>, 27>>& b, const std::vector<Mat<3, 3>>& inverse_blocks,
-             const std::vector<double>& stiffness);
+  /// `inverse_blocks`: of the nodes, zero where a wall prescribes; `stiffness`: C [J s], a cell with 0 is
+  /// left out; `by_node`: keeps the rows in the nodes' order as well, which is faster in a small body.
+  void build(const ActiveGrid<3>& grid, const CellBatches& batches, const Quadrature<ThreeD>& quadrature,
+             const std::vector<Mat<3, 3>>& inverse_blocks, const std::vector<double>& stiffness,
+             bool by_node);
 
   /// Divergence of the field y in cell c, four numbers a node.
   float divergence(const ActiveGrid<3>& grid, int c, const Eigen::VectorXf& y) const {
     const auto& nodes = grid.cell_nodes[c];
+    const CellRows& row = of_cell(c);
     Eigen::Vector4f even = Eigen::Vector4f::Zero(), odd = even;
-    for (int k = 0; k < 26; k += 2) {
-      even += row[27 * c + k].cwiseProduct(y.segment<4>(4 * nodes[k]));
-      odd += row[27 * c + k + 1].cwiseProduct(y.segment<4>(4 * nodes[k + 1]));
+    for (std::size_t k = 0; k < 26; k += 2) {
+      even += row[k].cwiseProduct(y.segment<4>(4 * nodes[k]));
+      odd += row[k + 1].cwiseProduct(y.segment<4>(4 * nodes[k + 1]));
     }
-    even += row[27 * c + 26].cwiseProduct(y.segment<4>(4 * nodes[26]));
+    even += row[26].cwiseProduct(y.segment<4>(4 * nodes[26]));
     return (even + odd).sum();
   }
   /// What the cells' pressures p push node i with.
   Eigen::Vector4f push(const CellBatches& batches, int i, const Eigen::VectorXf& p) const {
-    Eigen::Vector4f sum = Eigen::Vector4f::Zero(), other = sum;
     const int *e = batches.entries_begin(i), *end = batches.entries_end(i);
-    const Eigen::Vector4f* of_node = &row_of_node[e - batches.entries_begin(0)];
-    for (; e + 1 < end; e += 2, of_node += 2)
-      sum += p[e[0] / 27] * of_node[0], other += p[e[1] / 27] * of_node[1];
-    if (e != end) sum += p[*e / 27] * *of_node;
-    return sum + other;
+    if (by_node_.empty()) return add_up(e, end, p, [&](const int* at) { return of_entry(*at); });
+    const Eigen::Vector4f* of_node = &by_node_[static_cast<std::size_t>(e - batches.entries_begin(0))];
+    return add_up(e, end, p, [&](const int* at) { return of_node[at - e]; });
+  }
+  /// The rows of a cell, one a local node; zero in cells left out.
+  using CellRows = std::array<Eigen::Vector4f, 27>;
+  const CellRows& of_cell(int c) const { return rows_[place_of(c)]; }
+  /// Full cells of a kind have the same rows: how many different ones there are, and which are a cell's.
+  std::size_t n_rows() const { return rows_.size(); }
+  std::size_t place_of(int c) const {
+    return static_cast<std::size_t>(rows_of_[static_cast<std::size_t>(c)]);
+  }
+  const Eigen::Vector4f& of_entry(int e) const {
+    return of_cell(CellBatches::cell_of(e))[static_cast<std::size_t>(CellBatches::local_of(e))];
   }
 
   std::vector<Block> G_inverse;
-  std::vector<Eigen::Vector4f> row;          ///< [27 cell + local node], zero in cells left out
-  std::vector<Eigen::Vector4f> row_of_node;  ///< the same, node by node, its cells in their order
-  Eigen::VectorXf softness;                  ///< C^-1; 1 in cells left out
+  Eigen::VectorXf softness;  ///< C^-1; 1 in cells left out
   std::vector<char> left_out;
 
  private:
-  void mirror(const ActiveGrid<3>& grid);
+  /// In two sums that do not wait for each other.
+  template <class Row>
+  static Eigen::Vector4f add_up(const int* e, const int* end, const Eigen::VectorXf& p, Row row) {
+    Eigen::Vector4f sum = Eigen::Vector4f::Zero(), other = sum;
+    for (; e + 1 < end; e += 2)
+      sum += p[CellBatches::cell_of(e[0])] * row(e), other += p[CellBatches::cell_of(e[1])] * row(e + 1);
+    if (e != end) sum += p[CellBatches::cell_of(*e)] * row(e);
+    return sum + other;
+  }
+  void number_rows(const ActiveGrid<3>& grid, const Quadrature<ThreeD>& quadrature);
+  void mirror(const ActiveGrid<3>& grid, int c, CellRows& row) const;
+
+  std::vector<CellRows> rows_;            ///< those of full cells once a kind, of the others a cell each
+  std::vector<int> rows_of_;              ///< of each cell: its place there
+  std::vector<Eigen::Vector4f> by_node_;  ///< entry by entry, if asked for
 };
 
+inline void PressureRows::number_rows(const ActiveGrid<3>& grid, const Quadrature<ThreeD>& quadrature) {
+  std::array<int, 64> of_kind;
+  of_kind.fill(-1);
+  int n = 0;
+  make_room(rows_of_, grid.cell_index.size());
+  for (std::size_t c = 0; c < rows_of_.size(); ++c) {
+    if (!quadrature.full[c] || left_out[c]) {
+      rows_of_[c] = n++;
+      continue;
+    }
+    int& shared = of_kind[cell_ends<3>(grid.axes, grid.cell_index[c])];
+    if (shared < 0) shared = n++;
+    rows_of_[c] = shared;
+  }
+  make_room(rows_, static_cast<std::size_t>(n));
+}
+
 inline void PressureRows::build(const ActiveGrid<3>& grid, const CellBatches& batches,
-                                const std::vector<std::array<Vec<3>, 27>>& b,
+                                const Quadrature<ThreeD>& quadrature,
                                 const std::vector<Mat<3, 3>>& inverse_blocks,
-                                const std::vector<double>& stiffness) {
-  G_inverse.resize(inverse_blocks.size());
+                                const std::vector<double>& stiffness, bool by_node) {
+  make_room(G_inverse, inverse_blocks.size());
 #pragma omp parallel for schedule(static)
   for (std::size_t i = 0; i < G_inverse.size(); ++i)
     for (std::size_t d = 0; d < 3; ++d)
       G_inverse[i][d] << inverse_blocks[i].col(static_cast<Eigen::Index>(d)).cast<float>(), 0.0f;
-  row.resize(27 * grid.cell_index.size());
   softness.resize(grid.n_cells());
   left_out.resize(grid.cell_index.size());
-#pragma omp parallel for schedule(static)
   for (int c = 0; c < grid.n_cells(); ++c) {
     left_out[c] = stiffness[c] > 0.0 ? 0 : 1;
     softness[c] = left_out[c] ? 1.0f : static_cast<float>(1.0 / stiffness[c]);
-    for (int k = 0; k < 27; ++k)
-      row[27 * c + k] << (left_out[c] ? Vec<3>(Vec<3>::Zero()) : b[c][k]).cast<float>(), 0.0f;
   }
-  mirror(grid);
-  row_of_node.resize(row.size());
+  number_rows(grid, quadrature);
+  std::vector<int> last(
+      rows_.size());  // the cell that fills in each set of rows: of those that share it, one
+  for (int c = 0; c < grid.n_cells(); ++c) last[rows_of_[c]] = c;
 #pragma omp parallel for schedule(static)
-  for (int i = 0; i < grid.n_nodes(); ++i)
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    const int c = last[r];
+    const auto& b = quadrature.divergence_rows(c);
+    for (std::size_t k = 0; k < 27; ++k)
+      rows_[r][k] << (left_out[c] ? Vec<3>(Vec<3>::Zero()) : b[k]).template cast<float>(), 0.0f;
+    mirror(grid, c, rows_[r]);
+  }
+  make_room(by_node_, by_node ? 27 * grid.cell_index.size() : 0);
+#pragma omp parallel for schedule(static)
+  for (int i = 0; i < (by_node ? grid.n_nodes() : 0); ++i)
     for (const int* e = batches.entries_begin(i); e != batches.entries_end(i); ++e)
-      row_of_node[e - batches.entries_begin(0)] = row[*e];
+      by_node_[e - batches.entries_begin(0)] = of_entry(*e);
 }
 
 /// A cell's rows at nodes behind a plane of symmetry join those of the nodes before it, which it sees too.
-inline void PressureRows::mirror(const ActiveGrid<3>& grid) {
+inline void PressureRows::mirror(const ActiveGrid<3>& grid, int c, CellRows& row) const {
   if (grid.mirrors.empty()) return;
-  for (int c = 0; c < grid.n_cells(); ++c)
-    for (int k = 0; k < 27; ++k) {
-      int of = 0;
-      Eigen::Vector4f sign = Eigen::Vector4f::Ones();
-      for (int d = 0; d < 3; ++d) {
-        const int first = grid.axes[d].first_control(grid.cell_index[c][d]);
-        const int j = first + local_offset<3>(k)[d], image = grid.axes[d].mirrored(j);
-        of = 3 * of + image - first;
-        if (image != j) sign[d] = -1.0f;
-      }
-      if (of == k) continue;
-      row[27 * c + of] += sign.cwiseProduct(row[27 * c + k]);
-      row[27 * c + k].setZero();
+  for (int k = 0; k < 27; ++k) {
+    int of = 0;
+    Eigen::Vector4f sign = Eigen::Vector4f::Ones();
+    for (int d = 0; d < 3; ++d) {
+      const int first = grid.axes[d].first_control(grid.cell_index[c][d]);
+      const int j = first + local_offset<3>(k)[d], image = grid.axes[d].mirrored(j);
+      of = 3 * of + image - first;
+      if (image != j) sign[d] = -1.0f;
     }
+    if (of == k) continue;
+    row[of] += sign.cwiseProduct(row[k]);
+    row[k].setZero();
+  }
 }
 
 }  // namespace tremie

@@ -8,6 +8,7 @@
 // the number of points, and more points a cell make the weights smoother without making the solver slower.
 
 #include <array>
+#include <type_traits>
 #include <vector>
 
 #include "libmpm/grid/active_grid.hpp"
@@ -23,8 +24,8 @@ template <class Rows, bool by_kind>
 class CellRows {
  public:
   void resize(std::size_t n) {
-    kind_.resize(by_kind ? n : 0);
-    rows_.resize(by_kind ? 64 : n);
+    make_room(kind_, by_kind ? n : 0);
+    make_room(rows_, by_kind ? 64 : n);
   }
   const Rows& operator[](std::size_t c) const { return rows_[by_kind ? kind_[c] : c]; }
   Rows& entry(std::size_t c) { return rows_[c]; }
@@ -46,23 +47,58 @@ unsigned char cell_kind(const std::array<Axis, D>& axes, const Index<D>& cell) {
   return static_cast<unsigned char>(kind);
 }
 
+/// Which ends of the axes a cell touches, walls or planes of symmetry, as six bits: what its controls are
+/// follows from that.
+template <int D>
+unsigned char cell_ends(const std::array<Axis, D>& axes, const Index<D>& cell) {
+  unsigned ends = 0;
+  for (int d = 0; d < D; ++d) {
+    if (axes[d].wall_low() && cell[d] == 0) ends |= 1u << (2 * d);
+    if (axes[d].wall_high() && cell[d] == axes[d].n_cells - 1) ends |= 2u << (2 * d);
+  }
+  return static_cast<unsigned char>(ends);
+}
+
 template <class Space>
 struct Quadrature {
   static constexpr int D = Space::dim, n_strain = Space::n_strain;
   static constexpr int n_places = power(2, D), n_local = power(3, D);
   using StrainRows = std::array<Mat<n_strain, D>, n_local>;
 
+  using DivergenceRows = std::array<Vec<D>, n_local>;
+
   CellRows<std::array<StrainRows, n_places>, D == 3> B;  ///< strain rows, [1/m]
-  std::vector<std::array<Vec<D>, n_local>> b;            ///< rows of the cell's mean divergence [1/m]
-  std::vector<std::array<double, n_places>> V;           ///< concrete volume of each place [m^3]
-  std::vector<std::array<double, n_places>> tau_y;       ///< yield stress there [Pa]
-  std::vector<double> V_cell;                            ///< sum of V [m^3]
-  std::vector<double> p;                                 ///< pressure at the start of the step [Pa]
-  std::vector<std::array<Vec<D>, n_places>> place;       ///< local coordinates of the places, in a section
+  std::vector<DivergenceRows> b;  ///< rows of the cell's mean divergence in a section [1/m]
+  CellRows<std::array<DivergenceRows, n_places>, D == 3>
+      slopes;              ///< in space: gradients of the splines [1/m]
+  std::vector<char> full;  ///< in space: whether the cell lies inside the body and counts as full
+  std::vector<std::array<double, n_places>> V;      ///< concrete volume of each place [m^3]
+  std::vector<std::array<double, n_places>> tau_y;  ///< yield stress there [Pa]
+  std::vector<double> V_cell;                       ///< sum of V [m^3]
+  std::vector<double> p;                            ///< pressure at the start of the step [Pa]
+  std::vector<std::array<Vec<D>, n_places>> place;  ///< local coordinates of the places, in a section
 
   void resize(std::size_t n) {
-    B.resize(n), b.resize(n), V.resize(n), tau_y.resize(n), V_cell.resize(n), p.resize(n);
-    if (D < 3) place.resize(n);
+    B.resize(n), make_room(V, n), make_room(tau_y, n), make_room(V_cell, n), make_room(p, n);
+    if constexpr (D < 3)
+      make_room(b, n), make_room(place, n);
+    else
+      slopes.resize(n), make_room(full, n);
+  }
+
+  /// Rows of the mean divergence of cell c [1/m]. In space they are made when they are asked for: 648 bytes a
+  /// cell from its eight volumes.
+  std::conditional_t<D == 3, DivergenceRows, const DivergenceRows&> divergence_rows(int c) const {
+    if constexpr (D < 3) {
+      return b[c];
+    } else {
+      DivergenceRows sum;
+      const auto flat = [](auto& rows) { return Eigen::Map<Vec<3 * n_local>>(rows[0].data()); };
+      flat(sum).setZero();
+      for (int k = 0; k < n_places; ++k)
+        flat(sum) += V[c][k] / V_cell[c] * Eigen::Map<const Vec<3 * n_local>>(slopes[c][k][0].data());
+      return sum;
+    }
   }
 };
 
@@ -131,21 +167,24 @@ std::array<double, power(2, Space::dim)> full_volumes(
   return volume;
 }
 
-/// Strain rows at every place and the rows of the cell's mean divergence.
+inline double sum_of_volumes(const auto& V) {
+  double sum = 0.0;
+  for (double one : V) sum += one;
+  return sum;
+}
+
+/// In a section: strain rows at every place and the rows of the cell's mean divergence.
 template <class Space>
 void lay_out_rows(const std::array<Stencil<Space::dim>, power(2, Space::dim)>& st,
                   const std::array<Vec<Space::dim>, power(2, Space::dim)>& x, int c,
                   Quadrature<Space>& quadrature) {
   constexpr int n = power(2, Space::dim), n_local = power(3, Space::dim);
-  double V_cell = 0.0;
-  for (int k = 0; k < n; ++k) V_cell += quadrature.V[c][k];
-  quadrature.V_cell[c] = V_cell;
   for (int i = 0; i < n_local; ++i) {
     quadrature.b[c][i].setZero();
     for (int k = 0; k < n; ++k) {
-      if constexpr (Space::dim < 3)
-        quadrature.B.entry(c)[k][i] = Space::strain_rows(st[k].N[i], st[k].g[i], x[k]);
-      quadrature.b[c][i] += quadrature.V[c][k] / V_cell * Space::divergence_row(st[k].N[i], st[k].g[i], x[k]);
+      quadrature.B.entry(c)[k][i] = Space::strain_rows(st[k].N[i], st[k].g[i], x[k]);
+      quadrature.b[c][i] +=
+          quadrature.V[c][k] / quadrature.V_cell[c] * Space::divergence_row(st[k].N[i], st[k].g[i], x[k]);
     }
   }
 }
@@ -168,12 +207,15 @@ inline void lay_out_kinds(const ActiveGrid<3>& grid, Quadrature<ThreeD>& quadrat
   for (int c = 0; c < grid.n_cells(); ++c) {
     const unsigned char kind = cell_kind<3>(grid.axes, grid.cell_index[c]);
     quadrature.B.set_kind(c, kind);
+    quadrature.slopes.set_kind(c, kind);
     if (done[kind]) continue;
     done[kind] = true;
     for (int k = 0; k < 8; ++k) {
       const Stencil<3> st = stencil<3>(grid.axes, grid.cell_index[c], gauss_place<3>(k));
-      for (int i = 0; i < 27; ++i)
+      for (int i = 0; i < 27; ++i) {
         quadrature.B.entry(kind)[k][i] = ThreeD::strain_rows(st.N[i], st.g[i], Vec<3>::Zero());
+        quadrature.slopes.entry(kind)[k][i] = ThreeD::divergence_row(st.N[i], st.g[i], Vec<3>::Zero());
+      }
     }
   }
 }
@@ -197,12 +239,8 @@ void lay_out_quadrature(const ActiveGrid<Space::dim>& grid, const Points<Space::
     for (int k = 0; k < n; ++k) place[k] = gauss_place<D>(k);
     if (fitted) place = fitted_places<Space>(grid, points, c);
     if (D < 3) quadrature.place[c] = place;
-    std::array<Stencil<D>, n> st;
     std::array<Vec<D>, n> x;
-    for (int k = 0; k < n; ++k) {
-      x[k] = cell_place<D>(grid.axes, cell, place[k]);
-      st[k] = stencil<D>(grid.axes, cell, place[k]);
-    }
+    for (int k = 0; k < n; ++k) x[k] = cell_place<D>(grid.axes, cell, place[k]);
     std::array<double, n> structure;
     detail::add_up_points<Space>(grid, points, c, x, quadrature.V[c], structure);
     double all_V = 0.0, all_structure = 0.0;
@@ -218,7 +256,14 @@ void lay_out_quadrature(const ActiveGrid<Space::dim>& grid, const Points<Space::
     // Inside the body a cell is full: with counted volumes the pressure would push whenever a point crosses
     // into a cell.
     if (inside) quadrature.V[c] = detail::full_volumes<Space>(grid.axes, x);
-    detail::lay_out_rows<Space>(st, x, c, quadrature);
+    quadrature.V_cell[c] = detail::sum_of_volumes(quadrature.V[c]);
+    if constexpr (D == 3) {
+      quadrature.full[c] = inside ? 1 : 0;
+    } else {
+      std::array<Stencil<D>, n> st;
+      for (int k = 0; k < n; ++k) st[k] = stencil<D>(grid.axes, cell, place[k]);
+      detail::lay_out_rows<Space>(st, x, c, quadrature);
+    }
     quadrature.p[c] = detail::mean_pressure(grid, points, K, c);
   }
 }

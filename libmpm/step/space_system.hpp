@@ -62,13 +62,6 @@ void strain_at(const PlaceTensors<Scalar>& G, int k, Lanes<Scalar> (&q)[5], Lane
   div = plane + zz;
 }
 
-template <class Scalar>
-Lanes<Scalar> norm(const Lanes<Scalar> (&q)[5]) {
-  Lanes<Scalar> n = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] + q[4] * q[4];
-  for (int l = 0; l < batch_size; ++l) n[l] = std::sqrt(n[l]);
-  return n;
-}
-
 /// The tensor whose adjoint is that of the deviatoric stress s, with a pull p in all directions: T = s + p I.
 template <class Scalar>
 void stress_at(const Lanes<Scalar> (&s)[5], const Lanes<Scalar>& p, int k, PlaceTensors<Scalar>& T) {
@@ -87,6 +80,17 @@ struct BatchVolumes {
   Lanes<Scalar> V[8], inverse_cell;
 };
 
+inline BatchVolumes<double> batch_volumes(const Quadrature<ThreeD>& quad, int batch) {
+  BatchVolumes<double> own;
+  for (int l = 0; l < batch_size; ++l) {
+    const std::size_t c = static_cast<std::size_t>(batch) * batch_size + static_cast<std::size_t>(l);
+    const bool there = c < quad.V.size();
+    for (std::size_t k = 0; k < 8; ++k) own.V[k][l] = there ? quad.V[c][k] : 0.0;
+    own.inverse_cell[l] = there && quad.V_cell[c] > 0.0 ? 1.0 / quad.V_cell[c] : 0.0;
+  }
+  return own;
+}
+
 class SpaceSystem {
  public:
   /// Lays out the cells.
@@ -102,11 +106,11 @@ class SpaceSystem {
   double solve(const YieldProblem<ThreeD>& problem, const Eigen::VectorXd& R, const SolveGoal& goal,
                std::vector<Vec<3>>& v);
   /// Mean shear rate of every cell over its places, and the volume mean of all [1/s].
-  void shear_rates(const std::vector<Vec<3>>& v, std::vector<double>& of_cell, double& mean) const;
+  void shear_rates(const YieldProblem<ThreeD>& problem, const std::vector<Vec<3>>& v,
+                   std::vector<double>& of_cell, double& mean) const;
 
   CellBatches batches;
-  std::vector<BatchVolumes<double>> volumes;
-  CellForces<double> forces;              ///< that cells gave their nodes in the last pass over them
+  CellForces forces;                      ///< room for what cells give their nodes in a pass over them
   PressurePreconditioner preconditioner;  ///< of the last prepare(); free for others between solves
   long long products = 0;
 
@@ -116,34 +120,26 @@ class SpaceSystem {
     Eigen::VectorXd& value;
     void add_diagonal(int node, int d, double x) { value[3 * node + d] += x; }
   };
-  std::vector<Mat<3, 3>> node_blocks(const YieldProblem<ThreeD>& problem) const;
+  std::vector<Mat<3, 3>> node_blocks(const YieldProblem<ThreeD>& problem,
+                                     const Eigen::VectorXd& diagonal) const;
 
   double eta_ = 0.0;
-  Eigen::VectorXd diagonal_;  ///< inertia, drag and friction
   Eigen::VectorXf free_,
       free_diagonal_;  ///< 1 and the diagonal where nothing is prescribed, else 0; by fours
   std::vector<BatchVolumes<float>> weights_;
-  CellForces<float> pushes_;
 };
 
 inline void SpaceSystem::set_up(YieldProblem<ThreeD>& problem, double most_band_operations) {
   const auto& quad = problem.quadrature;
   batches.lay_out(problem.grid);
   preconditioner.lay_out(problem.grid, most_band_operations);
-  volumes.resize(batches.n_batches());
-  weights_.resize(batches.n_batches());
+  make_room(weights_, static_cast<std::size_t>(batches.n_batches()));
   batches.make_room(forces);
-  batches.make_room(pushes_);
 #pragma omp parallel for schedule(static)
   for (int b = 0; b < batches.n_batches(); ++b) {
-    for (int l = 0; l < batch_size; ++l) {
-      const int c = b * batch_size + l;
-      const bool there = c < batches.n_cells();
-      for (int k = 0; k < 8; ++k) volumes[b].V[k][l] = there ? quad.V[c][k] : 0.0;
-      volumes[b].inverse_cell[l] = there && quad.V_cell[c] > 0.0 ? 1.0 / quad.V_cell[c] : 0.0;
-    }
-    for (int k = 0; k < 8; ++k) weights_[b].V[k] = volumes[b].V[k].cast<float>();
-    weights_[b].inverse_cell = volumes[b].inverse_cell.cast<float>();
+    const BatchVolumes<double> own = batch_volumes(quad, b);
+    for (int k = 0; k < 8; ++k) weights_[b].V[k] = own.V[k].cast<float>();
+    weights_[b].inverse_cell = own.inverse_cell.cast<float>();
   }
 }
 
@@ -152,17 +148,17 @@ inline bool SpaceSystem::prepare(YieldProblem<ThreeD>& problem, double eta) {
   const int n = problem.grid.n_nodes();
   double trace = 0.0;
   for (double m : problem.nodes.mass) trace = std::max(trace, 1e-12 * m);
-  diagonal_.resize(3 * n);
+  Eigen::VectorXd diagonal(3 * n);
   for (int i = 0; i < n; ++i)
-    diagonal_.segment<3>(3 * i).setConstant(std::max(trace, problem.nodes.mass[i]) / problem.dt +
-                                            (problem.drag.empty() ? 0.0 : problem.drag[i]));
+    diagonal.segment<3>(3 * i).setConstant(std::max(trace, problem.nodes.mass[i]) / problem.dt +
+                                           (problem.drag.empty() ? 0.0 : problem.drag[i]));
   if (!problem.friction.empty()) {
     std::vector<double> V(n, 0.0);
     for (int c = 0; c < problem.grid.n_cells(); ++c)
       for (int i : problem.grid.cell_nodes[c]) V[i] += problem.quadrature.V_cell[c] / 27;
     fold_mirrors<3>(problem.grid, V);
-    Diagonal diagonal{diagonal_};
-    add_friction_stiffness_admm<3>(problem.grid, V, eta, problem.friction, diagonal);
+    Diagonal to{diagonal};
+    add_friction_stiffness_admm<3>(problem.grid, V, eta, problem.friction, to);
   }
   free_.setZero(4 * n);
   for (int i = 0; i < n; ++i)
@@ -170,20 +166,21 @@ inline bool SpaceSystem::prepare(YieldProblem<ThreeD>& problem, double eta) {
   free_diagonal_.setZero(4 * n);
   for (int i = 0; i < n; ++i)
     free_diagonal_.segment<3>(4 * i) =
-        free_.segment<3>(4 * i).cwiseProduct(diagonal_.segment<3>(3 * i).cast<float>());
+        free_.segment<3>(4 * i).cwiseProduct(diagonal.segment<3>(3 * i).cast<float>());
   // What a product gives a node behind a plane of symmetry is kept until it is mirrored.
   for (const MirrorNode<3>& m : problem.grid.mirrors)
     free_.segment<4>(4 * m.node) = free_.segment<4>(4 * m.of);
   std::vector<double> stiffness(problem.grid.n_cells());
   for (int c = 0; c < problem.grid.n_cells(); ++c)
     stiffness[c] = problem.quadrature.V_cell[c] * problem.K * problem.dt;
-  return preconditioner.build(problem.grid, batches, problem.quadrature.b, node_blocks(problem), stiffness,
-                              problem.K * problem.dt / eta);
+  return preconditioner.build(problem.grid, batches, problem.quadrature, node_blocks(problem, diagonal),
+                              stiffness, problem.K * problem.dt / eta);
 }
 
 /// Inverse blocks of D at the nodes. A node's own viscous block is V eta (|g|^2 I + g g'/3) with its gradient
 /// g.
-inline std::vector<Mat<3, 3>> SpaceSystem::node_blocks(const YieldProblem<ThreeD>& problem) const {
+inline std::vector<Mat<3, 3>> SpaceSystem::node_blocks(const YieldProblem<ThreeD>& problem,
+                                                       const Eigen::VectorXd& diagonal) const {
   const auto& grid = problem.grid;
   std::array<std::array<std::array<Mat<3, 3>, 27>, 8>, 64> viscous;
   std::array<bool, 64> done{};
@@ -202,14 +199,18 @@ inline std::vector<Mat<3, 3>> SpaceSystem::node_blocks(const YieldProblem<ThreeD
   std::vector<Mat<3, 3>> G(grid.n_nodes());
 #pragma omp parallel for schedule(static)
   for (int i = 0; i < grid.n_nodes(); ++i) {
-    G[i] = diagonal_.segment<3>(3 * i).asDiagonal();
+    G[i] = diagonal.segment<3>(3 * i).asDiagonal();
     for (const int* e = batches.entries_begin(i); e != batches.entries_end(i); ++e)
       for (int k = 0; k < 8; ++k)
-        G[i] += problem.quadrature.V[*e / 27][k] * viscous[kind[*e / 27]][k][*e % 27];
+        G[i] += problem.quadrature.V[CellBatches::cell_of(*e)][k] *
+                viscous[kind[CellBatches::cell_of(*e)]][k][CellBatches::local_of(*e)];
   }
-  for (const ContactPoint<3>& c : problem.contact)
-    for (int k = 0; k < 27 && c.active; ++k)
-      G[grid.cell_nodes[c.cell][k]] += c.stiffness * c.N[k] * c.N[k] * c.normal * c.normal.transpose();
+  for (const ContactPoint<3>& c : problem.contact) {
+    if (!c.active) continue;
+    const auto N = c.shape();
+    for (int k = 0; k < 27; ++k)
+      G[grid.cell_nodes[c.cell][k]] += c.stiffness * N[k] * N[k] * c.normal * c.normal.transpose();
+  }
   add_bound_blocks(problem.bound, grid.cell_nodes, G);
   fold_mirrors(grid, G);
   invert_blocks(problem.fixed, G);
@@ -219,42 +220,39 @@ inline std::vector<Mat<3, 3>> SpaceSystem::node_blocks(const YieldProblem<ThreeD
 inline void SpaceSystem::multiply(const YieldProblem<ThreeD>& problem, const Eigen::VectorXf& x,
                                   Eigen::VectorXf& out) {
   const auto bulk = static_cast<float>(problem.K * problem.dt), eta = static_cast<float>(eta_);
-  const int n_nodes = problem.grid.n_nodes();
   ++products;
   out.resize(x.size());
-#pragma omp parallel
-  {
-#pragma omp for schedule(static)
-    for (int b = 0; b < batches.n_batches(); ++b) {
-      PlaceTensors<float> G;
-      batches.gradients(b, x.data(), G);
-      const BatchVolumes<float>& v = weights_[b];
-      Lanes<float> mean = Lanes<float>::Zero();
-      for (int k = 0; k < 8; ++k) mean += v.V[k] * (G.g[0][0][k] + G.g[1][1][k] + G.g[2][2][k]);
-      mean *= bulk * v.inverse_cell;
-      for (int k = 0; k < 8; ++k) {
-        Lanes<float> q[5], div;
-        strain_at(G, k, q, div);
-        const Lanes<float> w = eta * v.V[k];
-        for (Lanes<float>& s : q) s *= w;
-        stress_at<float>(q, v.V[k] * mean, k, G);
-      }
-      batches.scatter(b, G, pushes_);
+  const auto give = [&](int b) {
+    PlaceTensors<float> G;
+    batches.gradients(b, x.data(), G);
+    const BatchVolumes<float>& v = weights_[b];
+    Lanes<float> mean = Lanes<float>::Zero();
+    for (int k = 0; k < 8; ++k) mean += v.V[k] * (G.g[0][0][k] + G.g[1][1][k] + G.g[2][2][k]);
+    mean *= bulk * v.inverse_cell;
+    for (int k = 0; k < 8; ++k) {
+      Lanes<float> q[5], div;
+      strain_at(G, k, q, div);
+      const Lanes<float> w = eta * v.V[k];
+      for (Lanes<float>& s : q) s *= w;
+      stress_at<float>(q, v.V[k] * mean, k, G);
     }
-#pragma omp for schedule(static)
-    for (int i = 0; i < n_nodes; ++i)
-      out.segment<4>(4 * i) = free_diagonal_.segment<4>(4 * i).cwiseProduct(x.segment<4>(4 * i)) +
-                              free_.segment<4>(4 * i).cwiseProduct(batches.gathered(i, pushes_));
-  }
+    batches.scatter(b, G, forces);
+  };
+#pragma omp parallel
+  batches.sweep_in_region(give, [&](int i) {
+    out.segment<4>(4 * i) = free_diagonal_.segment<4>(4 * i).cwiseProduct(x.segment<4>(4 * i)) +
+                            free_.segment<4>(4 * i).cwiseProduct(batches.gathered<float>(i, forces));
+  });
   if (problem.contact.empty() && problem.bound.empty()) return fold_mirrors<3, 4>(problem.grid, out);
   const auto& cell_nodes = problem.grid.cell_nodes;
   for (const ContactPoint<3>& c : problem.contact) {
     if (!c.active) continue;
+    const auto N = c.shape();
     double u = 0.0;
     for (int k = 0; k < 27; ++k)
-      u += c.N[k] * c.normal.dot(x.segment<3>(4 * cell_nodes[c.cell][k]).cast<double>());
+      u += N[k] * c.normal.dot(x.segment<3>(4 * cell_nodes[c.cell][k]).cast<double>());
     for (int k = 0; k < 27; ++k)
-      out.segment<3>(4 * cell_nodes[c.cell][k]) += (c.stiffness * u * c.N[k] * c.normal).cast<float>();
+      out.segment<3>(4 * cell_nodes[c.cell][k]) += (c.stiffness * u * N[k] * c.normal).cast<float>();
   }
   add_bound_products(problem.bound, cell_nodes, x, out);
   out = out.cwiseProduct(free_);
@@ -277,22 +275,23 @@ inline double SpaceSystem::solve(const YieldProblem<ThreeD>& problem, const Eige
   return left;
 }
 
-inline void SpaceSystem::shear_rates(const std::vector<Vec<3>>& v, std::vector<double>& of_cell,
-                                     double& mean) const {
+inline void SpaceSystem::shear_rates(const YieldProblem<ThreeD>& problem, const std::vector<Vec<3>>& v,
+                                     std::vector<double>& of_cell, double& mean) const {
   of_cell.resize(batches.n_cells());
   std::vector<double> sum(batches.n_batches()), volume(batches.n_batches());
 #pragma omp parallel for schedule(static)
   for (int b = 0; b < batches.n_batches(); ++b) {
     PlaceTensors<double> G;
     batches.gradients(b, v.data()->data(), G);
+    const BatchVolumes<double> volumes = batch_volumes(problem.quadrature, b);
     Lanes<double> total = Lanes<double>::Zero(), weighted = total, V = total;
     for (int k = 0; k < 8; ++k) {
       Lanes<double> q[5], div;
       strain_at(G, k, q, div);
-      const Lanes<double> rate = norm(q);
+      const Lanes<double> rate = detail::norm(q);
       total += rate;
-      weighted += volumes[b].V[k] * rate;
-      V += volumes[b].V[k];
+      weighted += volumes.V[k] * rate;
+      V += volumes.V[k];
     }
     for (int c = b * batch_size; c < std::min((b + 1) * batch_size, batches.n_cells()); ++c)
       of_cell[c] = total[c % batch_size] / 8.0;

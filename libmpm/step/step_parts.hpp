@@ -41,6 +41,34 @@ void carry_duals(const IndexMap<Space::dim>& old_map, const ActiveGrid<Space::di
   duals = std::move(now);
 }
 
+/// The same in the form that this step's solver takes, which may not be the last one's.
+template <class Space, class Law>
+void carry_duals(const IndexMap<Space::dim>& old_map, const Law& law, const StepSettings& settings,
+                 Body<Space>& body) {
+  if constexpr (Space::dim == 3) {
+    Duals<ThreeD>& duals = body.duals;
+    if (by_iteration(body, settings)) {
+      if (!duals.stress.empty()) {
+        const SpaceDuals now = joined(duals, body.quadrature);
+        duals = {};
+        duals.space = now;
+      }
+      duals.space = carried(old_map, body.grid, duals.space);
+      return;
+    }
+    if (!duals.space.empty()) duals = split(law, duals.space, static_cast<int>(body.quadrature.V.size()));
+  }
+  carry_duals<Space>(old_map, body.grid, body.duals);
+}
+
+/// Stress of the yield part at place k of cell c.
+template <class Space, class Law>
+Vec<Space::n_strain> stress_of(const Law& law, const Duals<Space>& duals, int c, int k) {
+  if constexpr (Space::dim == 3)
+    if (!duals.space.empty()) return stress_of(law, duals.space, c, k);
+  return duals.stress[c][k];
+}
+
 /// Walls at the ends of the axes: which components they prescribe, and where friction acts. Nodes behind a
 /// plane of symmetry are no unknowns.
 template <int D>
@@ -115,7 +143,7 @@ double shear_rates(const YieldProblem<Space>& problem, const StepSettings& setti
   double sum = 0.0, volume = 0.0;
   if constexpr (Space::dim == 3)
     if (by_iteration(body, settings)) {
-      body.space_system.shear_rates(body.v, of_cell, sum);
+      body.space_system.shear_rates(problem, body.v, of_cell, sum);
       return sum;
     }
   of_cell.assign(body.grid.cell_index.size(), 0.0);
@@ -154,7 +182,7 @@ SolveReport solve_yield(YieldProblem<Space>& problem, const Law& law, const Step
                         Body<Space>& body) {
   if constexpr (Space::dim == 3)
     if (by_iteration(body, settings))
-      return solve_admm_in_space(problem, law, settings.admm, body.space_system, body.v, body.duals);
+      return solve_admm_in_space(problem, law, settings.admm, body.space_system, body.v, body.duals.space);
   const double scale = force_scale(body, problem.dt);
   body.system.set_pattern(body.grid);
   if (settings.method == YieldMethod::newton)
@@ -173,8 +201,7 @@ double update_normal_forces(YieldProblem<Space>& problem, const Law& law, double
                             const Body<Space>& body) {
   constexpr int D = Space::dim;
   const auto stress = [&](int c, int k, const Vec<Space::n_strain>& q) -> Vec<Space::n_strain> {
-    (void)law;
-    return problem.mu * q + body.duals.stress[c][k];
+    return problem.mu * q + stress_of(law, body.duals, c, k);
   };
   const Eigen::VectorXd R = residual(problem, body.v, stress);
   double change = 0.0, sum = 0.0;
@@ -196,12 +223,12 @@ double update_normal_forces(YieldProblem<Space>& problem, const Law& law, double
 
 /// Forces of the flat walls, which balance what is left of every prescribed component, and the dissipated
 /// power.
-template <class Space>
-void keep_forces(const YieldProblem<Space>& problem, Body<Space>& body) {
+template <class Space, class Law>
+void keep_forces(const YieldProblem<Space>& problem, const Law& law, Body<Space>& body) {
   constexpr int D = Space::dim;
   body.dissipation = 0.0;
   const auto stress = [&](int c, int k, const Vec<Space::n_strain>& q) -> Vec<Space::n_strain> {
-    return problem.mu * q + body.duals.stress[c][k];
+    return problem.mu * q + stress_of(law, body.duals, c, k);
   };
   for (int c = 0; c < problem.grid.n_cells(); ++c)
     for (int k = 0; k < power(2, D); ++k) {

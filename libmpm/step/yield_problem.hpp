@@ -19,18 +19,23 @@
 #include "libmpm/grid/active_grid.hpp"
 #include "libmpm/step/block_system.hpp"
 #include "libmpm/step/quadrature.hpp"
+#include "libmpm/step/space_duals.hpp"
 #include "libmpm/transfer/apic.hpp"
 
 namespace tremie {
 
+struct Nothing {};
+
 /// Stress of the yield part and, for ADMM, the split strain rate, at every Gauss place of every cell. Kept
-/// between steps by cell as a first guess.
+/// between steps by cell as a first guess. A body whose systems are solved by iteration keeps them in `space`
+/// instead.
 template <class Space>
 struct Duals {
   using Strain = Vec<Space::n_strain>;
   static constexpr int n = power(2, Space::dim);
   std::vector<std::array<Strain, n>> stress;  ///< [Pa]
   std::vector<std::array<Strain, n>> rate;    ///< [1/s]
+  std::conditional_t<Space::dim == 3, SpaceDuals, Nothing> space;
 };
 
 template <class Space>
@@ -68,8 +73,9 @@ Vec<Space::n_strain> strain_rate(const YieldProblem<Space>& problem, const std::
 template <class Space>
 double divergence(const YieldProblem<Space>& problem, const std::vector<Vec<Space::dim>>& v, int c) {
   const auto& nodes = problem.grid.cell_nodes[c];
+  const auto& b = problem.quadrature.divergence_rows(c);
   double div = 0.0;
-  for (int i = 0; i < power(3, Space::dim); ++i) div += problem.quadrature.b[c][i].dot(v[nodes[i]]);
+  for (int i = 0; i < power(3, Space::dim); ++i) div += b[i].dot(v[nodes[i]]);
   return div;
 }
 
@@ -94,7 +100,8 @@ Eigen::VectorXd residual(const YieldProblem<Space>& problem, const std::vector<V
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < grid.n_cells(); ++c) {
     const double div = divergence(problem, v, c), p = quad.p[c] - problem.K * problem.dt * div;
-    for (int i = 0; i < n_local; ++i) local[c][i] = quad.V_cell[c] * p * quad.b[c][i];
+    const auto& b = quad.divergence_rows(c);
+    for (int i = 0; i < n_local; ++i) local[c][i] = quad.V_cell[c] * p * b[i];
     for (int k = 0; k < power(2, D); ++k) {
       const Vec<Space::n_strain> q = strain_rate(problem, v, c, k);
       Vec<Space::n_strain> s = quad.V[c][k] * stress(c, k, q);
@@ -143,8 +150,9 @@ void assemble(const YieldProblem<Space>& problem, Tangent tangent, BlockSystem<S
               (Space::divergence_part().transpose() * B);
       cell.noalias() += B.transpose() * TB;
     }
+    const auto& rows = quad.divergence_rows(c);
     Vec<n_dof> b;
-    for (int i = 0; i < power(3, D); ++i) b.template segment<D>(i * D) = quad.b[c][i];
+    for (int i = 0; i < power(3, D); ++i) b.template segment<D>(i * D) = rows[i];
     cell.noalias() += (quad.V_cell[c] * bulk * b) * b.transpose();
     system.add_cell(c, cell);
   }

@@ -113,26 +113,6 @@ void keep_in_domain(const ActiveGrid<D>& grid, const Vec<D>& from, Vec<D>& x) {
   if (!grid.blocks.empty() && block_of_cell<D>(grid, detail::cell_of<D>(grid.axes, x))) x = from;
 }
 
-/// Adds per-cell contributions to the nodes in the order of the cells: the sum does not depend on the
-/// threads.
-template <int D>
-void gather_to_nodes(const ActiveGrid<D>& grid, const std::vector<std::array<Vec<D + 1>, power(3, D)>>& local,
-                     NodalState<D>& nodes) {
-  nodes.mass.assign(grid.node_index.size(), 0.0);
-  nodes.v.assign(grid.node_index.size(), Vec<D>::Zero());
-  for (int c = 0; c < grid.n_cells(); ++c)
-    for (int k = 0; k < ActiveGrid<D>::n_local; ++k) {
-      const int i = grid.cell_nodes[c][k];
-      nodes.v[i] += local[c][k].template head<D>();
-      nodes.mass[i] += local[c][k][D];
-    }
-  for (const MirrorNode<D>& m : grid.mirrors) nodes.v[m.of] += m.sign.cwiseProduct(nodes.v[m.node]);
-  fold_mirrors<D>(grid, nodes.mass);
-  for (int i = 0; i < grid.n_nodes(); ++i)
-    if (nodes.mass[i] > 0.0) nodes.v[i] /= nodes.mass[i];
-  fill_mirrors<D>(grid, nodes.v);
-}
-
 namespace detail {
 
 /// Momenta and masses that the points of a cell give its controls.
@@ -192,13 +172,32 @@ inline void velocity_at(const ActiveGrid<3>& grid, const PointStencil<3>& st, co
 
 }  // namespace detail
 
-/// Point to grid: nodal masses and velocities, momentum and angular momentum kept.
+/// Point to grid: nodal masses and velocities, momentum and angular momentum kept. Cells are taken some
+/// thousand at a time, and the nodes add up theirs in the order of the cells: the sums do not depend on the
+/// threads.
 template <int D>
 void point_to_grid(const ActiveGrid<D>& grid, const Points<D>& points, NodalState<D>& nodes) {
-  std::vector<std::array<Vec<D + 1>, power(3, D)>> local(grid.cell_index.size());
+  constexpr int n_local = power(3, D), at_a_time = 4096;
+  nodes.mass.assign(grid.node_index.size(), 0.0);
+  nodes.v.assign(grid.node_index.size(), Vec<D>::Zero());
+  std::vector<std::array<Vec<D + 1>, n_local>> local(
+      static_cast<std::size_t>(std::min(grid.n_cells(), at_a_time)));
+  for (int first = 0; first < grid.n_cells(); first += at_a_time) {
+    const int last = std::min(first + at_a_time, grid.n_cells());
 #pragma omp parallel for schedule(static)
-  for (int c = 0; c < grid.n_cells(); ++c) detail::cell_momenta(grid, points, c, local[c]);
-  gather_to_nodes<D>(grid, local, nodes);
+    for (int c = first; c < last; ++c) detail::cell_momenta(grid, points, c, local[c - first]);
+    for (int c = first; c < last; ++c)
+      for (int k = 0; k < n_local; ++k) {
+        const int i = grid.cell_nodes[c][k];
+        nodes.v[i] += local[c - first][k].template head<D>();
+        nodes.mass[i] += local[c - first][k][D];
+      }
+  }
+  for (const MirrorNode<D>& m : grid.mirrors) nodes.v[m.of] += m.sign.cwiseProduct(nodes.v[m.node]);
+  fold_mirrors<D>(grid, nodes.mass);
+  for (int i = 0; i < grid.n_nodes(); ++i)
+    if (nodes.mass[i] > 0.0) nodes.v[i] /= nodes.mass[i];
+  fill_mirrors<D>(grid, nodes.v);
 }
 
 /// How grid velocities come back to the points.
@@ -212,6 +211,7 @@ struct Transfer {
 template <int D, class Move = StraightAhead>
 void grid_to_point(const ActiveGrid<D>& grid, const std::vector<Vec<D>>& v, const std::vector<Vec<D>>& v_old,
                    const Transfer& transfer, double dt, Points<D>& points, const Move& motion = {}) {
+  points.C.resize(points.size());
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < grid.n_cells(); ++c) {
     const auto xi = detail::control_positions<D>(grid.axes, grid.cell_index[c]);
@@ -228,6 +228,24 @@ void grid_to_point(const ActiveGrid<D>& grid, const std::vector<Vec<D>>& v, cons
       const Vec<D> from = points.x[p];
       motion.move(points, p, vp, dt);
       keep_in_domain<D>(grid, from, points.x[p]);
+    }
+  }
+}
+
+/// Affine velocities alone from the nodal velocities v, of points that have given theirs up.
+template <int D>
+void affine_from_grid(const ActiveGrid<D>& grid, const std::vector<Vec<D>>& v, Points<D>& points) {
+  points.C.resize(points.size());
+#pragma omp parallel for schedule(static)
+  for (int c = 0; c < grid.n_cells(); ++c) {
+    const auto xi = detail::control_positions<D>(grid.axes, grid.cell_index[c]);
+    for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
+      const int p = grid.order[i];
+      const detail::PointStencil<D> st(grid.axes, grid.cell_index[c], xi, points.x[p]);
+      Vec<D> vp;
+      Mat<D, D> moment;
+      detail::velocity_at(grid, st, v, c, vp, moment);
+      points.C[p] = moment * st.inverse_inertia.asDiagonal();
     }
   }
 }

@@ -63,10 +63,11 @@ Eigen::VectorXd fill_forces(const YieldProblem<Space>& problem, const CellFill& 
   constexpr int D = Space::dim;
   const auto& grid = problem.grid;
   Eigen::VectorXd R = Eigen::VectorXd::Zero(grid.n_nodes() * D);
-  for (int c = 0; c < grid.n_cells(); ++c)
+  for (int c = 0; c < grid.n_cells(); ++c) {
+    const auto& b = problem.quadrature.divergence_rows(c);
     for (int i = 0; i < power(3, D); ++i)
-      R.segment<D>(grid.cell_nodes[c][i] * D) +=
-          cells.stiffness[c] * cells.misfill[c] * problem.quadrature.b[c][i];
+      R.segment<D>(grid.cell_nodes[c][i] * D) += cells.stiffness[c] * cells.misfill[c] * b[i];
+  }
   fold_mirrors<D>(grid, R);
   fixed.assign(R.size(), 0);
   for (int i = 0; i < grid.n_nodes(); ++i)
@@ -92,7 +93,8 @@ std::vector<Vec<Space::dim>> even_out(const YieldProblem<Space>& problem, const 
   for (int c = 0; c < grid.n_cells(); ++c) {
     if (cells.stiffness[c] == 0.0) continue;
     Vec<n_dof> b;
-    for (int i = 0; i < n_local; ++i) b.template segment<D>(i * D) = problem.quadrature.b[c][i];
+    const auto& rows = problem.quadrature.divergence_rows(c);
+    for (int i = 0; i < n_local; ++i) b.template segment<D>(i * D) = rows[i];
     system.add_cell(c, cells.stiffness[c] * b * b.transpose());
   }
   for (int i = 0; i < grid.n_nodes(); ++i)

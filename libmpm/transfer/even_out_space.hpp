@@ -12,7 +12,9 @@ namespace tremie {
 inline std::vector<Vec<3>> even_out_in_space(const YieldProblem<ThreeD>& problem, const CellFill& cells,
                                              SpaceSystem& system) {
   const auto& grid = problem.grid;
-  const auto& b = problem.quadrature.b;
+  PressurePreconditioner& preconditioner = system.preconditioner;  // its room: the step's solve is done
+  const PressureRows& rows = preconditioner.rows();
+  std::vector<Quadrature<ThreeD>::DivergenceRows> b;  // as many as there are different ones
   std::vector<Vec<3>> u(grid.node_index.size(), Vec<3>::Zero());
   std::vector<char> fixed;
   Eigen::VectorXd R = fill_forces(problem, cells, fixed);
@@ -28,14 +30,15 @@ inline std::vector<Vec<3>> even_out_in_space(const YieldProblem<ThreeD>& problem
 #pragma omp parallel for schedule(static)
     for (int c = 0; c < grid.n_cells(); ++c) {
       double div = 0.0;
-      for (int k = 0; k < 27; ++k) div += b[c][k].dot(x.segment<3>(3 * grid.cell_nodes[c][k]));
+      for (int k = 0; k < 27; ++k) div += b[rows.place_of(c)][k].dot(x.segment<3>(3 * grid.cell_nodes[c][k]));
       pull[c] = cells.stiffness[c] * div;
     }
 #pragma omp parallel for schedule(static)
     for (int i = 0; i < grid.n_nodes(); ++i) {
       Vec<3> sum = std::max(trace, problem.nodes.mass[i]) * x.segment<3>(3 * i);
       for (const int* e = system.batches.entries_begin(i); e != system.batches.entries_end(i); ++e)
-        sum += pull[*e / 27] * b[*e / 27][*e % 27];
+        sum += pull[CellBatches::cell_of(*e)] *
+               b[rows.place_of(CellBatches::cell_of(*e))][CellBatches::local_of(*e)];
       out.segment<3>(3 * i) = sum;
     }
     add_bound_products(bound, grid.cell_nodes, x, out);
@@ -45,8 +48,11 @@ inline std::vector<Vec<3>> even_out_in_space(const YieldProblem<ThreeD>& problem
   add_bound_blocks(bound, grid.cell_nodes, G);
   fold_mirrors(grid, G);
   invert_blocks(fixed, G);
-  PressurePreconditioner& preconditioner = system.preconditioner;  // its room: the step's solve is done
-  if (!preconditioner.build(grid, system.batches, b, G, cells.stiffness, fill_stiffness)) return u;
+  if (!preconditioner.build(grid, system.batches, problem.quadrature, G, cells.stiffness, fill_stiffness))
+    return u;
+  give_back(G);
+  b.resize(rows.n_rows());
+  for (int c = 0; c < grid.n_cells(); ++c) b[rows.place_of(c)] = problem.quadrature.divergence_rows(c);
   Eigen::VectorXf r4 = Eigen::VectorXf::Zero(4 * grid.n_nodes()), z4;
   const auto precondition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
     for (int i = 0; i < grid.n_nodes(); ++i) r4.segment<3>(4 * i) = r.segment<3>(3 * i).cast<float>();

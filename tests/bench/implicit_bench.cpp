@@ -50,7 +50,7 @@ struct Set {
     const auto old_nodes = body.grid.node_map;
     activate(body.grid, body.points);
     point_to_grid(body.grid, body.points, body.nodes);
-    detail::carry_duals<Space>(old, body.grid, body.duals);
+    detail::carry_duals(old, ExactBingham{}, settings, body);
     lay_out_quadrature<Space>(body.grid, body.points, body.mix.tau_0, body.mix.K, body.quadrature);
     const auto v = body.nodes.v;
     detail::pose(body, settings, {}, v, old_nodes, dt, problem);
@@ -123,10 +123,10 @@ void law(benchmark::State& run) {
   auto& b = set.body;
   const double r = 1.5 * b.mix.mu;
   if constexpr (Space::dim == 3) {
-    auto batch = detail::to_batches(*set.problem, b.duals, b.space_system.batches.n_batches());
+    Eigen::VectorXd R;
     for (auto _ : run)
       detail::pass_over_cells(*set.problem, ExactBingham{}, set.settings.admm, r, b.v.data()->data(), true,
-                              b.space_system, batch);
+                              b.space_system, b.duals.space, R);
   } else {
     const auto stress = [&](int c, int k, const Vec<Space::n_strain>& q) -> Vec<Space::n_strain> {
       return b.mix.mu * q + b.duals.stress[c][k] + r * (q - b.duals.rate[c][k]);

@@ -171,7 +171,7 @@ TEST(SpaceSolver, GradientsAndTheirAdjoint) {
   activate(body.grid, body.points);
   CellBatches batches;
   batches.lay_out(body.grid);
-  CellForces<double> forces;
+  CellForces forces;
   batches.make_room(forces);
   const int n = body.grid.n_nodes();
   Eigen::VectorXd v(3 * n), sum = Eigen::VectorXd::Zero(3 * n);
@@ -192,7 +192,7 @@ TEST(SpaceSolver, GradientsAndTheirAdjoint) {
         work_on_gradients += L.squaredNorm();
       }
   }
-  for (int i = 0; i < n; ++i) sum.segment<3>(3 * i) = batches.gathered(i, forces);
+  for (int i = 0; i < n; ++i) sum.segment<3>(3 * i) = batches.gathered<double>(i, forces);
   EXPECT_LE(worst, 1e-11 * 100.0);  // gradients are of the order 1/h = 100 1/s
   EXPECT_NEAR(sum.dot(v) / work_on_gradients, 1.0, 1e-12);
 }
