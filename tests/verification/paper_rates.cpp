@@ -1,7 +1,9 @@
-// How much of the paper's shear rates is in how they are taken: Mix A in the paper's scheme, its mean shear
-// rate by several definitions in the same flow, at the peak and summed up over time.
+// How much of the paper's shear rates is in how they are taken: a mix in the paper's scheme, its mean shear
+// rate by several definitions in the same flow, at the peak and summed up over time; spread and lambda at the
+// end.
 //
-//   paper_rates [cell in mm] [rest in s] [seconds] [share of FLIP; 0: APIC]
+//   paper_rates [cell in mm] [rest in s] [seconds] [share of FLIP; 0: APIC] [mix: 0, 1, 2 for A, B, C]
+//               [1: shear rates are not halved in the law either] [alpha] [gate in 1/s]
 
 #include <fmt/format.h>
 #include <omp.h>
@@ -11,10 +13,36 @@
 
 #include "apparatus/slump_flow/explicit_engine.hpp"
 
+namespace tremie {
+
+/// Space for a law that takes engineering shear rates for components of D: simple shear at the rate g yields,
+/// flows and breaks lambda down as if at 2 g; extension is as it should be.
+struct Unhalved : ThreeD {};
+
+template <>
+inline void strain_rate_of<Unhalved, Octet>(const Octet (&L)[3][3], const Octet& v_0, const Octet& x_0,
+                                            Octet (&q)[5], Octet& divergence) {
+  strain_rate_of<ThreeD, Octet>(L, v_0, x_0, q, divergence);
+  for (int k = 2; k < 5; ++k) q[k] *= 2.0;
+}
+
+}  // namespace tremie
+
 namespace tremie::slump_flow {
 namespace {
 
 constexpr int D = 3;
+struct PaperMix {
+  double tau_0, mu, A_thix, friction;
+};
+constexpr PaperMix mixes[] = {{54.0, 35.8, 1.3, 0.35}, {61.0, 29.0, 1.8, 0.45}, {130.0, 30.2, 2.9, 0.43}};
+
+struct Asked {
+  double cell, rest, seconds, flip;
+  PaperMix mix;
+  double alpha, gate;
+};
+
 enum Definition {
   volume_mean,
   point_mean,
@@ -32,18 +60,20 @@ constexpr const char* names[definitions] = {"mean over volume, GIMP (what a run 
                                             "linear elements, points' velocities"};
 using Rates = std::array<double, definitions>;
 
-Scene paper_scene(double cell, double rest) {
+Scene paper_scene(const Asked& asked) {
   Scene scene;
-  scene.mix.tau_0 = 54.0, scene.mix.mu = 35.8, scene.mix.K = 1e4 / (3.0 * (1.0 - 2.0 * 0.45));
-  scene.mix.thixotropy = Thixotropy{1.3, 0.01};
+  const PaperMix& mix = asked.mix;
+  scene.mix.tau_0 = mix.tau_0, scene.mix.mu = mix.mu, scene.mix.K = 1e4 / (3.0 * (1.0 - 2.0 * 0.45));
+  scene.mix.thixotropy = Thixotropy{mix.A_thix, asked.alpha};
   scene.mix.thixotropy->kinetics = Kinetics::gated;
-  scene.mix.thixotropy->gamma_c = 0.1;
-  scene.floor = {ContactKind::friction, 0.35};
-  scene.rest = rest;
+  scene.mix.thixotropy->gamma_c = asked.gate;
+  scene.floor = {ContactKind::friction, mix.friction};
+  scene.rest = asked.rest;
   Model& m = scene.model;
   m.space = SpaceKind::quarter, m.yield = YieldKind::papanastasiou, m.regularisation = 5.0;
   m.scheme = SchemeKind::explicit_usf, m.shape = ShapeKind::gimp, m.time_step = 1e-4;
-  m.cell = {cell, cell}, m.points_per_cell = {2, 2};
+  m.cell = {asked.cell, asked.cell}, m.points_per_cell = {2, 2};
+  if (asked.flip > 0.0) m.transfer = TransferKind::flip, m.flip_blend = asked.flip;
   return scene;
 }
 
@@ -100,7 +130,8 @@ class LinearElements {
 };
 
 /// L of every point from the velocities on the grid.
-void gradients(ExplicitState<ThreeD>& state, std::vector<Mat<D, D>>& L) {
+template <class Space>
+void gradients(ExplicitState<Space>& state, std::vector<Mat<D, D>>& L) {
   for (int t = 0; t < state.grid.n_tiles(); ++t) {
     const Tile<D>& tile = state.grid.tiles[static_cast<std::size_t>(t)];
     TileGrid<D>::Buffer v;
@@ -123,7 +154,8 @@ void gradients(ExplicitState<ThreeD>& state, std::vector<Mat<D, D>>& L) {
   }
 }
 
-Rates rates_of(const Body<ThreeD>& body, const std::vector<Mat<D, D>>& L) {
+template <class Space>
+Rates rates_of(const Body<Space>& body, const std::vector<Mat<D, D>>& L) {
   Rates r{};
   const LinearElements elements(body.points, body.grid.axes[0].h);
   double volume = 0.0;
@@ -142,15 +174,16 @@ Rates rates_of(const Body<ThreeD>& body, const std::vector<Mat<D, D>>& L) {
   return r;
 }
 
-void print_rates(double cell, double rest, double seconds, double flip) {
-  Scene scene = paper_scene(cell, rest);
-  if (flip > 0.0) scene.model.transfer = TransferKind::flip, scene.model.flip_blend = flip;
-  Body<ThreeD> body = filled_cone<ThreeD>(scene);
+template <class Space>
+void print_rates(const Asked& asked) {
+  const auto [cell, rest, seconds, flip, mix, alpha, gate] = asked;
+  const Scene scene = paper_scene(asked);
+  Body<Space> body = filled_cone<Space>(scene);
   const ExplicitSettings settings = explicit_settings(scene);
   RigidWall<D> wall;
   lifted_wall(scene, settings.wall_gap + 0.6 * cell, wall);
   const Papanastasiou law{scene.model.regularisation};
-  auto state = start_explicit(body, law, settings, shape_of<ThreeD>(scene.model));
+  auto state = start_explicit(body, law, settings, shape_of<Space>(scene.model));
   std::vector<Mat<D, D>> L(body.points.size());
   Rates peak{}, total{};
   constexpr double interval = 0.01;
@@ -165,6 +198,8 @@ void print_rates(double cell, double rest, double seconds, double flip) {
   fmt::print("| {:.0f} mm cells, rest {:.0f} s, {} s, {} | peak 1/s | summed up over time |\n|---|---|---|\n",
              1e3 * cell, rest, seconds, flip > 0.0 ? "FLIP" : "APIC");
   for (int d = 0; d < definitions; ++d) fmt::print("| {} | {:.2f} | {:.2f} |\n", names[d], peak[d], total[d]);
+  fmt::print("\nspread {:.1f} mm, lambda {:.2f}\n", 1e3 * spread_of(scene, body.points),
+             engine::mean_flocculation(body.points).value_or(0.0));
 }
 
 }  // namespace
@@ -173,5 +208,15 @@ void print_rates(double cell, double rest, double seconds, double flip) {
 int main(int argc, char** argv) {
   omp_set_num_threads(1);
   const auto value = [&](int i, double fallback) { return i < argc ? std::atof(argv[i]) : fallback; };
-  tremie::slump_flow::print_rates(1e-3 * value(1, 20.0), value(2, 0.0), value(3, 1.0), value(4, 0.0));
+  const tremie::slump_flow::Asked asked{.cell = 1e-3 * value(1, 20.0),
+                                        .rest = value(2, 0.0),
+                                        .seconds = value(3, 1.0),
+                                        .flip = value(4, 0.0),
+                                        .mix = tremie::slump_flow::mixes[static_cast<int>(value(5, 0))],
+                                        .alpha = value(7, 0.01),
+                                        .gate = value(8, 0.1)};
+  if (value(6, 0.0) > 0.0)
+    tremie::slump_flow::print_rates<tremie::Unhalved>(asked);
+  else
+    tremie::slump_flow::print_rates<tremie::ThreeD>(asked);
 }
