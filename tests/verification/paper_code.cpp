@@ -4,11 +4,12 @@
 //   paper_code [key=value]...     keys and what they stand for unless set: `keys` below
 //
 // One line: the keys that were set; peak of the mean shear rate over points, at any step and at every tenth
-// of a second [1/s]; lambda at the end with the gate and without build-up, and the shear summed up over time
-// as lambda sees it; spread as Tremie reads it and between the outermost points [mm]; volume change.
+// of a second [1/s]; lambda at the start, at the end, and without build-up; shear summed up over time; spread
+// as Tremie reads it, over 99 % of the concrete and between the outermost points [mm]; volume change.
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <map>
 #include <string>
@@ -125,10 +126,11 @@ void hold_at_walls(int i, int j, int k, NodeLanes& v) {
   if (k <= 0) v[2] = 0.0;
 }
 
-/// Stress of a point from its velocity gradient L, columns by direction; its state after dt.
 struct Deviator {
   double diagonal[D], xy, yz, xz;
 };
+
+/// Viscous stress of a point from L[b][a] = dv_a/dx_b; breaks lambda down, or builds it up, over dt.
 Deviator update_state(const PaperMix& mix, const NodeLanes (&L)[D], double dt, Point& p) {
   const double shear = 0.5 * keys::shear, third = keys::trace > 0 ? 0.0 : 1.0 / 3.0;
   const double div = L[0][0] + L[1][1] + L[2][2];
@@ -170,7 +172,7 @@ void stress(const PaperMix& mix, double dt, Grid& grid, Point& p) {
   for_nodes(grid, p, [&](std::size_t n, double, const NodeLanes& dN) {
     grid.f[n] += dN[0] * s[0] + dN[1] * s[1] + dN[2] * s[2];
   });
-  if (own == 0.0)
+  if (keys::point_force == 0)
     for_corners(grid, p, [&](std::size_t n, const NodeLanes& dN) { grid.f[n] += p.V * pressure * dN; });
 }
 
@@ -254,6 +256,14 @@ std::vector<Point> filled(const Cone& cone, const PaperMix& mix, double h) {
   return points;
 }
 
+/// Diameter within which 99 % of the points are.
+double diameter_of_99(const Points<D>& points) {
+  std::vector<double> r;
+  for (const Vec<D>& x : points.x) r.push_back(x.head<2>().norm());
+  std::sort(r.begin(), r.end());
+  return r.empty() ? 0.0 : 2.0 * r[r.size() * 99 / 100];
+}
+
 struct Means {
   double rate = 0, lambda = 0, broken = 0, volume = 0;
 };
@@ -306,9 +316,10 @@ void run_keys() {
       widest = std::max({widest, p.x[0], p.x[1]});
     }
   const Means end = means(points);
-  fmt::print("{} points | {:.2f} {:.2f} | {:.2f} -> {:.2f} {:.2f}, {:.2f} | {:.1f} {:.1f} | {:.1f} %\n",
-             left.size(), peak, sampled, start.lambda, end.lambda, end.broken, shear,
-             1e3 * spread(left, h, true), 2e3 * widest, 100.0 * (end.volume / start.volume - 1.0));
+  fmt::print(
+      "{} points | {:.2f} {:.2f} | {:.2f} -> {:.2f} {:.2f}, {:.2f} | {:.1f} {:.1f} {:.1f} | {:.1f} %\n",
+      left.size(), peak, sampled, start.lambda, end.lambda, end.broken, shear, 1e3 * spread(left, h, true),
+      1e3 * diameter_of_99(left), 2e3 * widest, 100.0 * (end.volume / start.volume - 1.0));
 }
 
 }  // namespace
