@@ -250,7 +250,7 @@ Section model_section(const std::vector<std::string>& spaces, const ModelDefault
                .kind = Kind::choice,
                .words = names(precision_words),
                .fallback = "double",
-               .only_with = Condition{"scheme", {"explicit", "explicit_usf"}},
+               .only_with = Condition{"scheme", {"explicit_usf"}},
                .help = "of the sums between points and grid; single with transfer = apic"},
               {.name = "transfer", .kind = Kind::choice, .words = names(transfer_words), .fallback = "apic"},
               {.name = "flip_blend",

@@ -2,6 +2,7 @@
 
 // The slump-flow test by explicit steps: many short ones between two readings.
 
+#include "apparatus/slump_flow/energy_watch.hpp"
 #include "apparatus/slump_flow/engine.hpp"
 #include "libmpm/step/explicit_step.hpp"
 
@@ -84,6 +85,7 @@ Outcome run_explicit_in(const Scene& scene, const Law& law, const Observer& obse
   auto state = start_explicit(body, law, settings, shape_of<Space>(scene.model));
   engine::RestWatch watch;
   LimitWatch limits;
+  EnergyWatch energy(energy_of<Space>(body.points, body.mix.K));
   bool stopped = false;
   double next_frame = scene.frame_interval;
   while (!stopped && body.time < scene.duration - 0.5 * state.next_dt) {
@@ -99,6 +101,7 @@ Outcome run_explicit_in(const Scene& scene, const Law& law, const Observer& obse
     } while (!step.failed && body.time < until - 0.5 * state.next_dt);
     if (engine::gave_up(step, outcome.status, outcome.checks, body.time)) break;
     write_back(state, body);
+    energy.see(energy_of<Space>(body.points, body.mix.K), bool{wall});
     activate(body.grid, body.points);
     outcome.cost.cells_active = std::max<std::int64_t>(outcome.cost.cells_active, body.grid.n_cells());
     stopped = record(scene, body, step, observer, watch, next_frame, outcome);
@@ -106,6 +109,7 @@ Outcome run_explicit_in(const Scene& scene, const Law& law, const Observer& obse
   }
   read_results(watch, stopped, outcome);
   limits.tell(outcome.cost.steps, outcome.checks);
+  energy.tell(outcome.checks);
   engine::judge(body, start_mass, outcome.checks, outcome.cost);
   engine::judge_volume(outcome.series.front().volume_change, outcome.checks);
   judge_depth(scene, outcome);

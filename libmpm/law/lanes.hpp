@@ -38,15 +38,29 @@ template <class T>
 using ScalarOf = std::conditional_t<std::is_same_v<T, Singles>, float, double>;
 
 /// Two octets as one vector of singles, and one half of such a vector as an octet.
+using HalfSingles [[gnu::vector_size(32)]] = float;
 inline Singles to_single(const Octet& a, const Octet& b) {
-  using Half [[gnu::vector_size(32)]] = float;
-  return __builtin_shufflevector(__builtin_convertvector(a, Half), __builtin_convertvector(b, Half), 0, 1, 2,
-                                 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+  const HalfSingles low = __builtin_convertvector(a, HalfSingles),
+                    high = __builtin_convertvector(b, HalfSingles);
+#ifdef __AVX512F__
+  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+#else  // the compiler takes shuffles that the processor has not lane by lane, and minutes for it
+  const HalfSingles halves[2] = {low, high};
+  Singles both;
+  std::memcpy(&both, halves, sizeof both);
+  return both;
+#endif
 }
 inline Octet to_double(const Singles& a, int half) {
+#ifdef __AVX512F__
   return half == 0
              ? __builtin_convertvector(__builtin_shufflevector(a, a, 0, 1, 2, 3, 4, 5, 6, 7), Octet)
              : __builtin_convertvector(__builtin_shufflevector(a, a, 8, 9, 10, 11, 12, 13, 14, 15), Octet);
+#else
+  HalfSingles halves[2];
+  std::memcpy(halves, &a, sizeof halves);
+  return __builtin_convertvector(halves[half], Octet);
+#endif
 }
 
 inline double largest(const Octet& a) {

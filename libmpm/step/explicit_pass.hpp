@@ -355,6 +355,16 @@ PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& 
   return reduced.reduced();
 }
 
+/// One tile, in the precision that is set: single goes with the stress first.
+template <Pass pass, class Space, class Law>
+PassSums pass_as_set(const Mix& mix, const Law& law, const ExplicitSettings& settings, const PassInput& input,
+                     int t, const Share<Space::dim>& share, ExplicitState<Space>& state) {
+  if constexpr (!pass.stress || !pass.move)
+    if (settings.single_precision)
+      return pass_over_tile<pass, SingleNode, Space>(mix, law, settings, input, t, share, state);
+  return pass_over_tile<pass, NodeLanes, Space>(mix, law, settings, input, t, share, state);
+}
+
 /// All tiles; `before(share)` comes first in each share, for what needs nothing of the others but the sums of
 /// the last pass.
 template <Pass pass, class Space, class Law, class Before>
@@ -365,9 +375,7 @@ PassSums pass_over_points(const Mix& mix, const Law& law, const ExplicitSettings
   for_each_share(state.grid, [&](Share<D>& share) {
     before(share);
     for (const int t : share.tiles)
-      reduced[t] = settings.single_precision
-                       ? pass_over_tile<pass, SingleNode, Space>(mix, law, settings, input, t, share, state)
-                       : pass_over_tile<pass, NodeLanes, Space>(mix, law, settings, input, t, share, state);
+      reduced[t] = pass_as_set<pass, Space>(mix, law, settings, input, t, share, state);
   });
   state.grid.turn = 1 - state.grid.turn;
   PassSums all;

@@ -39,15 +39,27 @@ inline Singles four_times(const SingleNode& a) {
 #ifdef __AVX512F__  // one load; a shuffle would take an arithmetic unit
   return _mm512_maskz_broadcast_f32x4(0xffff, a);
 #else
-  return __builtin_shufflevector(a, a, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3);
+  const SingleNode four[4] = {a, a, a, a};
+  Singles times;
+  std::memcpy(&times, four, sizeof times);
+  return times;
 #endif
 }
 inline Singles each_four_times(const SingleNode& a) {
+#ifdef __AVX512F__
   const Singles b = four_times(a);
   return __builtin_shufflevector(b, b, 0, 0, 0, 0, 5, 5, 5, 5, 10, 10, 10, 10, 15, 15, 15, 15);
+#else
+  const SingleNode none = {}, four[4] = {none + a[0], none + a[1], none + a[2], none + a[3]};
+  Singles times;
+  std::memcpy(&times, four, sizeof times);
+  return times;
+#endif
 }
+
 /// Blocks of four and within them: points 4a + b of column c go to entry c of block a of vector b.
 inline void transpose_blocks(const Singles (&column)[4], Singles (&row)[4]) {
+#ifdef __AVX512F__
   const Singles low_01 =
       __builtin_shufflevector(column[0], column[1], 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29);
   const Singles high_01 = __builtin_shufflevector(column[0], column[1], 2, 18, 3, 19, 6, 22, 7, 23, 10, 26,
@@ -63,6 +75,13 @@ inline void transpose_blocks(const Singles (&column)[4], Singles (&row)[4]) {
       __builtin_shufflevector(high_01, high_23, 0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29);
   row[3] =
       __builtin_shufflevector(high_01, high_23, 2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31);
+#else  // the compiler takes shuffles that the processor has not lane by lane, and minutes for it
+  float from[4][singles_size], to[4][singles_size];
+  std::memcpy(from, column, sizeof from);
+  for (std::size_t c = 0; c < 4; ++c)
+    for (std::size_t l = 0; l < singles_size; ++l) to[l % 4][l / 4 * 4 + c] = from[c][l];
+  std::memcpy(row, to, sizeof to);
+#endif
 }
 
 /// Where transpose_blocks brings point l, in entries of four.
@@ -70,6 +89,7 @@ constexpr std::size_t place_of(std::size_t l) { return l % 4 * 4 + l / 4; }
 
 /// Sums of the four blocks of four of each of a to d, side by side.
 inline Singles sum_blocks(const Singles& a, const Singles& b, const Singles& c, const Singles& d) {
+#ifdef __AVX512F__
   const Singles ab =
       __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23) +
       __builtin_shufflevector(a, b, 8, 9, 10, 11, 12, 13, 14, 15, 24, 25, 26, 27, 28, 29, 30, 31);
@@ -78,6 +98,18 @@ inline Singles sum_blocks(const Singles& a, const Singles& b, const Singles& c, 
       __builtin_shufflevector(c, d, 8, 9, 10, 11, 12, 13, 14, 15, 24, 25, 26, 27, 28, 29, 30, 31);
   return __builtin_shufflevector(ab, cd, 0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27) +
          __builtin_shufflevector(ab, cd, 4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31);
+#else
+  const Singles* const of[4] = {&a, &b, &c, &d};
+  float from[singles_size], sum[singles_size];
+  for (std::size_t q = 0; q < 4; ++q) {
+    std::memcpy(from, of[q], sizeof from);
+    for (std::size_t e = 0; e < 4; ++e)
+      sum[4 * q + e] = (from[e] + from[8 + e]) + (from[4 + e] + from[12 + e]);
+  }
+  Singles sums;
+  std::memcpy(&sums, sum, sizeof sums);
+  return sums;
+#endif
 }
 
 /// Three columns of a direction's weights, one entry of four a point: 0 at the fourth control.

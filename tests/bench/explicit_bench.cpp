@@ -133,11 +133,6 @@ BENCHMARK(whole_step<ThreeD, false, false, last, true>)->Name("3D/USL, splines")
 BENCHMARK(whole_step<ThreeD, true, false, last, true>)->Name("3D/USL, splines, thixotropic")->Arg(1);
 BENCHMARK(whole_step<ThreeD, false, true, first, true>)->Name("3D/USF, GIMP")->Arg(1)->Arg(2)->UseRealTime();
 BENCHMARK(whole_step<ThreeD, true, true, first, true>)->Name("3D/USF, GIMP, thixotropic")->Arg(1);
-BENCHMARK(whole_step<ThreeD, false, false, last, false, true>)
-    ->Name("3D/USL, splines, pressure by the point, single")
-    ->Arg(1)
-    ->Arg(2)
-    ->UseRealTime();
 BENCHMARK(whole_step<ThreeD, false, true, first, true, true>)
     ->Name("3D/USF, GIMP, single")
     ->Arg(1)
