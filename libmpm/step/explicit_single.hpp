@@ -1,7 +1,7 @@
 #pragma once
 
 // The pass over the points with shape functions and sums in single precision: sixteen points at once, two
-// groups of eight. Places, volumes, flocculation and stress stay in double precision.
+// groups of eight. Places, volumes, flocculation and what opposes the flow stay in double precision.
 
 #include "libmpm/step/explicit_pass.hpp"
 
