@@ -169,6 +169,7 @@ Frame frame_of(const Body<Space>& body) {
   const auto& points = body.points;
   Frame frame;
   frame.time = body.time;
+  frame.shear_rate = shear_rates_now(body);  // first: its grid is gone before the rest is there
   frame.position.reserve(points.size()), frame.velocity.reserve(points.size());
   frame.volume.reserve(points.size()), frame.pressure.reserve(points.size());
   for (std::size_t p = 0; p < points.size(); ++p) {
@@ -184,7 +185,6 @@ Frame frame_of(const Body<Space>& body) {
     frame.pressure.push_back(pressure(points.ln_J[p], body.mix.K));
   }
   frame.flocculation = points.lambda;
-  frame.shear_rate = shear_rates_now(body);
   return frame;
 }
 
