@@ -1,6 +1,6 @@
 #pragma once
 
-// The laws of yield_law.hpp and flocculation.hpp for eight points at once, and the largest viscosity that a
+// The laws of yield_law.hpp and flocculation.hpp for points side by side, and the largest viscosity that a
 // law can reach: what bounds an explicit time step.
 
 #include "libmpm/law/flocculation.hpp"
@@ -9,11 +9,14 @@
 
 namespace tremie {
 
-inline Octet secant(const Papanastasiou& law, const Octet& gamma_dot, const Octet& tau_y) {
-  return law.m * tau_y * mean_decay(law.m * gamma_dot);
+template <class Lanes>
+Lanes secant(const Papanastasiou& law, const Lanes& gamma_dot, const Lanes& tau_y) {
+  const auto m = static_cast<ScalarOf<Lanes>>(law.m);
+  return m * tau_y * mean_decay(m * gamma_dot);
 }
-inline Octet secant(const BiViscous& law, const Octet& gamma_dot, const Octet& tau_y) {
-  return tau_y / max(gamma_dot, all_lanes(law.gamma_c));
+template <class Lanes>
+Lanes secant(const BiViscous& law, const Lanes& gamma_dot, const Lanes& tau_y) {
+  return tau_y / max(gamma_dot, static_cast<ScalarOf<Lanes>>(law.gamma_c) - Lanes{});
 }
 
 /// Largest secant over all shear rates, at rest [Pa s]. An exact yield stress has none.

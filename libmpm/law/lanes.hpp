@@ -3,6 +3,7 @@
 // Eight numbers side by side, for loops over material points: one arithmetic operation for eight points where
 // the processor has wide registers, the same bits where it has not.
 
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <type_traits>
@@ -17,15 +18,41 @@ using Octet [[gnu::vector_size(64)]] = double;
 using OctetMask [[gnu::vector_size(64)]] = std::int64_t;
 
 inline Octet all_lanes(double x) { return Octet{x, x, x, x, x, x, x, x}; }
-inline Octet max(const Octet& a, const Octet& b) { return a > b ? a : b; }
-inline Octet min(const Octet& a, const Octet& b) { return a < b ? a : b; }
+/// a > b ? a : b in each lane. Spelled out: among other arithmetic the compiler makes two instructions of it.
+inline Octet max(const Octet& a, const Octet& b) {
+#ifdef __AVX512F__
+  return _mm512_maskz_max_pd(0xff, a, b);
+#else
+  return a > b ? a : b;
+#endif
+}
+inline Octet min(const Octet& a, const Octet& b) {
+#ifdef __AVX512F__
+  return _mm512_maskz_min_pd(0xff, a, b);
+#else
+  return a < b ? a : b;
+#endif
+}
 
 /// Singles numbers in single precision.
 using Singles [[gnu::vector_size(64)]] = float;
 inline constexpr std::size_t singles_size = 16;
+using WholeNumbers [[gnu::vector_size(64)]] = int;
 
-inline Singles max(const Singles& a, const Singles& b) { return a > b ? a : b; }
-inline Singles min(const Singles& a, const Singles& b) { return a < b ? a : b; }
+inline Singles max(const Singles& a, const Singles& b) {
+#ifdef __AVX512F__
+  return _mm512_maskz_max_ps(0xffff, a, b);
+#else
+  return a > b ? a : b;
+#endif
+}
+inline Singles min(const Singles& a, const Singles& b) {
+#ifdef __AVX512F__
+  return _mm512_maskz_min_ps(0xffff, a, b);
+#else
+  return a < b ? a : b;
+#endif
+}
 
 inline Singles sqrt(const Singles& a) {
   Singles r;
@@ -53,9 +80,10 @@ inline Singles to_single(const Octet& a, const Octet& b) {
 }
 inline Octet to_double(const Singles& a, int half) {
 #ifdef __AVX512F__
-  return half == 0
-             ? __builtin_convertvector(__builtin_shufflevector(a, a, 0, 1, 2, 3, 4, 5, 6, 7), Octet)
-             : __builtin_convertvector(__builtin_shufflevector(a, a, 8, 9, 10, 11, 12, 13, 14, 15), Octet);
+  // The compiler would convert by quarters.
+  const HalfSingles one = half == 0 ? __builtin_shufflevector(a, a, 0, 1, 2, 3, 4, 5, 6, 7)
+                                    : __builtin_shufflevector(a, a, 8, 9, 10, 11, 12, 13, 14, 15);
+  return _mm512_maskz_cvtps_pd(0xff, one);
 #else
   HalfSingles halves[2];
   std::memcpy(halves, &a, sizeof halves);
@@ -74,6 +102,25 @@ inline double sum(const Octet& a) {
   return s;
 }
 
+/// Whole numbers that are kept as doubles.
+inline void to_whole(const Octet& a, std::array<int, octet_size>& whole) {
+  using EightWhole [[gnu::vector_size(32)]] = int;
+  const auto converted = __builtin_convertvector(a, EightWhole);
+  std::memcpy(whole.data(), &converted, sizeof converted);
+}
+
+/// table[at[l]] in each lane.
+inline Octet look_up(const double* table, const std::array<int, octet_size>& at) {
+#ifdef __AVX512F__
+  const __m256i indices = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(at.data()));
+  return _mm512_mask_i32gather_pd(Octet{}, 0xff, indices, table, 8);
+#else
+  Octet r;
+  for (std::size_t l = 0; l < octet_size; ++l) r[l] = table[at[l]];
+  return r;
+#endif
+}
+
 /// Whether a mask has any lane.
 inline bool any(const OctetMask& a) {
 #ifdef __AVX512F__  // lane by lane it would cost more than what it saves
@@ -81,6 +128,36 @@ inline bool any(const OctetMask& a) {
 #else
   std::int64_t bits = a[0];
   for (int l = 1; l < octet_size; ++l) bits |= a[l];
+  return bits != 0;
+#endif
+}
+
+/// The same of sixteen from a table whose entries are `stride` bytes apart.
+template <std::size_t stride>
+Singles look_up(const float* table, const std::array<int, octet_size>& a,
+                const std::array<int, octet_size>& b) {
+  constexpr int step = stride / sizeof(float);
+  static_assert(stride % sizeof(float) == 0);
+#ifdef __AVX512F__
+  const std::array<int, octet_size> both[2] = {a, b};
+  WholeNumbers at;
+  std::memcpy(&at, both, sizeof at);
+  at *= step;
+  return _mm512_mask_i32gather_ps(Singles{}, 0xffff, reinterpret_cast<__m512i>(at), table, 4);
+#else
+  Singles r;
+  for (std::size_t l = 0; l < octet_size; ++l)
+    r[l] = table[step * a[l]], r[octet_size + l] = table[step * b[l]];
+  return r;
+#endif
+}
+
+inline bool any(const WholeNumbers& a) {
+#ifdef __AVX512F__
+  return _mm512_test_epi32_mask(reinterpret_cast<__m512i>(a), reinterpret_cast<__m512i>(a)) != 0;
+#else
+  int bits = a[0];
+  for (std::size_t l = 1; l < singles_size; ++l) bits |= a[l];
   return bits != 0;
 #endif
 }
@@ -94,6 +171,8 @@ inline Octet sqrt(const Octet& a) {
 namespace detail {
 /// Adding it to |x| < 2^51 leaves the nearest whole number in the low bits.
 inline constexpr double round_to_whole = 6755399441055744.0;  // 1.5 * 2^52
+/// The same for |x| < 2^22 in single precision.
+inline constexpr float round_single_to_whole = 12582912.0F;  // 1.5 * 2^23
 
 /// Sum of c[k] x^k, by pairs of terms, pairs of pairs and so on (Estrin): few steps wait for another.
 inline Octet polynomial(const Octet& x, const double (&c)[14]) {
@@ -109,8 +188,7 @@ inline Octet nearest(const Octet& x) { return (x + detail::round_to_whole) - det
 
 /// The same for |x| < 2^22.
 inline Singles nearest(const Singles& x) {
-  constexpr float round_to_whole = 12582912.0F;  // 1.5 * 2^23
-  return (x + round_to_whole) - round_to_whole;
+  return (x + detail::round_single_to_whole) - detail::round_single_to_whole;
 }
 inline Singles floor(const Singles& x) {
   const Singles near = nearest(x);
@@ -158,6 +236,39 @@ inline Octet mean_decay(const Octet& x) {
   const OctetMask near = x < 0.5;
   if (!any(~near)) return series;
   const Octet direct = (1.0 - exp(-x)) / max(x, all_lanes(0.5));
+  return near ? series : direct;
+}
+
+/// e^x in single precision for |x| <= 80, to 2e-7 relative; beyond, e^-80 or e^80.
+inline Singles exp(const Singles& x) {
+  const Singles y = max(min(x, 80 - Singles{}), -80 - Singles{});
+  const Singles shifted = y * 1.44269504F + detail::round_single_to_whole;
+  const Singles k = shifted - detail::round_single_to_whole;
+  const Singles r = (y - k * 0.693359375F) + k * 2.12194440e-4F;  // ln 2 in two parts
+  // Taylor's polynomial on |r| <= ln 2 / 2: the first term left out is 5e-9.
+  const Singles r2 = r * r;
+  const Singles p =
+      ((1 + r) + r2 * (0.5F + r * (1.0F / 6.0F))) +
+      (r2 * r2) * ((1.0F / 24.0F + r * (1.0F / 120.0F)) + r2 * (1.0F / 720.0F + r * (1.0F / 5040.0F)));
+  WholeNumbers bits;
+  std::memcpy(&bits, &shifted, sizeof bits);
+  bits = (bits + 127) << 23;  // 2^k; what the shift pushes out is the rounding constant
+  Singles scale;
+  std::memcpy(&scale, &bits, sizeof scale);
+  return p * scale;
+}
+
+/// (1 - e^-x)/x in single precision for x >= 0, 1 at x = 0, to 3e-7 relative.
+inline Singles mean_decay(const Singles& x) {
+  // Below 1/2 the difference loses digits; there the series' first term left out is 5e-10.
+  const Singles x2 = x * x, x4 = x2 * x2;
+  const Singles series =
+      ((1 - x * 0.5F) + x2 * (1.0F / 6.0F - x * (1.0F / 24.0F))) +
+      x4 * (((1.0F / 120.0F - x * (1.0F / 720.0F)) + x2 * (1.0F / 5040.0F - x * (1.0F / 40320.0F))) +
+            x4 * (1.0F / 362880.0F));
+  const WholeNumbers near = x < 0.5F;
+  if (!any(~near)) return series;
+  const Singles direct = (1 - exp(-x)) / max(x, 0.5F - Singles{});
   return near ? series : direct;
 }
 

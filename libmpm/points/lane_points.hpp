@@ -138,10 +138,10 @@ inline int tile_of(const Axis& axis, int cell) {
   return wrapped(axis, (cell >= 0 ? cell : cell - tile_cells + 1) / tile_cells);
 }
 
-/// Keys of all points in their order.
+/// Keys of all points in their order. Within a tile the last direction of the cells runs fastest, or slowest.
 template <int D>
 TileBox<D> sort_keys(const std::array<Axis, D>& axes, double stencil_shift, const LanePoints<D>& lanes,
-                     std::vector<SortKey>& keys) {
+                     bool last_slowest, std::vector<SortKey>& keys) {
   const auto cell_of = [&](int d, std::size_t g, std::size_t l) {
     return static_cast<int>(std::floor((lanes.x[d][g][l] - axes[d].origin) / axes[d].h + stencil_shift));
   };
@@ -166,8 +166,8 @@ TileBox<D> sort_keys(const std::array<Axis, D>& axes, double stencil_shift, cons
   each([&](std::size_t g, std::size_t l) {
     Index<D> tile;
     std::uint64_t cell = 0;
-    for (int d = 0; d < D; ++d) {
-      const int c = cell_of(d, g, l);
+    for (int i = 0; i < D; ++i) {
+      const int d = last_slowest ? (i + D - 1) % D : i, c = cell_of(d, g, l);
       tile[d] = tile_of(axes[d], c);
       cell = cell * tile_cells + static_cast<std::uint64_t>(((c % tile_cells) + tile_cells) % tile_cells);
     }
@@ -277,7 +277,7 @@ SortedTiles<D> sort_into_tiles(const std::array<Axis, D>& axes, double stencil_s
                                bool packed = false) {
   detail::wrap_points<D>(axes, lanes);
   std::vector<detail::SortKey> keys;
-  const auto box = detail::sort_keys<D>(axes, stencil_shift, lanes, keys);
+  const auto box = detail::sort_keys<D>(axes, stencil_shift, lanes, packed, keys);
   SortedTiles<D> sorted;
   std::vector<detail::GroupSlots> groups;
   groups.reserve(lanes.groups() + lanes.groups() / 4);

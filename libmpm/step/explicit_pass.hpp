@@ -19,8 +19,8 @@ struct StrainRate {
 
 /// slope[b][a] = dv_a/dx_b; v_0 and x_0 the first components of velocity and place.
 template <class Space, class Lanes, std::size_t n>
-StrainRate<Space, Lanes> strain_rate(const Lanes (&slope)[Space::dim][n], const Lanes& v_0,
-                                     const Lanes& x_0) {
+[[gnu::always_inline]] inline StrainRate<Space, Lanes> strain_rate(const Lanes (&slope)[Space::dim][n],
+                                                                   const Lanes& v_0, const Lanes& x_0) {
   constexpr int D = Space::dim;
   Lanes L[D][D];
   for (int a = 0; a < D; ++a)
@@ -31,6 +31,25 @@ StrainRate<Space, Lanes> strain_rate(const Lanes (&slope)[Space::dim][n], const 
   for (int k = 1; k < Space::n_strain; ++k) q2 += rate.q[k] * rate.q[k];
   rate.gamma_dot = sqrt(q2);
   return rate;
+}
+
+/// Updates the flocculation of group g over dt, and gives its static yield stress [Pa].
+template <int D>
+Octet update_yield_stress(const Mix& mix, double dt, const Octet& gamma_dot, LanePoints<D>& points,
+                          std::size_t g, LaneSums& sums) {
+  if (!points.thixotropic()) return all_lanes(mix.tau_0);
+  Octet& lambda = points.lambda[g];
+  if (dt > 0.0)
+    lambda = flocculation_step(lambda, *mix.thixotropy, mix.tau_0, points.gamma_dot[g], gamma_dot, dt);
+  points.gamma_dot[g] = gamma_dot;
+  sums.lambda = max(sums.lambda, lambda);
+  return (1.0 + lambda) * mix.tau_0;
+}
+
+/// Their secant viscosity [Pa s].
+template <class Law, class Lanes>
+Lanes viscosity_of(const Mix& mix, const Law& law, const Lanes& gamma_dot, const Lanes& tau_y) {
+  return static_cast<ScalarOf<Lanes>>(mix.mu) + secant(law, gamma_dot, tau_y);
 }
 
 /// What eight points oppose to the flow, times volume.
@@ -44,20 +63,12 @@ template <int D, class Law>
 Resistance update_state(const Mix& mix, const Law& law, double dt, const Octet& gamma_dot,
                         const Octet& divergence, const Octet& hold, LanePoints<D>& points, std::size_t g,
                         LaneSums& sums) {
-  Octet tau_y = all_lanes(mix.tau_0);
-  if (points.thixotropic()) {
-    Octet& lambda = points.lambda[g];
-    if (dt > 0.0)
-      lambda = flocculation_step(lambda, *mix.thixotropy, mix.tau_0, points.gamma_dot[g], gamma_dot, dt);
-    points.gamma_dot[g] = gamma_dot;
-    tau_y = (1.0 + lambda) * mix.tau_0;
-    sums.lambda = max(sums.lambda, lambda);
-  }
+  const Octet tau_y = update_yield_stress(mix, dt, gamma_dot, points, g, sums);
   Octet& ln_J = points.ln_J[g];
   ln_J += dt * divergence;
   const Octet volume = points.V0[g] * exp(ln_J);
   sums.volume += volume, sums.volume_rate += volume * gamma_dot;
-  return {hold * volume * (mix.mu + secant(law, gamma_dot, tau_y)), volume * (-mix.K * ln_J)};
+  return {hold * volume * viscosity_of(mix, law, gamma_dot, tau_y), volume * (-mix.K * ln_J)};
 }
 
 /// Stress and its hoop part, times volume, without the pressure where that goes by the cell.
@@ -79,7 +90,8 @@ LaneStress<Space::dim, Lanes> stress_of(const StrainRate<Space, Lanes>& rate, co
 /// 1/inertia in each direction [1/m^2], by one division. On a wall one control has all the weight: no slope
 /// can be seen there, and none is given.
 template <int D, class Lanes>
-std::array<Lanes, D> inverse_inertia(const std::array<Axis, D>& axes, const Lanes* inertia) {
+[[gnu::always_inline]] inline std::array<Lanes, D> inverse_inertia(const std::array<Axis, D>& axes,
+                                                                   const Lanes* inertia) {
   using Real = ScalarOf<Lanes>;
   const auto per_cell = [&](int d) { return static_cast<Real>(1.0 / (axes[d].h * axes[d].h)); };
   const Lanes one = 1 - Lanes{};
@@ -105,8 +117,8 @@ std::array<Lanes, D> inverse_inertia(const std::array<Axis, D>& axes, const Lane
 
 /// Moves group g with velocities v.
 template <int D>
-void move_places(const std::array<Axis, D>& axes, double dt, const Octet* v, LanePoints<D>& points,
-                 std::size_t g, LaneSums& sums) {
+[[gnu::always_inline]] inline void move_places(const std::array<Axis, D>& axes, double dt, const Octet* v,
+                                               LanePoints<D>& points, std::size_t g, LaneSums& sums) {
   Octet speed2 = {};
   for (int d = 0; d < D; ++d) {
     Octet& x = points.x[d][g];
@@ -169,12 +181,12 @@ void scatter_points(bool flip, bool apart, double impulse_dt, const Weights<Spac
   }
 }
 
-/// What eight points stand for in cells at walls; `cell`: theirs in the tile.
+/// What eight points stand for in cells at walls, where the tile has such; `cell`: theirs in the tile.
 template <int D>
-Octet hold_of_group(const HeldCells<D>& held, const std::array<int, octet_size>& cell) {
-  Octet of;
-  for (std::size_t l = 0; l < octet_size; ++l)
-    of[l] = static_cast<double>(held[static_cast<std::size_t>(cell[l])].hold);
+Octet hold_of_group(const HeldCells<D>* held, const std::array<int, octet_size>& cell) {
+  Octet of = all_lanes(1.0);
+  for (std::size_t l = 0; l < octet_size && held; ++l)
+    of[l] = static_cast<double>((*held)[static_cast<std::size_t>(cell[l])].hold);
   return of;
 }
 
@@ -210,7 +222,7 @@ struct TilePass {
 
   bool cells;                                   ///< pressures go by the cell, and there are any in this pass
   PressureCells<Space, Node>&before, &pressed;  ///< cells of the points as they were, and as they push
-  const GroupCells* entered;                    ///< of each group, where all have entered `before`
+  const GroupCells* entered;  ///< pressure cells of each group, where `before` has been read
   StencilFrame<D> frame;
   LaneSums& reduced;
 };
@@ -226,23 +238,20 @@ GroupCells cells_of_group(const TilePass<pass, Space, Law, Node>& in, std::size_
   return cell;
 }
 
-/// Updates the state of group g, of which n points are real and have their pressures in `cell`.
+/// The divergence that changes the volumes of group g: by the point where its pressures do not go by the
+/// cell.
 template <Pass pass, class Space, class Law, class Node>
-Resistance resistance_of_group(TilePass<pass, Space, Law, Node>& in, std::size_t g, int n,
-                               const Octet& gamma_dot, Octet divergence, const GroupCells& cell) {
-  constexpr int D = Space::dim;
-  if (in.cells)
-    for (int l = 0; l < n; ++l)
-      divergence[l] = pass.gather ? in.before.divergence(in.v, cell[static_cast<std::size_t>(l)]) : 0.0;
-  const Octet hold = in.held ? hold_of_group<D>(*in.held, cell) : all_lanes(1.0);
-  return update_state<D>(in.mix, in.law, in.input.dt, gamma_dot, divergence, hold, in.points, g, in.reduced);
+Octet divergence_of_group(const TilePass<pass, Space, Law, Node>& in, const Octet& by_point,
+                          const GroupCells& cell) {
+  if (!in.cells) return by_point;
+  return pass.gather ? in.before.divergence(cell) : Octet{};
 }
 
 /// Gives the pressures of group g to its cells, in which it is entered if it was not or has moved since.
 template <Pass pass, class Space, class Law, class Node>
 void push_cells(TilePass<pass, Space, Law, Node>& in, std::size_t g, int n, const Octet& pressure,
                 GroupCells& cell) {
-  if (!pass.gather || pass.move) in.pressed.add_group(in.points, g, cell);
+  if (!pass.gather || pass.move) in.pressed.enter(in.points, g, cell);
   in.pressed.push(cell, n, in.input.impulse_dt * pressure);
 }
 
@@ -270,7 +279,9 @@ void visit_group(TilePass<pass, Space, Law, NodeLanes>& in, std::size_t g) {
   if (pass.stress) {
     cell = cells_of_group(in, g);
     const auto rate = strain_rate<Space, Octet>(fields.L, fields.v[0], in.points.x[0][g]);
-    resistance = resistance_of_group(in, g, n, rate.gamma_dot, rate.divergence, cell);
+    resistance = update_state<D>(in.mix, in.law, in.input.dt, rate.gamma_dot,
+                                 divergence_of_group(in, rate.divergence, cell),
+                                 hold_of_group<D>(in.held, cell), in.points, g, in.reduced);
     stress = stress_of<Space, Octet>(rate, resistance.viscosity, in.cells ? Octet{} : resistance.pressure);
   }
   if (pass.move && pass.gather) {
@@ -290,12 +301,13 @@ void visit_groups(TilePass<pass, Space, Law, NodeLanes>& in) {
   for (int g = in.tile.first_group; g < in.tile.last_group; ++g) visit_group(in, static_cast<std::size_t>(g));
 }
 
-/// Enters all points of the tile into their pressure cells.
+/// Enters all points of the tile into their pressure cells, and reads those.
 template <Pass pass, class Space, class Law, class Node>
-void enter_pressure_cells(TilePass<pass, Space, Law, Node>& in, std::vector<GroupCells>& of_group) {
+void read_pressure_cells(TilePass<pass, Space, Law, Node>& in, std::vector<GroupCells>& of_group) {
   const auto first = static_cast<std::size_t>(in.tile.first_group);
   of_group.resize(static_cast<std::size_t>(in.tile.last_group) - first);
-  for (std::size_t i = 0; i < of_group.size(); ++i) in.before.add_group(in.points, first + i, of_group[i]);
+  for (std::size_t i = 0; i < of_group.size(); ++i) in.before.enter(in.points, first + i, of_group[i]);
+  in.before.read(in.v);
   in.entered = of_group.data();
 }
 
@@ -349,7 +361,7 @@ PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& 
                                       .frame = stencil_frame<D>(grid.axes, state.shape, tile.at),
                                       .reduced = reduced};
   static thread_local std::vector<GroupCells> entered;
-  if (in.cells && pass.gather && before.follows_points()) enter_pressure_cells(in, entered);
+  if (in.cells && pass.gather) read_pressure_cells(in, entered);
   visit_groups(in);
   if (in.cells) in.pressed.scatter_impulses(*forces);
   return reduced.reduced();

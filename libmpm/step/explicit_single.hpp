@@ -15,21 +15,38 @@ struct GroupPair {
   std::size_t real() const { return static_cast<std::size_t>(n[0] + n[1]); }
 };
 
-/// State and stress of a pair; what it opposes to the flow is found group by group.
+/// Updates the state of a pair, and gives its stress. The pressures are there twice: in the stress too where
+/// they do not go by the cell.
 template <Pass pass, class Space, class Law>
 LaneStress<Space::dim, Singles> stress_of_pair(TilePass<pass, Space, Law, SingleNode>& in,
                                                const GroupPair& pair, const SingleFields<Space::dim>& read,
                                                const GroupCells (&cell)[2], Octet (&pressure)[2]) {
-  const Singles x_0 = to_single(in.points.x[0][pair.g[0]], in.points.x[0][pair.g[1]]);
-  const auto rate = strain_rate<Space, Singles>(read.along, read.value[0], x_0);
-  Resistance of[2] = {};
-  for (int half = 0; half < 2 && pair.n[half] > 0; ++half) {
-    of[half] = resistance_of_group(in, pair.g[half], pair.n[half], to_double(rate.gamma_dot, half),
-                                   to_double(rate.divergence, half), cell[half]);
-    pressure[half] = of[half].pressure;
+  constexpr int D = Space::dim;
+  auto& points = in.points;
+  const auto [a, b] = pair.g;
+  const auto rate =
+      strain_rate<Space, Singles>(read.along, read.value[0], to_single(points.x[0][a], points.x[0][b]));
+  Octet gamma_dot[2], tau_y[2];
+  for (int half = 0; half < 2; ++half) {
+    gamma_dot[half] = to_double(rate.gamma_dot, half), tau_y[half] = pressure[half] = Octet{};
+    if (pair.n[half] == 0) continue;
+    const std::size_t g = pair.g[half];
+    tau_y[half] = update_yield_stress<D>(in.mix, in.input.dt, gamma_dot[half], points, g, in.reduced);
+    points.ln_J[g] += in.input.dt * divergence_of_group(in, to_double(rate.divergence, half), cell[half]);
   }
-  const Singles in_tensor = in.cells ? Singles{} : to_single(of[0].pressure, of[1].pressure);
-  return stress_of<Space, Singles>(rate, to_single(of[0].viscosity, of[1].viscosity), in_tensor);
+  const Singles volume =
+      to_single(points.V0[a], points.V0[b]) * exp(to_single(points.ln_J[a], points.ln_J[b]));
+  for (int half = 0; half < 2 && pair.n[half] > 0; ++half) {
+    const Octet of_half = to_double(volume, half);
+    in.reduced.volume += of_half, in.reduced.volume_rate += of_half * gamma_dot[half];
+    pressure[half] = of_half * (-in.mix.K * points.ln_J[pair.g[half]]);
+  }
+  Singles held = volume;
+  if (in.held) held *= look_up<sizeof(HeldCell<D>)>(&in.held->front().hold, cell[0], cell[1]);
+  const Singles viscosity =
+      held * viscosity_of(in.mix, in.law, rate.gamma_dot, to_single(tau_y[0], tau_y[1]));
+  return stress_of<Space, Singles>(rate, viscosity,
+                                   in.cells ? Singles{} : to_single(pressure[0], pressure[1]));
 }
 
 /// Moves a pair with what it read, and keeps its affine velocities.

@@ -37,97 +37,96 @@ class PressureCells {
         follows_(shape.kind == ShapeFunctions::b_spline || stress == StressUpdate::last),
         held_(held) {
     if (!wanted) return;
-    slot_.fill(-1);
+    entered_.fill(false), impulse_.fill(0.0);
+    if (follows_) moment_.fill(NodeLanes{});
     for (int d = 0; d < D; ++d) {
       origin_[d] = axes[d].origin, per_cell_[d] = 1.0 / axes[d].h, first_[d] = tile[d] * tile_cells;
       along_[d][d] = static_cast<Real>(per_cell_[d]);
       for (int e = 0; e < D; ++e) across_[d][e] = e == d ? 0 : 1;
     }
+    centre_ = edges_at(NodeLanes{} + 0.5);
   }
 
-  /// Whether a row's place is known only when all points have entered.
-  bool follows_points() const { return follows_; }
-
-  /// Enters the cells of the points of group g, with their places.
-  void add_group(const LanePoints<D>& points, std::size_t g, std::array<int, octet_size>& cells) {
+  /// Enters the points of group g: `cells` are theirs.
+  void enter(const LanePoints<D>& points, std::size_t g, std::array<int, octet_size>& cells) {
     const std::array<Octet, D> x = places_of<D>(points, g);
     find_pressure_cells<D>(axes_, shape_, tile_, x, cells);
-    if (!follows_) {
-      for (const int cell : cells) row_of(cell);
-      return;
+    // What fills up a group need not have stayed with its points: it must not enter a cell of its own.
+    for (std::size_t l = 1; l < octet_size; ++l) cells[l] = points.id[g][l] < 0 ? cells[0] : cells[l];
+    std::size_t count = count_;
+    for (const int cell : cells) {  // without a branch: whether a cell is new is anyone's guess
+      const auto c = static_cast<std::size_t>(cell);
+      list_[count] = static_cast<std::uint16_t>(cell);
+      count += entered_[c] ? 0U : 1U;
+      entered_[c] = true;
     }
+    count_ = count;
+    if (!follows_) return;
     Octet column[4] = {};
     column[D] = points.mass[g];
     for (int d = 0; d < D; ++d) column[d] = column[D] * x[d];
-    if (in_one(cells)) {
-      Row& row = row_of(cells[0]);
-      for (int c = 0; c <= D; ++c) row.moment[c] += sum(column[c]);
-      return;
-    }
     NodeLanes moment[octet_size];
     to_rows(column, moment);
-    for (std::size_t l = 0; l < octet_size; ++l)
-      if (moment[l][D] > 0.0) row_of(cells[l]).moment += moment[l];
+    for (std::size_t l = 0; l < octet_size; ++l) moment_[static_cast<std::size_t>(cells[l])] += moment[l];
   }
 
-  /// Divergence of a cell whose points have all entered, read from the velocities the first time.
-  double divergence(const Cube& v, int cell) {
-    Row& row = row_of(cell);
-    if (!row.read) row.read = true, row.divergence = read_divergence(v, row);
-    return row.divergence;
+  /// Reads the divergence of all cells, when all points have entered.
+  void read(const Cube& v) {
+    for (std::size_t i = 0; i < count_; ++i) divergence_[list_[i]] = read_divergence(v, list_[i]);
+  }
+
+  /// Of the cells of eight points.
+  Octet divergence(const std::array<int, octet_size>& cells) const {
+    return look_up(divergence_.data(), cells);
   }
 
   /// Adds the impulses of n points, pressure times volume times step.
   void push(const std::array<int, octet_size>& cells, int points, const Octet& impulse) {
-    if (in_one(cells)) {
-      row_of(cells[0]).impulse += sum(impulse);
-      return;
-    }
-    for (int l = 0; l < points; ++l) row_of(cells[static_cast<std::size_t>(l)]).impulse += impulse[l];
+    for (int l = 0; l < points; ++l)
+      impulse_[static_cast<std::size_t>(cells[static_cast<std::size_t>(l)])] += impulse[l];
   }
 
+  /// Gives the controls the impulses of all cells, when all points have pushed.
   void scatter_impulses(Cube& sums) {
-    for (int i = 0; i < count_; ++i) {
-      Row& row = rows_[i];
-      settle(row);
+    for (std::size_t i = 0; i < count_; ++i) {
+      const std::size_t cell = list_[i];
+      const double impulse = impulse_[cell];
       if (at_corners()) {
-        with_corners(row, [&](int at, const auto& slopes) {
-          store_two(load_two(&sums[at]) + static_cast<Real>(row.impulse) * slopes, &sums[at]);
+        with_corners(cell, [&](int at, const auto& slopes) {
+          store_two(load_two(&sums[at]) + static_cast<Real>(impulse) * slopes, &sums[at]);
         });
         continue;
       }
-      with_row(row, [&](int base, const auto& weights, double x_0) {
+      with_row(cell, [&](int base, const auto& weights, double x_0) {
         constexpr int width = std::remove_cvref_t<decltype(weights)>::n_controls;
         NodeLanes value = {}, slope[D] = {};
         const NodeLanes moment[D] = {};
-        if (std::is_same_v<Space, Axisymmetric>) value[0] = row.impulse / x_0;
-        for (int d = 0; d < D; ++d) slope[d][d] = row.impulse;
+        if (std::is_same_v<Space, Axisymmetric>) value[0] = impulse / x_0;
+        for (int d = 0; d < D; ++d) slope[d][d] = impulse;
         scatter<D, width>(&sums[base], weights, value, slope, moment);
       });
     }
   }
 
  private:
-  struct Row {  // without defaults: most of a tile's cells are never entered
-    int cell;
-    bool settled, read;
-    double divergence, impulse, x_0;
-    NodeLanes moment;  ///< mass times place, and mass; once settled, the place in the cell
+  /// Slopes of a cell's corners in all directions, two by two along its edges in the last.
+  static constexpr int n_edges = power(2, D - 1);
+  struct Edges {
+    decltype(load_two(static_cast<const Node*>(nullptr))) of[n_edges];
   };
 
-  double read_divergence(const Cube& v, Row& row) {
-    settle(row);
-    double divergence = 0.0;
+  double read_divergence(const Cube& v, std::size_t cell) const {
     if (at_corners()) {
       decltype(load_two(&v[0])) total = {};
-      with_corners(row, [&](int at, const auto& slopes) { total += slopes * load_two(&v[at]); });
+      with_corners(cell, [&](int at, const auto& slopes) { total += slopes * load_two(&v[at]); });
       const Node both = __builtin_shufflevector(total, total, 0, 1, 2, 3) +
                         __builtin_shufflevector(total, total, 4, 5, 6, 7);
       Real sum = both[0];
       for (int d = 1; d < D; ++d) sum += both[d];
       return static_cast<double>(sum);
     }
-    with_row(row, [&](int base, const auto& weights, double x_0) {
+    double divergence = 0.0;
+    with_row(cell, [&](int base, const auto& weights, double x_0) {
       constexpr int width = std::remove_cvref_t<decltype(weights)>::n_controls;
       const auto at = gather<D, width, slopes_only>(&v[base], weights);
       double L[D][D], q[Space::n_strain];
@@ -139,43 +138,36 @@ class PressureCells {
     return divergence;
   }
 
-  Row& row_of(int cell) {
-    if (slot_[cell] < 0) {
-      slot_[cell] = static_cast<std::int16_t>(count_);
-      rows_[count_] = Row{cell, false, false, 0.0, 0.0, 0.0, NodeLanes{}};
-      ++count_;
-    }
-    return rows_[slot_[cell]];
-  }
-
-  static bool in_one(const std::array<int, octet_size>& cells) {
-    bool one = true;
-    for (const int cell : cells) one = one && cell == cells[0];
-    return one;
-  }
-
-  static Index<D> index_of(int cell) {
-    Index<D> at;
-    for (int d = D - 1; d >= 0; --d, cell /= tile_pressure_cells) at[d] = cell % tile_pressure_cells - 2;
+  static constexpr Index<D> index_of(std::size_t cell) {
+    Index<D> at{};
+    for (int d = D - 1; d >= 0; --d, cell /= tile_pressure_cells)
+      at[d] = static_cast<int>(cell % tile_pressure_cells) - 2;
     return at;
   }
 
-  /// Finds the row's place: all points have entered.
-  void settle(Row& row) {
-    if (row.settled) return;
-    row.settled = true;
-    const Index<D> at = index_of(row.cell);
-    NodeLanes cell = first_;
-    for (int d = 0; d < D; ++d) cell[d] += at[d];
-    if (follows_) {
-      const NodeLanes x = row.moment * (1.0 / row.moment[D]);
-      row.moment = (x - origin_) * per_cell_ - cell;
-    } else {
-      row.moment += 0.5;
-      if (held_)
-        for (int d = 0; d < D; ++d) row.moment[d] = static_cast<double>((*held_)[row.cell].place[d]);
+  /// Each cell's first corner among the controls that the tile sees.
+  static constexpr std::array<std::int16_t, n> first_corner = [] {
+    std::array<std::int16_t, n> first{};
+    for (std::size_t cell = 0; cell < first.size(); ++cell) {
+      int at = 0;
+      for (const int i : index_of(cell)) at = at * tile_span + i + 2;
+      first[cell] = static_cast<std::int16_t>(at);
     }
-    row.x_0 = origin_[0] + (cell[0] + row.moment[0]) * axes_[0].h;
+    return first;
+  }();
+
+  /// Where the row of a cell is, in the cell.
+  NodeLanes place_of(std::size_t cell) const {
+    if (follows_) {
+      const Index<D> at = index_of(cell);
+      NodeLanes begin = first_;
+      for (int d = 0; d < D; ++d) begin[d] += at[d];
+      const NodeLanes x = moment_[cell] * (1.0 / moment_[cell][D]);
+      return (x - origin_) * per_cell_ - begin;
+    }
+    NodeLanes place = NodeLanes{} + 0.5;
+    for (int d = 0; d < D && held_; ++d) place[d] = static_cast<double>((*held_)[cell].place[d]);
+    return place;
   }
 
   /// GIMP's rows are the slopes of the hats of the cell's corners. Averaged over an extent they would see
@@ -184,56 +176,60 @@ class PressureCells {
     return shape_.kind == ShapeFunctions::gimp && !std::is_same_v<Space, Axisymmetric>;
   }
 
-  /// use(control, slopes in all directions of it and of the next) along the cell's edges in the last
-  /// direction.
-  template <class Use>
-  void with_corners(const Row& row, Use use) const {
-    const Index<D> at = index_of(row.cell);
+  Edges edges_at(const NodeLanes& place) const {
     Node side[D][2];  // a corner's slopes are the product of its sides in all directions
-    int base = 0;
     for (int d = 0; d < D; ++d) {
-      base = base * tile_span + at[d] + 2;
-      const auto s = static_cast<Real>(row.moment[d]);
+      const auto s = static_cast<Real>(place[d]);
       side[d][0] = (1 - s) * across_[d] - along_[d];
       side[d][1] = s * across_[d] + along_[d];
     }
     const auto last = both(side[D - 1][0], side[D - 1][1]);
-    for (int i = 0; i < 2; ++i) {
-      if constexpr (D == 2) {
-        use(base + i * tile_span, last * both(side[0][i], side[0][i]));
-      } else {
-        for (int j = 0; j < 2; ++j) {
-          const Node edge = side[0][i] * side[1][j];
-          use(base + (i * tile_span + j) * tile_span, last * both(edge, edge));
-        }
-      }
+    Edges edges;
+    for (int e = 0; e < n_edges; ++e) {
+      const Node edge = D == 2 ? side[0][e] : side[0][e / 2] * side[1][e % 2];
+      edges.of[e] = last * both(edge, edge);
     }
+    return edges;
+  }
+
+  /// use(control, slopes in all directions of it and of the next) along the cell's edges in the last
+  /// direction.
+  template <class Use>
+  void with_corners(std::size_t cell, Use use) const {
+    const int base = first_corner[cell];
+    const bool at_centre = !follows_ && !held_;
+    const Edges own = at_centre ? Edges{} : edges_at(place_of(cell));
+    const Edges& edges = at_centre ? centre_ : own;
+    for (int e = 0; e < n_edges; ++e)
+      use(base + (D == 2 ? e : e / 2 * tile_span + e % 2) * tile_span, edges.of[e]);
   }
 
   /// use(base, weights, first coordinate) at the row's place: three controls a direction, or the cell's two
   /// corners.
   template <class Use>
-  void with_row(const Row& row, Use use) const {
-    const Index<D> at = index_of(row.cell);
+  void with_row(std::size_t cell, Use use) const {
+    const Index<D> at = index_of(cell);
+    const NodeLanes place = place_of(cell);
+    const double x_0 = origin_[0] + (first_[0] + at[0] + place[0]) * axes_[0].h;
     if (shape_.kind == ShapeFunctions::gimp) {
       PointWeights<D, 2> weights{};
       int base = 0;
       for (int d = 0; d < D; ++d) {
         base = base * tile_span + at[d] + 2;
-        weights.w[d][0] = 1.0 - row.moment[d], weights.w[d][1] = row.moment[d];
+        weights.w[d][0] = 1.0 - place[d], weights.w[d][1] = place[d];
         weights.dw[d][1] = per_cell_[d], weights.dw[d][0] = -per_cell_[d];
       }
-      use(base, weights, row.x_0);
+      use(base, weights, x_0);
       return;
     }
     PointWeights<D, 3> weights{};
     int base = 0;
     for (int d = 0; d < D; ++d) {
       base = base * tile_span + at[d] + 1;
-      const SplineValues one = splines(axes_[d], tile_[d] * tile_cells + at[d], row.moment[d]);
+      const SplineValues one = splines(axes_[d], tile_[d] * tile_cells + at[d], place[d]);
       for (int k = 0; k < 3; ++k) weights.w[d][k] = one.N[k], weights.dw[d][k] = one.dN[k];
     }
-    use(base, weights, row.x_0);
+    use(base, weights, x_0);
   }
 
   const std::array<Axis, D>& axes_;
@@ -243,9 +239,12 @@ class PressureCells {
   const HeldCells<D>* held_;
   NodeLanes origin_ = {}, per_cell_ = {}, first_ = {};
   Node across_[D] = {}, along_[D] = {};  ///< ones but in direction d; 1/h in it
-  int count_ = 0;
-  std::array<std::int16_t, n> slot_;
-  std::array<Row, n> rows_;
+  Edges centre_;                         ///< of a row at its cell's centre
+  std::size_t count_ = 0;
+  std::array<bool, n> entered_;
+  std::array<std::uint16_t, n + 1> list_;  ///< the cells that were entered, and room for one that was before
+  std::array<double, n> divergence_, impulse_;
+  std::array<NodeLanes, n> moment_;  ///< where rows follow the points: mass times place, and mass
 };
 
 }  // namespace tremie::detail

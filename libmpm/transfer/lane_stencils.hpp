@@ -44,10 +44,10 @@ inline constexpr int tile_pressure_cells = tile_cells + 3;
 /// What a tile's weights need of one axis; cells and corners are counted from the tile's first.
 template <class Real>
 struct StencilAxisOf {
-  Real h, ih, origin, first;     ///< (x - origin) ih - first is the place in cells
-  Real half, inverse;            ///< GIMP: of a point's extent, and 1/(2 half)
-  bool walls;                    ///< whether one of these is in sight:
-  Real low = 1e30, high = 1e30;  ///< cell (GIMP: corner) at a low and at a high wall
+  Real h, ih, origin, first;                 ///< (x - origin) ih - first is the place in cells
+  Real half, inverse;                        ///< GIMP: of a point's extent, and 1/(2 half)
+  bool walls;                                ///< whether one of these is in sight:
+  Real low = Real(1e30), high = Real(1e30);  ///< cell (GIMP: corner) at a low and at a high wall
 };
 using StencilAxis = StencilAxisOf<double>;
 using SingleStencilAxis = StencilAxisOf<float>;
@@ -61,11 +61,12 @@ template <int D>
 struct StencilFrame {
   ShapeFunctions kind;
   std::array<StencilAxis, D> axis;
+  std::array<SingleStencilAxis, D> single;  ///< the same
 };
 
 template <int D>
 StencilFrame<D> stencil_frame(const std::array<Axis, D>& axes, const Shape<D>& shape, const Index<D>& tile) {
-  StencilFrame<D> frame{.kind = shape.kind, .axis = {}};
+  StencilFrame<D> frame{.kind = shape.kind, .axis = {}, .single = {}};
   for (int d = 0; d < D; ++d) {
     const Axis& a = axes[d];
     StencilAxis& to = frame.axis[d];
@@ -76,6 +77,7 @@ StencilFrame<D> stencil_frame(const std::array<Axis, D>& axes, const Shape<D>& s
     if (a.wall_high()) to.high = a.n_cells - (shape.kind == ShapeFunctions::gimp ? 0 : 1) - first;
     const auto seen = [](double at) { return at >= -1.0 && at <= tile_cells; };
     to.walls = seen(to.low) || seen(to.high);
+    frame.single[d] = in_single(to);
   }
   return frame;
 }
@@ -132,7 +134,7 @@ void find_pressure_cells(const std::array<Axis, D>& axes, const Shape<D>& shape,
     const Octet X = (x[d] - axes[d].origin) * (1.0 / axes[d].h) - tile[d] * tile_cells;
     cell = cell * tile_pressure_cells + (min(max(floor(X), low), high) + 2.0);
   }
-  for (int l = 0; l < octet_size; ++l) cells[static_cast<std::size_t>(l)] = static_cast<int>(cell[l]);
+  to_whole(cell, cells);
 }
 
 /// What is summed up beside the value.
@@ -171,7 +173,7 @@ void weigh(const StencilFrame<D>& frame, const std::array<Octet, D>& x, Weights<
     }
   }
   weights.together = !any(base != all_lanes(base[0]));
-  for (int l = 0; l < octet_size; ++l) weights.base[static_cast<std::size_t>(l)] = static_cast<int>(base[l]);
+  to_whole(base, weights.base);
 }
 template <int D>
 void weigh(const std::array<Axis, D>& axes, const Shape<D>& shape, const Index<D>& tile,

@@ -87,28 +87,55 @@ inline void transpose_blocks(const Singles (&column)[4], Singles (&row)[4]) {
 /// Where transpose_blocks brings point l, in entries of four.
 constexpr std::size_t place_of(std::size_t l) { return l % 4 * 4 + l / 4; }
 
-/// Sums of the four blocks of four of each of a to d, side by side.
-inline Singles sum_blocks(const Singles& a, const Singles& b, const Singles& c, const Singles& d) {
+/// Entry b of each block of four, in all of the block.
+inline Singles repeat_in_blocks(const Singles& a, std::size_t b) {
 #ifdef __AVX512F__
-  const Singles ab =
-      __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23) +
-      __builtin_shufflevector(a, b, 8, 9, 10, 11, 12, 13, 14, 15, 24, 25, 26, 27, 28, 29, 30, 31);
-  const Singles cd =
-      __builtin_shufflevector(c, d, 0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23) +
-      __builtin_shufflevector(c, d, 8, 9, 10, 11, 12, 13, 14, 15, 24, 25, 26, 27, 28, 29, 30, 31);
-  return __builtin_shufflevector(ab, cd, 0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27) +
-         __builtin_shufflevector(ab, cd, 4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31);
-#else
-  const Singles* const of[4] = {&a, &b, &c, &d};
-  float from[singles_size], sum[singles_size];
-  for (std::size_t q = 0; q < 4; ++q) {
-    std::memcpy(from, of[q], sizeof from);
-    for (std::size_t e = 0; e < 4; ++e)
-      sum[4 * q + e] = (from[e] + from[8 + e]) + (from[4 + e] + from[12 + e]);
+  switch (b) {
+    case 0:
+      return __builtin_shufflevector(a, a, 0, 0, 0, 0, 4, 4, 4, 4, 8, 8, 8, 8, 12, 12, 12, 12);
+    case 1:
+      return __builtin_shufflevector(a, a, 1, 1, 1, 1, 5, 5, 5, 5, 9, 9, 9, 9, 13, 13, 13, 13);
+    case 2:
+      return __builtin_shufflevector(a, a, 2, 2, 2, 2, 6, 6, 6, 6, 10, 10, 10, 10, 14, 14, 14, 14);
+    default:
+      return __builtin_shufflevector(a, a, 3, 3, 3, 3, 7, 7, 7, 7, 11, 11, 11, 11, 15, 15, 15, 15);
   }
-  Singles sums;
-  std::memcpy(&sums, sum, sizeof sums);
-  return sums;
+#else
+  float from[singles_size], to[singles_size];
+  std::memcpy(from, &a, sizeof from);
+  for (std::size_t l = 0; l < singles_size; ++l) to[l] = from[l / 4 * 4 + b];
+  Singles repeated;
+  std::memcpy(&repeated, to, sizeof repeated);
+  return repeated;
+#endif
+}
+
+/// Blocks of four of four vectors, the same ones side by side; the fourth ones are left out.
+struct Blocks {
+  Singles first, second, third;
+};
+inline Blocks first_three_blocks(const Singles (&of)[4]) {
+#ifdef __AVX512F__
+  const Singles low_01 =
+      __builtin_shufflevector(of[0], of[1], 0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23);
+  const Singles low_23 =
+      __builtin_shufflevector(of[2], of[3], 0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23);
+  const Singles high_01 =
+      __builtin_shufflevector(of[0], of[1], 8, 9, 10, 11, 12, 13, 14, 15, 24, 25, 26, 27, 28, 29, 30, 31);
+  const Singles high_23 =
+      __builtin_shufflevector(of[2], of[3], 8, 9, 10, 11, 12, 13, 14, 15, 24, 25, 26, 27, 28, 29, 30, 31);
+  return {
+      __builtin_shufflevector(low_01, low_23, 0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27),
+      __builtin_shufflevector(low_01, low_23, 4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31),
+      __builtin_shufflevector(high_01, high_23, 0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27)};
+#else
+  float from[4][singles_size], to[3][singles_size];
+  std::memcpy(from, of, sizeof from);
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t l = 0; l < singles_size; ++l) to[k][l] = from[l / 4][4 * k + l % 4];
+  Blocks blocks;
+  std::memcpy(&blocks, to, sizeof blocks);
+  return blocks;
 #endif
 }
 
@@ -120,8 +147,6 @@ inline void to_entries(const Singles (&weight)[3], Entries& entry) {
 
 }  // namespace detail
 
-using WholeNumbers [[gnu::vector_size(64)]] = int;
-
 /// Weights of the points at x in a tile, eight and eight, as far as they are wanted: as weigh() of
 /// lane_stencils.hpp.
 template <int D, Wanted wanted>
@@ -132,7 +157,7 @@ void weigh_single(const StencilFrame<D>& frame, const std::array<Octet, D> (&x)[
 #pragma GCC unroll 3
   for (int d = 0; d < D; ++d) {
     const StencilAxis& axis = frame.axis[d];
-    const SingleStencilAxis single = in_single(axis);
+    const SingleStencilAxis& single = frame.single[d];
     const auto in_tile = [&](const Octet& place) { return (place - axis.origin) * axis.ih - axis.first; };
     const Singles X = to_single(in_tile(x[0][d]), in_tile(x[1][d]));
     Singles at, arm[3];
@@ -194,31 +219,36 @@ template <int D, bool ends>
 }  // namespace detail
 
 /// Values at the first n of sixteen points, and what `side` in place of a direction's weights gives: slopes
-/// with dw, moments with wa. The others get something finite. Values may be left out.
+/// with dw, moments with wa. The others get something of the first's. Values may be left out.
 template <int D, bool values, bool ends>
 [[gnu::noinline]] void sum_controls(const SingleNode* v, const SingleWeights<D>& p,
                                     const Singles (&side)[D][3], std::size_t n, SingleFields<D>& fields) {
-  Entries w_last, side_last;
-  detail::to_entries(p.w[D - 1], w_last);
-  detail::to_entries(side[D - 1], side_last);
-  Singles product[D + 1][singles_size];
-  for (std::size_t l = 0; l < n; ++l) {
-    const std::size_t at = detail::place_of(l);
-    Singles sum[D];
-    detail::sum_rows<D, ends>(v + p.base[l], p, side, l, sum);
-    const Singles w = detail::each_four_times(w_last[at]);
-    for (int q = values ? 0 : 1; q < D; ++q) product[q][at] = w * sum[q];
-    product[D][at] = detail::each_four_times(side_last[at]) * sum[0];
-  }
-  for (std::size_t l = n; l < singles_size; ++l)
-    for (int q = values ? 0 : 1; q <= D; ++q) product[q][detail::place_of(l)] = product[q][0];
-  for (std::size_t q = values ? 0 : 1; q <= D; ++q) {
-    Singles entry[4], column[4];
-    for (std::size_t b = 0; b < 4; ++b) {
-      const Singles* const four = &product[q][4 * b];
-      entry[b] = detail::sum_blocks(four[0], four[1], four[2], four[3]);
+  Singles entry[D + 1][4];  // of points 4a + b in block a of vector b
+  Singles of_first[D] = {};
+  for (std::size_t b = 0; b < 4; ++b) {
+    Singles rows[D][4];
+    for (std::size_t a = 0, l = b; a < 4; ++a, l += 4) {
+      Singles sum[D];
+      if (l < n) detail::sum_rows<D, ends>(v + p.base[l], p, side, l, sum);
+      for (int q = 0; q < D; ++q) rows[q][a] = l < n ? sum[q] : of_first[q];
+      if (l == 0) std::copy_n(sum, D, of_first);
     }
-    detail::transpose_blocks(entry, column);
+    Singles w[3], turned[3];
+    for (int k = 0; k < 3; ++k) {
+      w[k] = detail::repeat_in_blocks(p.w[D - 1][k], b);
+      turned[k] = detail::repeat_in_blocks(side[D - 1][k], b);
+    }
+    for (int q = 0; q < D; ++q) {
+      const auto [first, middle, last] = detail::first_three_blocks(rows[q]);
+      if (q == 0)
+        entry[D][b] = ends ? turned[0] * first + turned[2] * last
+                           : turned[0] * first + turned[1] * middle + turned[2] * last;
+      if (q > 0 || values) entry[q][b] = w[0] * first + w[1] * middle + w[2] * last;
+    }
+  }
+  for (int q = values ? 0 : 1; q <= D; ++q) {
+    Singles column[4];
+    detail::transpose_blocks(entry[q], column);
     for (int c = 0; c < 3; ++c) (q == 0 ? fields.value : fields.along[q - 1])[c] = column[c];
   }
 }

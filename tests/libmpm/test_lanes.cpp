@@ -39,6 +39,44 @@ TEST(LaneFunctions, ExpAndMeanDecay) {
   EXPECT_TRUE(std::isfinite(exp(all_lanes(1e5))[3]));
 }
 
+// Against doubles: two units in the last place of single precision for e^x, five for the mean, where 1 -
+// e^-1/2 has lost one and a half bits.
+TEST(LaneFunctions, ExpAndMeanDecayInSinglePrecision) {
+  std::mt19937 random(1);
+  for (int i = 0; i < 2000; ++i) {
+    const double reach = std::pow(10.0, -8.0 + 9.8 * i / 2000.0);
+    const Singles x = to_single(random_lanes(random, -reach, reach), random_lanes(random, -reach, reach));
+    const Singles y = exp(x), z = x < 0.0F ? -x : x, d = mean_decay(z);
+    for (std::size_t l = 0; l < singles_size; ++l) {
+      const double at = static_cast<double>(x[l]), far = std::abs(at);
+      EXPECT_NEAR(static_cast<double>(y[l]) / std::exp(at), 1.0, 2.4e-7);
+      EXPECT_NEAR(static_cast<double>(d[l]) / (-std::expm1(-far) / far), 1.0, 6e-7);
+    }
+  }
+  EXPECT_EQ(exp(Singles{})[0], 1.0F);
+  EXPECT_EQ(mean_decay(Singles{})[0], 1.0F);
+  EXPECT_GT(exp(-1e5F - Singles{})[3], 0.0F);
+  EXPECT_TRUE(std::isfinite(exp(1e5F - Singles{})[3]));
+  EXPECT_NEAR(static_cast<double>(mean_decay(1e7F - Singles{})[3]), 1e-7, 1e-13);
+}
+
+TEST(LaneFunctions, LookUp) {
+  std::array<double, 40> table;
+  std::array<float, 40> strided;
+  for (std::size_t i = 0; i < table.size(); ++i) table[i] = 0.5 * double(i), strided[i] = 0.5F * float(i);
+  const std::array<int, octet_size> a{3, 0, 3, 39, 17, 1, 8, 9}, b{1, 2, 3, 4, 5, 6, 7, 12};
+  const Octet one = look_up(table.data(), a);
+  const Singles two = look_up<3 * sizeof(float)>(strided.data(), b, b);
+  std::array<int, octet_size> back;
+  to_whole(2.0 * one, back);
+  for (std::size_t l = 0; l < octet_size; ++l) {
+    EXPECT_EQ(one[l], 0.5 * a[l]);
+    EXPECT_EQ(two[l], 1.5F * float(b[l]));
+    EXPECT_EQ(two[octet_size + l], two[l]);
+    EXPECT_EQ(back[l], a[l]);
+  }
+}
+
 TEST(LaneFunctions, Floor) {
   const Octet x = {-2.0, -1.5, -0.1, 0.0, 0.1, 1.0, 1.9, 1e6 + 0.5}, f = floor(x);
   for (int l = 0; l < octet_size; ++l) EXPECT_EQ(f[l], std::floor(x[l]));
@@ -57,6 +95,13 @@ TEST(LaneLaws, AsTheScalarLaws) {
       EXPECT_DOUBLE_EQ(b[l], broken.secant(gamma[l], tau_y[l]));
       EXPECT_LE(a[l], largest_secant(smooth, tau_y[l]) * (1.0 + 1e-15));
       EXPECT_LE(b[l], largest_secant(broken, tau_y[l]));
+    }
+    const Singles rates = to_single(gamma, gamma), yields = to_single(tau_y, tau_y);
+    const Octet c = to_double(secant(smooth, rates, yields), 1),
+                d = to_double(secant(broken, rates, yields), 1);
+    for (int l = 0; l < octet_size; ++l) {
+      EXPECT_NEAR(c[l] / a[l], 1.0, 1e-6);  // five units in the last place, and the arguments' rounding
+      EXPECT_NEAR(d[l] / b[l], 1.0, 1e-6);
     }
   }
 }
