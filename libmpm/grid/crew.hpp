@@ -76,11 +76,12 @@ class Crew {
     }
   }
 
-  void (*visit_)(const void*, int) = nullptr;
+  // Each on a line of its own: what one thread looks at again and again another must not write beside.
+  alignas(64) void (*visit_)(const void*, int) = nullptr;
   const void* of_ = nullptr;
-  std::atomic<unsigned> round_ = 0;
-  std::atomic<int> busy_ = 0;
-  std::vector<std::thread> others_;  // last: they read the rest
+  alignas(64) std::atomic<unsigned> round_ = 0;
+  alignas(64) std::atomic<int> busy_ = 0;
+  alignas(64) std::vector<std::thread> others_;  // last: they read the rest
 };
 
 }  // namespace tremie

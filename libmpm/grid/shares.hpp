@@ -4,6 +4,8 @@
 
 #include <omp.h>
 
+#include <chrono>
+
 #include "libmpm/grid/tiles.hpp"
 
 namespace tremie {
@@ -47,54 +49,157 @@ std::int64_t cost_of(const Tile<D>& tile) {
   return 15 + 10 * (tile.last_group - tile.first_group) + 6 * tile.mixed_groups;
 }
 
-/// Shares of neighbouring tiles that cost about as much.
+/// Shares of neighbouring tiles that take about as long. pace[s]: what thread s does in a given time, against
+/// their mean.
 template <int D>
-void cut_into_shares(std::vector<Tile<D>>& tiles, int n_shares) {
-  std::int64_t all = 0, so_far = 0;
-  for (const Tile<D>& tile : tiles) all += cost_of(tile);
-  int share = 0;
+void cut_into_shares(std::vector<Tile<D>>& tiles, const std::vector<double>& pace) {
+  double all = 0.0, so_far = 0.0, upto = 0.0, paces = 0.0;
+  for (const Tile<D>& tile : tiles) all += static_cast<double>(cost_of(tile));
+  for (const double one : pace) paces += one;
+  std::size_t share = 0;
   for (Tile<D>& tile : tiles) {
     // A tile is on the side of a border that has its middle.
-    const std::int64_t middle = 2 * so_far + cost_of(tile);
-    while (middle * n_shares >= 2 * all * (share + 1)) ++share;
-    tile.share = share;
-    so_far += cost_of(tile);
+    const auto cost = static_cast<double>(cost_of(tile));
+    const double middle = (so_far + 0.5 * cost) / all * paces;
+    while (share + 1 < pace.size() && middle >= upto + pace[share]) upto += pace[share++];
+    tile.share = static_cast<int>(share);
+    so_far += cost;
   }
 }
 
-/// How many tiles on either side of a border may change it.
-inline constexpr int border_tiles = 8;
-/// What an exchange must gain, for the longer border that it makes.
-inline constexpr std::int64_t border_cost = 60;
+/// What a block costs that two shares see, in the units of cost_of: each sums it up, from the other core's
+/// cache.
+inline constexpr double border_block_cost = 12.0;
+/// How many tiles on either side of a border are looked at.
+inline constexpr std::size_t border_tiles = 12;
 
-/// Moves a tile across the border of shares s and s + 1, or exchanges two, if that makes their costs more
-/// even: a border between two tiles leaves up to one tile's cost between them.
+/// The border between shares s and s + 1, for moving tiles across it.
 template <int D>
-void make_even(std::vector<Tile<D>>& tiles, int s) {
-  std::int64_t more = 0;  // what s costs more
-  std::vector<Tile<D>*> before, behind;
-  for (Tile<D>& tile : tiles) {
-    if (tile.share == s) before.push_back(&tile), more += cost_of(tile);
-    if (tile.share == s + 1) behind.push_back(&tile), more -= cost_of(tile);
-  }
-  before.erase(before.begin(), before.end() - std::min<std::ptrdiff_t>(border_tiles, std::ssize(before)));
-  behind.resize(std::min<std::size_t>(border_tiles, behind.size()));
-  before.push_back(nullptr), behind.push_back(nullptr);
-  Tile<D>*give = nullptr, *take = nullptr;
-  std::int64_t least = std::abs(more) - border_cost;
-  for (Tile<D>* a : before)
-    for (Tile<D>* b : behind) {
-      const std::int64_t left = std::abs(more - 2 * (a ? cost_of(*a) : 0) + 2 * (b ? cost_of(*b) : 0));
-      if (left < least) least = left, give = a, take = b;
+class Border {
+ public:
+  Border(TileGrid<D>& grid, int s)
+      : grid_(grid),
+        s_(s),
+        slow_{1.0 / grid.pace[static_cast<std::size_t>(s)],
+              1.0 / grid.pace[static_cast<std::size_t>(s) + 1]} {
+    for (int t = 0; t < grid.n_tiles(); ++t) {
+      const int side = side_of(t);
+      if (side >= 0) more_ += (side == 0 ? slow_[0] : -slow_[1]) * cost(t);
     }
-  if (give) give->share = s + 1;
-  if (take) take->share = s;
+  }
+
+  /// Moves the tile or exchanges the two that make a round of both shares shortest; false if none does.
+  bool improve() {
+    auto [before, behind] = tiles_at_border();
+    before.push_back(-1), behind.push_back(-1);
+    double best = -1.0;
+    int give = -1, take = -1;
+    for (const int a : before)
+      for (const int b : behind)
+        if (const double change = change_by(a, b); change < best) best = change, give = a, take = b;
+    if (give < 0 && take < 0) return false;
+    more_ = more_after(give, take);
+    exchange(give, take);
+    return true;
+  }
+
+ private:
+  Tile<D>& tile(int t) const { return grid_.tiles[static_cast<std::size_t>(t)]; }
+  double cost(int t) const { return t < 0 ? 0.0 : static_cast<double>(cost_of(tile(t))); }
+  /// 0: in share s; 1: in s + 1; else -1.
+  int side_of(int t) const {
+    const int share = tile(t).share;
+    return share == s_ ? 0 : share == s_ + 1 ? 1 : -1;
+  }
+
+  /// Whether both shares see a block.
+  bool shared(int block) const {
+    bool seen[2] = {false, false};
+    for (const int t : grid_.blocks[static_cast<std::size_t>(block)].tile)
+      if (t >= 0 && side_of(t) >= 0) seen[side_of(t)] = true;
+    return seen[0] && seen[1];
+  }
+
+  std::array<std::vector<int>, 2> tiles_at_border() const {
+    std::array<std::vector<int>, 2> at;
+    for (int t = 0; t < grid_.n_tiles(); ++t) {
+      const int side = side_of(t);
+      if (side < 0 || at[static_cast<std::size_t>(side)].size() == border_tiles) continue;
+      const auto& blocks = tile(t).block;
+      if (std::any_of(blocks.begin(), blocks.end(), [&](int b) { return shared(b); }))
+        at[static_cast<std::size_t>(side)].push_back(t);
+    }
+    return at;
+  }
+
+  double more_after(int give, int take) const {
+    return more_ - (slow_[0] + slow_[1]) * (cost(give) - cost(take));
+  }
+
+  int shared_around(int give, int take) const {
+    int n = 0;
+    for (const int t : {give, take})
+      for (std::size_t k = 0; t >= 0 && k < tile(t).block.size(); ++k) n += shared(tile(t).block[k]) ? 1 : 0;
+    return n;
+  }
+
+  void exchange(int give, int take) {
+    if (give >= 0) tile(give).share = s_ + 1;
+    if (take >= 0) tile(take).share = s_;
+  }
+
+  /// Of the slower share's time, by what it has to do and by the border. Blocks of both tiles count twice.
+  double change_by(int give, int take) {
+    const int before = shared_around(give, take);
+    exchange(give, take);
+    const int after = shared_around(give, take);
+    if (give >= 0) tile(give).share = s_;
+    if (take >= 0) tile(take).share = s_ + 1;
+    return 0.5 * (std::abs(more_after(give, take)) - std::abs(more_)) + border_block_cost * (after - before);
+  }
+
+  TileGrid<D>& grid_;
+  int s_;
+  double slow_[2], more_ = 0.0;  ///< time for a unit of cost; what share s takes more
+};
+
+/// Cuts the tiles into shares, and then moves tiles across each border: a cut between two tiles leaves up to
+/// one tile between the shares, and may be longer than it needs to be.
+template <int D>
+void share_out(TileGrid<D>& grid) {
+  cut_into_shares<D>(grid.tiles, grid.pace);
+  constexpr int most_moves = 20;
+  for (int s = 0; s + 1 < static_cast<int>(grid.pace.size()); ++s) {
+    Border<D> border(grid, s);
+    for (int moves = 0; moves < most_moves && border.improve(); ++moves) continue;
+  }
 }
 
+/// Rounds before the paces say anything, how much of a new one counts, and how far one may be from the mean:
+/// another program may have had the core for some of them.
+inline constexpr int least_rounds = 20;
+inline constexpr double new_pace = 0.3, least_pace = 0.7;
+
+/// How fast the threads have been with the shares that they have: one starts later than the other, or has a
+/// core that others use too.
 template <int D>
-void share_out(std::vector<Tile<D>>& tiles, int n_shares) {
-  cut_into_shares<D>(tiles, n_shares);
-  for (int s = 0; s + 1 < n_shares; ++s) make_even<D>(tiles, s);
+void measure_paces(TileGrid<D>& grid, int n_shares) {
+  std::vector<double>& pace = grid.pace;
+  if (std::ssize(pace) != n_shares) pace.assign(static_cast<std::size_t>(n_shares), 1.0);
+  if (std::ssize(grid.shares) != n_shares || grid.shares[0].rounds < least_rounds) return;
+  std::vector<double> now;
+  double mean = 0.0;
+  for (const Share<D>& share : grid.shares) {
+    double cost = 0.0;
+    for (const int t : share.tiles)
+      cost += static_cast<double>(cost_of(grid.tiles[static_cast<std::size_t>(t)]));
+    now.push_back(cost / share.busy);
+    mean += now.back() / n_shares;
+  }
+  for (std::size_t s = 0; s < now.size() && mean > 0.0; ++s) {
+    const double seen = std::clamp(now[s] / mean, least_pace, 2.0 - least_pace);
+    pace[s] += new_pace * (seen - pace[s]);
+  }
 }
 
 /// Share number s: its tiles and the blocks that they see, numbered in it from here on.
@@ -166,12 +271,13 @@ void keep_velocities(const std::vector<NodeBlock<D>>& old, const std::vector<Sha
 template <int D>
 void lay_tiles(TileGrid<D>& grid, std::vector<Tile<D>> tiles, bool flip,
                int n_shares = omp_get_max_threads()) {
+  detail::measure_paces(grid, n_shares);
   const std::vector<NodeBlock<D>> old = std::move(grid.blocks);
   const std::vector<Share<D>> from = std::move(grid.shares);
   grid.tiles = std::move(tiles);
   grid.blocks = {}, grid.shares = {};
   detail::join_blocks<D>(grid);
-  detail::share_out<D>(grid.tiles, n_shares);
+  detail::share_out<D>(grid);
   for (int s = 0; s < n_shares; ++s) {
     grid.shares.push_back(detail::take_share<D>(grid, s, flip));
     detail::keep_velocities<D>(old, from, grid, grid.shares.back());
@@ -183,7 +289,14 @@ void lay_tiles(TileGrid<D>& grid, std::vector<Tile<D>> tiles, bool flip,
 /// Visits each share, in a thread of its own.
 template <int D, class Visit>
 void for_each_share(TileGrid<D>& grid, Visit visit) {
-  grid.crew->run([&](int s) { visit(grid.shares[static_cast<std::size_t>(s)]); });
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  grid.crew->run([&](int s) {
+    Share<D>& share = grid.shares[static_cast<std::size_t>(s)];
+    visit(share);
+    share.busy += std::chrono::duration<double>(Clock::now() - start).count();
+    ++share.rounds;
+  });
 }
 
 /// The share that a tile is in.

@@ -20,9 +20,13 @@
 #include <cstring>
 #include <memory>
 #include <vector>
+#ifdef __AVX__
+#include <immintrin.h>
+#endif
 
 #include "libmpm/grid/active_grid.hpp"
 #include "libmpm/grid/crew.hpp"
+#include "libmpm/law/lanes.hpp"
 
 namespace tremie {
 
@@ -37,7 +41,13 @@ using NodeLanes [[gnu::vector_size(32)]] = double;
 using SingleNode [[gnu::vector_size(16)]] = float;
 
 inline NodeLanes in_double(const NodeLanes& node) { return node; }
-inline NodeLanes in_double(const SingleNode& node) { return __builtin_convertvector(node, NodeLanes); }
+inline NodeLanes in_double(const SingleNode& node) {
+#ifdef __AVX__  // the compiler would do it by halves
+  return _mm256_cvtps_pd(node);
+#else
+  return __builtin_convertvector(node, NodeLanes);
+#endif
+}
 inline void add_to(NodeLanes& node, const NodeLanes& a) { node += a; }
 inline void add_to(SingleNode& node, const NodeLanes& a) { node += __builtin_convertvector(a, SingleNode); }
 
@@ -100,13 +110,15 @@ struct alignas(64) NodeCube : std::array<Node, n + (std::is_same_v<Node, SingleN
 template <int D>
 using BlockNodes = std::array<NodeLanes, power(tile_cells, D)>;
 
-/// What one thread passes over.
+/// What one thread passes over. Aligned, so that no two write to one line of a cache.
 template <int D>
-struct Share {
+struct alignas(64) Share {
   std::vector<int> tiles = {};              ///< in rising order
   std::vector<int> blocks = {};             ///< that these tiles see
   std::vector<BlockNodes<D>> v = {};        ///< of each: velocities, in the rows that a tile reaches
   std::vector<BlockNodes<D>> v_start = {};  ///< before the step's forces, for FLIP alone
+  double busy = 0.0;                        ///< until it was done, summed over the rounds so far [s]
+  int rounds = 0;
 };
 
 template <int D>
@@ -120,7 +132,9 @@ struct TileGrid {
   std::vector<NodeBlock<D>> blocks;
   std::vector<Share<D>> shares;
   std::unique_ptr<Crew> crew;  ///< a thread for each share
-  int turn = 0;                ///< which of a tile's buffers was filled last
+  std::vector<double>
+      pace;      ///< of each thread, against their mean: measured, and nothing but time hangs on it
+  int turn = 0;  ///< which of a tile's buffers was filled last
   std::vector<Buffer> sums;    ///< a buffer: momentum and mass that the points give
   std::vector<Buffer> forces;  ///< a buffer: impulse of the stresses, for FLIP alone
   bool single = false;         ///< sums are kept in single precision, in these:
@@ -211,6 +225,15 @@ int row_in_cube(int k, int row) {
   return at;
 }
 
+/// Copies four controls.
+inline void copy_row(const NodeLanes* from, NodeLanes* to) { std::copy_n(from, tile_cells, to); }
+inline void copy_row(const NodeLanes* from, SingleNode* to) {
+  Octet low, high;
+  std::memcpy(&low, from, sizeof low), std::memcpy(&high, from + tile_cells / 2, sizeof high);
+  const Singles row = to_single(low, high);
+  std::memcpy(to, &row, sizeof row);
+}
+
 /// Copies rows of a tile's blocks into one cube of controls.
 template <int D, class Node>
 void read_blocks(const Tile<D>& tile, TileRows rows, const std::vector<BlockNodes<D>>& blocks,
@@ -218,9 +241,8 @@ void read_blocks(const Tile<D>& tile, TileRows rows, const std::vector<BlockNode
   for (int k = 0; k < power(2, D); ++k) {
     const auto& block = blocks[static_cast<std::size_t>(tile.block[k])];
     for_each_row(rows_of_block<D>(rows, k), [&](int row) {
-      const int to = row_in_cube<D>(k, row);
-      for (int i = 0; i < tile_cells; ++i)
-        cube[to + i] = __builtin_convertvector(block[row * tile_cells + i], Node);
+      copy_row(&block[static_cast<std::size_t>(row * tile_cells)],
+               &cube[static_cast<std::size_t>(row_in_cube<D>(k, row))]);
     });
   }
 }
@@ -232,14 +254,6 @@ enum class RowsOf {
 };
 
 namespace detail {
-
-/// Rows of a block that a tile reaches, which has it as its k-th, and its buffer.
-template <int D, class Buffer>
-struct ReachedRows {
-  const Buffer* buffer;
-  int k;
-  unsigned reached;
-};
 
 /// Four controls of a row, and sums of them.
 struct FourNodes {
@@ -259,15 +273,19 @@ struct FourSingleNodes {
   Four sum = {};
   void add(const SingleNode* row) { sum += *reinterpret_cast<const Four*>(row); }
   std::array<NodeLanes, tile_cells> total() const {
-    std::array<SingleNode, tile_cells> of;
-    std::memcpy(&of, &sum, sizeof of);
-    return {in_double(of[0]), in_double(of[1]), in_double(of[2]), in_double(of[3])};
+    const auto node = [this](int i) {
+      SingleNode one;
+      std::memcpy(&one, reinterpret_cast<const char*>(&sum) + i * static_cast<int>(sizeof one), sizeof one);
+      return in_double(one);
+    };
+    return {node(0), node(1), node(2), node(3)};
   }
 };
 
 }  // namespace detail
 
-/// Visits rows of block b with the sums over the tiles' buffers: visit(row, totals of its controls).
+/// Visits rows of block b with the sums over the tiles' buffers: visit(row, totals of its controls). Tile by
+/// tile and not row by row: whether a tile reaches the next row is anyone's guess, the processor's too.
 template <int D, class Buffer, class Visit>
 void sum_tiles(const TileGrid<D>& grid, int share, RowsOf rows_of, int b, const std::vector<Buffer>& buffers,
                Visit visit) {
@@ -275,26 +293,24 @@ void sum_tiles(const TileGrid<D>& grid, int share, RowsOf rows_of, int b, const 
                                   detail::FourSingleNodes, detail::FourNodes>;
   const NodeBlock<D>& block = grid.blocks[static_cast<std::size_t>(b)];
   unsigned wanted = 0;
-  std::array<detail::ReachedRows<D, Buffer>, power(2, D)> from;
-  std::size_t n = 0;
+  std::array<unsigned, power(2, D)> reached{};
   for (int k = 0; k < power(2, D); ++k) {
     const int tile = block.tile[k];
     if (tile < 0) continue;
-    const auto at = static_cast<std::size_t>(grid.filled_buffer(tile));
-    const unsigned reached = rows_of_block<D>(grid.rows[at], k);
-    if (reached == 0) continue;
-    from[n++] = {&buffers[at], k, reached};
+    reached[k] = rows_of_block<D>(grid.rows[static_cast<std::size_t>(grid.filled_buffer(tile))], k);
     if (rows_of == RowsOf::all_tiles || grid.tiles[static_cast<std::size_t>(tile)].share == share)
-      wanted |= reached;
+      wanted |= reached[k];
   }
-  for_each_row(wanted, [&](int row) {
-    Four sum;
-    for (std::size_t i = 0; i < n; ++i) {
-      const auto& [buffer, k, reached] = from[i];
-      if ((reached >> row & 1) != 0) sum.add(&(*buffer)[static_cast<std::size_t>(row_in_cube<D>(k, row))]);
-    }
-    visit(row, sum.total());
-  });
+  if (wanted == 0) return;
+  std::array<Four, power(tile_cells, D - 1)> sum{};
+  for (int k = 0; k < power(2, D); ++k) {
+    if ((reached[k] & wanted) == 0) continue;
+    const Buffer& buffer = buffers[static_cast<std::size_t>(grid.filled_buffer(block.tile[k]))];
+    for_each_row(reached[k] & wanted, [&](int row) {
+      sum[static_cast<std::size_t>(row)].add(&buffer[static_cast<std::size_t>(row_in_cube<D>(k, row))]);
+    });
+  }
+  for_each_row(wanted, [&](int row) { visit(row, sum[static_cast<std::size_t>(row)].total()); });
 }
 
 }  // namespace tremie

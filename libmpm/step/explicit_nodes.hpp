@@ -99,6 +99,14 @@ NodeLanes as_lanes(const Vec<D>& a) {
   return r;
 }
 
+/// v with 1/mass in its place.
+template <int D>
+NodeLanes with_mass(const NodeLanes& v, const NodeLanes& inverse_mass) {
+  NodeLanes r = v;
+  r[D] = inverse_mass[D];
+  return r;
+}
+
 /// Velocities from the momenta (with the impulses of the stresses already in them), and gravity.
 template <class Space>
 void velocities_from_sums(const Body<Space>& body, const ExplicitState<Space>& state, double friction,
@@ -109,8 +117,9 @@ void velocities_from_sums(const Body<Space>& body, const ExplicitState<Space>& s
                           std::size_t) {
     const NodeLanes inverse = inverse_masses<D>(total);
     for (int i = 0; i < tile_cells; ++i) {
-      v[i] = inverse[i] > 0.0 ? total[static_cast<std::size_t>(i)] * inverse[i] + pull : NodeLanes{};
-      v[i][D] = inverse[i];
+      const NodeLanes of_mass = NodeLanes{} + inverse[i];
+      const NodeLanes moving = total[static_cast<std::size_t>(i)] * of_mass + pull;
+      v[i] = with_mass<D>(of_mass > 0.0 ? moving : NodeLanes{}, of_mass);
     }
   };
   if (state.grid.single)
@@ -129,10 +138,10 @@ void add_impulses(const Body<Space>& body, const ExplicitState<Space>& state, do
   const auto add = [&](NodeLanes* v, const std::array<NodeLanes, tile_cells>& total, std::size_t b,
                        std::size_t k) {
     for (int i = 0; i < tile_cells; ++i) {
-      const double inverse = v[i][D];
+      const NodeLanes of_mass = NodeLanes{} + v[i][D];
       if (flip) share.v_start[b][k + static_cast<std::size_t>(i)] = v[i];
-      if (inverse > 0.0) v[i] += total[static_cast<std::size_t>(i)] * inverse + pull;
-      v[i][D] = inverse;
+      const NodeLanes faster = v[i] + (total[static_cast<std::size_t>(i)] * of_mass + pull);
+      v[i] = with_mass<D>(of_mass > 0.0 ? faster : v[i], of_mass);
     }
   };
   update_nodes(body, state, friction, impulses, add, rows_of, share);

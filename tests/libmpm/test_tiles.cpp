@@ -103,22 +103,51 @@ TEST(Tiles, SharesCostAboutAsMuch) {
   EXPECT_NEAR(static_cast<double>(cost_of_share(row_of_tiles<3>(40, 2), 0)), 4200.0, 203.0);
 }
 
-// Tiles of 45, 315, 315, 315, 45, 45 and 45: a cut leaves 675 and 450, a tile of 45 given away 630 and 495.
-TEST(Tiles, AnExchangeMakesSharesMoreEven) {
+/// A sheet of tiles, n by n, with these groups in each, row by row.
+TileGrid<3> sheet_of_tiles(int n, const std::vector<int>& groups, int n_shares) {
   TileGrid<3> grid;
   for (Axis& axis : grid.axes) axis = {.n_cells = 64};
   std::vector<Tile<3>> tiles;
   int first = 0;
-  for (const int groups : {3, 30, 30, 30, 3, 3, 3}) {
-    Tile<3> tile{.first_group = first, .last_group = first + groups};
-    tile.at[0] = static_cast<int>(tiles.size());
-    tiles.push_back(tile);
-    first += groups;
+  for (const int of_tile : groups) {
+    const auto t = static_cast<int>(tiles.size());
+    tiles.push_back({.at = {t / n, t % n, 0}, .first_group = first, .last_group = first + of_tile});
+    first += of_tile;
+  }
+  lay_tiles<3>(grid, tiles, false, n_shares);
+  return grid;
+}
+
+// Eight tiles of 115 and one of 415 in the middle: a cut between two tiles leaves 460 and 875.
+TEST(Tiles, TilesMovedAcrossTheBorderMakeSharesMoreEven) {
+  const TileGrid<3> grid = sheet_of_tiles(3, {10, 10, 10, 10, 40, 10, 10, 10, 10}, 2);
+  EXPECT_EQ(cost_of_share(grid, 0) + cost_of_share(grid, 1), 1335);
+  EXPECT_LE(std::abs(cost_of_share(grid, 0) - cost_of_share(grid, 1)), 200);
+  expect_shared_out(grid);
+}
+
+// Equal tiles: half of a square on either side of a straight border, which no other is shorter than.
+TEST(Tiles, AStraightBorderStays) {
+  const TileGrid<3> grid = sheet_of_tiles(6, std::vector<int>(36, 20), 2);
+  for (const Tile<3>& tile : grid.tiles) EXPECT_EQ(tile.share, tile.at[0] < 3 ? 0 : 1);
+}
+
+// Three quarters of the cost for a thread that is three times as fast; up to half a tile is left.
+TEST(Tiles, FasterThreadsHaveMoreToDo) {
+  TileGrid<3> grid = row_of_tiles<3>(0, 2);
+  grid.pace = {1.5, 0.5};
+  std::vector<Tile<3>> tiles;
+  for (int t = 0; t < 40; ++t) {
+    tiles.push_back({.first_group = 10 * t, .last_group = 10 * t + 10});
+    tiles.back().at[0] = t;
   }
   lay_tiles<3>(grid, tiles, false, 2);
-  EXPECT_EQ(cost_of_share(grid, 0), 630);
-  EXPECT_EQ(cost_of_share(grid, 1), 495);
-  expect_shared_out(grid);
+  EXPECT_NEAR(static_cast<double>(cost_of_share(grid, 0)), 0.75 * 40 * 115, 58.0);
+  // The same time for both shows that the paces were right; twice as long for one, that it is slower.
+  for (Share<3>& share : grid.shares) share.busy = 1.0, share.rounds = 100;
+  lay_tiles<3>(grid, std::vector<Tile<3>>(grid.tiles), false, 2);
+  EXPECT_GT(grid.pace[0], 1.4);
+  EXPECT_LT(grid.pace[1], 0.6);
 }
 
 // In a row of tiles those beside a tile of another share see common blocks with it.
