@@ -14,12 +14,14 @@ namespace tremie::detail {
 /// A point that may touch the wall in this step.
 template <int D>
 struct WallPoint {
+  int n = 0;  ///< controls that it reaches
   std::array<NodeLanes*, power(3, D)> control;
   std::array<NodeLanes, power(3, D)> give;  ///< velocity for a unit impulse; none where a flat wall holds it
   std::array<double, power(3, D)> N;
   NodeLanes normal = {};
   double target = 0.0;   ///< least normal velocity [m/s]
   double inertia = 0.0;  ///< 1/kg: of the controls against an impulse along the normal
+  double given = 0.0;    ///< impulse so far [N s]
 };
 
 /// Time over which a point that is too near is moved back [s]: within it at most a few millimetres are
@@ -94,27 +96,31 @@ void enter_controls(ExplicitState<Space>& state, const Tile<Space::dim>& tile,
       block += side[d].block[at], within += side[d].within[at];
       N *= side[d].w[at], push *= side[d].left[at];
     }
+    if (N == 0.0) continue;
     NodeLanes& v = first_nodes(state.grid, share, tile.block[static_cast<std::size_t>(block)])[within];
-    p.control[k] = &v, p.N[k] = N;
-    p.give[k] = N * v[D] * push;
-    inertia += N * p.give[k] * push;
+    const auto at = static_cast<std::size_t>(p.n++);
+    p.control[at] = &v, p.N[at] = N;
+    p.give[at] = N * v[D] * push;
+    inertia += N * p.give[at] * push;
   }
   for (int d = 0; d < D; ++d) p.inertia += inertia[d];
 }
 
-/// The points that may touch the wall, which must see half a cell further than `gap_min`.
+/// Of the points first ... last - 1 that are near the wall those that may touch it; it must see half a cell
+/// further than `gap_min`.
 template <class Space>
 std::vector<WallPoint<Space::dim>> find_wall_points(const RigidWall<Space::dim>& wall, double time, double dt,
-                                                    double gap_min, ExplicitState<Space>& state) {
+                                                    double gap_min, std::size_t first, std::size_t last,
+                                                    ExplicitState<Space>& state) {
   constexpr int D = Space::dim;
   std::vector<WallPoint<D>> touching;
   const auto& axes = state.grid.axes;
   const double reach = gap_min + 0.1 * axes[0].h;
-  look_around_wall(wall, time, state);
-  touching.reserve(state.near_wall.size());
+  touching.reserve(last - first);
   Weights<D> weights;
   int weighed = -1;
-  for (const auto& [t, g, l] : state.near_wall) {
+  for (std::size_t i = first; i < last; ++i) {
+    const auto& [t, g, l] = state.near_wall[i];
     const Tile<D>& tile = state.grid.tiles[t];
     Vec<D> x;
     for (int d = 0; d < D; ++d) x[d] = state.points.x[d][g][l];
@@ -135,26 +141,36 @@ std::vector<WallPoint<Space::dim>> find_wall_points(const RigidWall<Space::dim>&
   return touching;
 }
 
+/// Brings a point's approach to the wall to what it may be.
+template <int D>
+void push_off(WallPoint<D>& p) {
+  NodeLanes v = {};
+  for (int k = 0; k < p.n; ++k) v += p.N[k] * *p.control[k];
+  double u = 0.0;
+  for (int d = 0; d < D; ++d) u += p.normal[d] * v[d];
+  const double total = std::max(0.0, p.given + (p.target - u) / p.inertia), more = total - p.given;
+  p.given = total;
+  if (more == 0.0) return;
+  for (int k = 0; k < p.n; ++k) *p.control[k] += more * p.give[k];
+}
+
 /// Holds the concrete back at the wall at `time`, the end of a step of length dt.
 template <class Space>
 void push_off_wall(const RigidWall<Space::dim>& wall, double time, double dt, double gap_min,
                    ExplicitState<Space>& state) {
   constexpr int D = Space::dim;
   if (!wall) return;
-  auto touching = find_wall_points<Space>(wall, time, dt, gap_min, state);
-  std::vector<double> given(touching.size(), 0.0);
+  look_around_wall(wall, time, state);
+  const std::size_t near = state.near_wall.size(), parts = static_cast<std::size_t>(state.grid.crew->size());
+  std::vector<std::vector<WallPoint<D>>> touching(parts);
+  state.grid.crew->run([&](int s) {
+    const auto part = static_cast<std::size_t>(s);
+    touching[part] = find_wall_points<Space>(wall, time, dt, gap_min, near * part / parts,
+                                             near * (part + 1) / parts, state);
+  });
   for (int sweep = 0; sweep < wall_sweeps; ++sweep)
-    for (std::size_t i = 0; i < touching.size(); ++i) {
-      WallPoint<D>& p = touching[i];
-      NodeLanes v = {};
-      for (int k = 0; k < power(3, D); ++k) v += p.N[k] * *p.control[k];
-      double u = 0.0;
-      for (int d = 0; d < D; ++d) u += p.normal[d] * v[d];
-      const double total = std::max(0.0, given[i] + (p.target - u) / p.inertia), more = total - given[i];
-      given[i] = total;
-      if (more == 0.0) continue;
-      for (int k = 0; k < power(3, D); ++k) *p.control[k] += more * p.give[k];
-    }
+    for (auto& part : touching)
+      for (WallPoint<D>& p : part) push_off(p);
   hand_on_velocities(state.grid);
 }
 

@@ -19,7 +19,7 @@ struct WallView {
 };
 
 /// A rigid wall as a signed distance with a motion; empty where the wall is too far to matter. An empty
-/// function is no wall, and costs nothing.
+/// function is no wall, and costs nothing. Threads may ask it at once.
 template <int D>
 using RigidWall = std::function<std::optional<WallView<D>>(const Vec<D>& x, double time)>;
 
