@@ -102,7 +102,7 @@ Outcome run_explicit_in(const Scene& scene, const Law& law, const Observer& obse
     if (engine::gave_up(step, outcome.status, outcome.checks, body.time)) break;
     write_back(state, body);
     energy.see(energy_of<Space>(body.points, body.mix.K), bool{wall});
-    activate(body.grid, body.points);
+    activate_cells(body.grid, body.points);
     outcome.cost.cells_active = std::max<std::int64_t>(outcome.cost.cells_active, body.grid.n_cells());
     stopped = record(scene, body, step, observer, watch, next_frame, outcome);
     if (outcome.status == Status::interrupted) break;

@@ -36,14 +36,20 @@ double section_size(const Points<2>& points, std::size_t p) {
 /// Side of the cube that a point stands for [m].
 double section_size(const Points<3>& points, std::size_t p) { return std::cbrt(points.volume(p)); }
 
-double radius(const Vec<2>& x) { return x[0]; }
-double radius(const Vec<3>& x) { return std::hypot(x[0], x[1]); }
+double squared_radius(const Vec<2>& x) { return x[0] * x[0]; }
+double squared_radius(const Vec<3>& x) { return x[0] * x[0] + x[1] * x[1]; }
 
 template <int D>
 double outermost_radius(const Points<D>& points) {
-  double r = 0.0;
-  for (const auto& x : points.x) r = std::max(r, radius(x));
-  return r;
+  double r2 = 0.0;
+  for (const auto& x : points.x) r2 = std::max(r2, squared_radius(x));
+  return std::sqrt(r2);
+}
+
+/// Whether a place is further out than `reach`, which may be negative.
+template <class Place>
+bool beyond(const Place& x, double reach) {
+  return reach < 0.0 || squared_radius(x) > reach * reach;
 }
 
 /// How far out the concrete reaches: the outermost value that has company, plus half the size of its point.
@@ -67,7 +73,7 @@ std::vector<std::size_t> points_far_out(const Points<D>& points, double cell) {
   for (; far.size() <= company && reach > -4.0 * cell; reach -= 4.0 * cell) {
     far.clear();
     for (std::size_t p = 0; p < points.size(); ++p)
-      if (radius(points.x[p]) > reach) far.push_back(p);
+      if (beyond(points.x[p], reach)) far.push_back(p);
   }
   return far;
 }
@@ -76,7 +82,7 @@ template <int D>
 double height_within(const Points<D>& points, double reach) {
   std::vector<Weighted> heights;
   for (std::size_t p = 0; p < points.size(); ++p)
-    if (radius(points.x[p]) < reach)
+    if (!beyond(points.x[p], reach))
       heights.push_back({points.x[p][D - 1], points.volume(p), section_size(points, p)});
   return upper_quantile(heights, 1e-2);
 }

@@ -242,9 +242,10 @@ void find_mirrors(ActiveGrid<D>& grid) {
 
 }  // namespace detail
 
-/// Finds the active cells and nodes and sorts the points by cell. Points must be finite.
+/// Finds the active cells alone, and sorts the points by cell: nodes are left as they are. Points must be
+/// finite.
 template <int D>
-void activate(ActiveGrid<D>& grid, const Points<D>& points) {
+void activate_cells(ActiveGrid<D>& grid, const Points<D>& points) {
   std::vector<Index<D>> cell(points.size());
   Index<D> low, high;
   for (int d = 0; d < D; ++d) low[d] = high[d] = 0;
@@ -257,6 +258,12 @@ void activate(ActiveGrid<D>& grid, const Points<D>& points) {
   }
   grid.cell_map.reset(low, high);
   detail::sort_points_by_cell<D>(grid, cell);
+}
+
+/// Finds the active cells and nodes and sorts the points by cell. Points must be finite.
+template <int D>
+void activate(ActiveGrid<D>& grid, const Points<D>& points) {
+  activate_cells(grid, points);
   detail::number_nodes(grid);
   detail::find_mirrors(grid);
 }
