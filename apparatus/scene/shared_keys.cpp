@@ -251,7 +251,7 @@ Section model_section(const std::vector<std::string>& spaces, const ModelDefault
                .words = names(precision_words),
                .fallback = "double",
                .only_with = Condition{"scheme", {"explicit_usf"}},
-               .help = "of the sums between points and grid; single with transfer = apic"},
+               .help = "of the sums between points and grid and of the law; single with transfer = apic"},
               {.name = "transfer", .kind = Kind::choice, .words = names(transfer_words), .fallback = "apic"},
               {.name = "flip_blend",
                .kind = Kind::number,

@@ -82,7 +82,7 @@ template <int D>
 double height_within(const Points<D>& points, double reach) {
   std::vector<Weighted> heights;
   for (std::size_t p = 0; p < points.size(); ++p)
-    if (!beyond(points.x[p], reach))
+    if (squared_radius(points.x[p]) < reach * reach)
       heights.push_back({points.x[p][D - 1], points.volume(p), section_size(points, p)});
   return upper_quantile(heights, 1e-2);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
-// Who passes over which tiles: the explicit grid laid under its tiles, in shares of about equal cost.
+// Who passes over which tiles: the explicit grid laid under its tiles, in shares that take about as long and
+// have short borders.
 
 #include <omp.h>
 
@@ -164,12 +165,15 @@ class Border {
 };
 
 /// Cuts the tiles into shares, and then moves tiles across each border: a cut between two tiles leaves up to
-/// one tile between the shares, and may be longer than it needs to be.
+/// one tile between the shares, and may be longer than it needs to be. Among hundreds of tiles that is
+/// nothing.
 template <int D>
 void share_out(TileGrid<D>& grid) {
   cut_into_shares<D>(grid.tiles, grid.pace);
-  constexpr int most_moves = 20;
-  for (int s = 0; s + 1 < static_cast<int>(grid.pace.size()); ++s) {
+  constexpr int most_moves = 20, many_tiles = 200;  // of a share
+  const auto n_shares = static_cast<int>(grid.pace.size());
+  if (grid.n_tiles() > many_tiles * n_shares) return;
+  for (int s = 0; s + 1 < n_shares; ++s) {
     Border<D> border(grid, s);
     for (int moves = 0; moves < most_moves && border.improve(); ++moves) continue;
   }
@@ -190,13 +194,14 @@ void measure_paces(TileGrid<D>& grid, int n_shares) {
   std::vector<double> now;
   double mean = 0.0;
   for (const Share<D>& share : grid.shares) {
+    if (share.tiles.empty() || !(share.busy > 0.0)) return;
     double cost = 0.0;
     for (const int t : share.tiles)
       cost += static_cast<double>(cost_of(grid.tiles[static_cast<std::size_t>(t)]));
     now.push_back(cost / share.busy);
     mean += now.back() / n_shares;
   }
-  for (std::size_t s = 0; s < now.size() && mean > 0.0; ++s) {
+  for (std::size_t s = 0; s < now.size(); ++s) {
     const double seen = std::clamp(now[s] / mean, least_pace, 2.0 - least_pace);
     pace[s] += new_pace * (seen - pace[s]);
   }

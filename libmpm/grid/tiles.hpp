@@ -132,9 +132,8 @@ struct TileGrid {
   std::vector<NodeBlock<D>> blocks;
   std::vector<Share<D>> shares;
   std::unique_ptr<Crew> crew;  ///< a thread for each share
-  std::vector<double>
-      pace;      ///< of each thread, against their mean: measured, and nothing but time hangs on it
-  int turn = 0;  ///< which of a tile's buffers was filled last
+  std::vector<double> pace;    ///< of each thread, measured: who does what hangs on it, no result
+  int turn = 0;                ///< which of a tile's buffers was filled last
   std::vector<Buffer> sums;    ///< a buffer: momentum and mass that the points give
   std::vector<Buffer> forces;  ///< a buffer: impulse of the stresses, for FLIP alone
   bool single = false;         ///< sums are kept in single precision, in these:

@@ -1,7 +1,7 @@
 #pragma once
 
-// Eight numbers side by side, for loops over material points: one arithmetic operation for eight points where
-// the processor has wide registers, the same bits where it has not.
+// Eight numbers side by side, or sixteen in single precision, for loops over material points: one arithmetic
+// operation for all of them where the processor has wide registers, the same bits where it has not.
 
 #include <array>
 #include <cstdint>
@@ -121,18 +121,7 @@ inline Octet look_up(const double* table, const std::array<int, octet_size>& at)
 #endif
 }
 
-/// Whether a mask has any lane.
-inline bool any(const OctetMask& a) {
-#ifdef __AVX512F__  // lane by lane it would cost more than what it saves
-  return _mm512_test_epi64_mask(reinterpret_cast<__m512i>(a), reinterpret_cast<__m512i>(a)) != 0;
-#else
-  std::int64_t bits = a[0];
-  for (int l = 1; l < octet_size; ++l) bits |= a[l];
-  return bits != 0;
-#endif
-}
-
-/// The same of sixteen from a table whose entries are `stride` bytes apart.
+/// The same of sixteen, from a table whose entries are `stride` bytes apart.
 template <std::size_t stride>
 Singles look_up(const float* table, const std::array<int, octet_size>& a,
                 const std::array<int, octet_size>& b) {
@@ -149,6 +138,17 @@ Singles look_up(const float* table, const std::array<int, octet_size>& a,
   for (std::size_t l = 0; l < octet_size; ++l)
     r[l] = table[step * a[l]], r[octet_size + l] = table[step * b[l]];
   return r;
+#endif
+}
+
+/// Whether a mask has any lane.
+inline bool any(const OctetMask& a) {
+#ifdef __AVX512F__  // lane by lane it would cost more than what it saves
+  return _mm512_test_epi64_mask(reinterpret_cast<__m512i>(a), reinterpret_cast<__m512i>(a)) != 0;
+#else
+  std::int64_t bits = a[0];
+  for (int l = 1; l < octet_size; ++l) bits |= a[l];
+  return bits != 0;
 #endif
 }
 

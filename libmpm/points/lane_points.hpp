@@ -271,7 +271,7 @@ struct SortedTiles {
 
 /// Sorts the points by tile and cell into groups of eight. `stencil_shift`: 0 where a point's stencil begins
 /// with its cell, 1/2 where it is that of the nearest corner (GIMP). `packed`: groups need not be of one
-/// cell.
+/// cell, and the last direction of a tile's cells runs slowest.
 template <int D>
 SortedTiles<D> sort_into_tiles(const std::array<Axis, D>& axes, double stencil_shift, LanePoints<D>& lanes,
                                bool packed = false) {

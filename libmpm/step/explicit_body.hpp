@@ -20,8 +20,8 @@ enum class StressUpdate {
 struct ExplicitSettings {
   StressUpdate stress = StressUpdate::last;
   Transfer transfer;
-  bool cell_pressure = true;      ///< one divergence and one pressure row a cell, against locking
-  bool single_precision = false;  ///< shape functions and sums between points and grid; stress first, no FLIP
+  bool cell_pressure = true;       ///< one divergence and one pressure row a cell, against locking
+  bool single_precision = false;   ///< shape functions, sums and the law; stress first, no FLIP
   std::optional<double> fixed_dt;  ///< [s]; empty: `safety` times the stability limit
   double safety = 0.8;
   double dt_max = 0.01;  ///< [s]

@@ -1,7 +1,7 @@
 #pragma once
 
-// The pass over the points with shape functions and sums in single precision: sixteen points at once, two
-// groups of eight. Places, volumes, flocculation and what opposes the flow stay in double precision.
+// The pass over the points with shape functions, sums, the law and stresses in single precision: sixteen
+// points at once, two groups of eight. Places, ln J and flocculation stay in double precision.
 
 #include "libmpm/step/explicit_pass.hpp"
 

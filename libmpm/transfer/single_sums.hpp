@@ -219,19 +219,21 @@ template <int D, bool ends>
 }  // namespace detail
 
 /// Values at the first n of sixteen points, and what `side` in place of a direction's weights gives: slopes
-/// with dw, moments with wa. The others get something of the first's. Values may be left out.
+/// with dw, moments with wa. The others get what the rows of the first point of their eight are with weights
+/// of their own: the same as it, where they stand. Values may be left out.
 template <int D, bool values, bool ends>
 [[gnu::noinline]] void sum_controls(const SingleNode* v, const SingleWeights<D>& p,
                                     const Singles (&side)[D][3], std::size_t n, SingleFields<D>& fields) {
   Singles entry[D + 1][4];  // of points 4a + b in block a of vector b
-  Singles of_first[D] = {};
+  Singles of_first[2][D] = {};
   for (std::size_t b = 0; b < 4; ++b) {
     Singles rows[D][4];
     for (std::size_t a = 0, l = b; a < 4; ++a, l += 4) {
       Singles sum[D];
       if (l < n) detail::sum_rows<D, ends>(v + p.base[l], p, side, l, sum);
-      for (int q = 0; q < D; ++q) rows[q][a] = l < n ? sum[q] : of_first[q];
-      if (l == 0) std::copy_n(sum, D, of_first);
+      const std::size_t eight = n > octet_size ? l / octet_size : 0;
+      for (int q = 0; q < D; ++q) rows[q][a] = l < n ? sum[q] : of_first[eight][q];
+      if (l % octet_size == 0 && l < n) std::copy_n(sum, D, of_first[eight]);
     }
     Singles w[3], turned[3];
     for (int k = 0; k < 3; ++k) {

@@ -30,7 +30,8 @@ struct SixteenPoints {
   TileGrid<D>::Buffer v;
   TileGrid<D>::SingleBuffer single_v;
 
-  SixteenPoints(ShapeFunctions kind, double low, double high) {
+  /// `n`: points beyond it stand where the first of their eight does.
+  SixteenPoints(ShapeFunctions kind, double low, double high, std::size_t n = singles_size) {
     std::array<Axis, D> axes;
     for (Axis& a : axes) a = {.h = h, .low = FaceKind::no_slip};
     Shape<D> shape{kind, {}};
@@ -39,7 +40,11 @@ struct SixteenPoints {
     std::array<Octet, D> x[2];
     const auto frame = stencil_frame<D>(axes, shape, {0, 0, 0});
     for (int half = 0; half < 2; ++half) {
-      for (Octet& lanes : x[half]) lanes = random_lanes(random, low, high);
+      for (Octet& lanes : x[half]) {
+        lanes = random_lanes(random, low, high);
+        for (std::size_t l = 0; l < octet_size; ++l)
+          if (static_cast<std::size_t>(half) * octet_size + l >= n) lanes[l] = lanes[0];
+      }
       weigh<D>(axes, shape, {0, 0, 0}, x[half], weights[half]);
     }
     weigh_single<D, slopes_and_moments>(frame, x, single);
@@ -94,6 +99,21 @@ TEST_P(SingleSums, GatherAsDoubleDoes) {
       }
     }
     for (std::size_t l = n; l < singles_size; ++l) EXPECT_TRUE(std::isfinite(moments.along[0][0][l]));
+  }
+}
+
+// What fills up eight points moves with the first of them, to the bit.
+TEST_P(SingleSums, WhatFillsUpReadsAsItsFirst) {
+  for (const std::size_t n : {std::size_t{3}, std::size_t{11}}) {
+    const SixteenPoints points(GetParam().kind, GetParam().low, GetParam().high, n);
+    SingleFields<D> moments;
+    gather_moments<D>(points.single_v.data(), points.single, n, moments);
+    const std::size_t first = (n - 1) / octet_size * octet_size;
+    for (std::size_t l = n; l < first + octet_size; ++l)
+      for (int c = 0; c < D; ++c) {
+        EXPECT_EQ(moments.value[c][l], moments.value[c][first]);
+        for (int d = 0; d < D; ++d) EXPECT_EQ(moments.along[d][c][l], moments.along[d][c][first]);
+      }
   }
 }
 
