@@ -20,8 +20,11 @@
 // raise it to 4, and where the concrete slides along a wall the open end of the spline does, to 5.4. chi is
 // largest at free corners, whose controls have little mass: 4.2 for splines, 5.9 for GIMP. The way from the
 // grid to the points and back leaves such a mode a share p of its velocity, and the second condition becomes
-// omega^2 dt^2 < 2 (1 + p); chi is taken by a third larger, for p down to 1/2. Cells that hold a few stray
-// points may need less yet: a chosen step keeps a margin.
+// omega^2 dt^2 < 2 (1 + p); chi is taken by a third larger, for p down to 1/2.
+//
+// A point that shares its controls with no other rings faster than a body: chi is the sum of h^2 over the
+// second moment of its weights in each direction, up to 24 (GIMP, in space). These limits are not its own:
+// strays may run away at 0.4 to 0.7 h/sqrt(K/rho) (tests/verification/explicit.md).
 
 #include <algorithm>
 #include <cmath>
