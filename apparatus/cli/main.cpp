@@ -53,11 +53,14 @@ void spin_briefly(int argc, char** argv) {
   if (setenv("GOMP_SPINCOUNT", "10000", 0) == 0) execv(own_file().c_str(), argv);
 }
 
-/// Arrays of a megabyte and more go back to the system when they are freed. By its own rule the allocator
-/// keeps ever larger ones, in pieces: a quarter more memory for a large body in space.
+/// Arrays of four megabytes and more go back to the system when they are freed. By its own rule the allocator
+/// keeps ever larger ones, in pieces: a quarter more memory for a large body in space. What lies free at the
+/// heap's end stays up to 32 MB: given back and asked for again in every step, it costs a body of 13,000
+/// points a tenth of its time.
 void return_large_blocks() {
 #ifdef __GLIBC__
-  mallopt(M_MMAP_THRESHOLD, 1 << 20);
+  mallopt(M_MMAP_THRESHOLD, 1 << 22);
+  mallopt(M_TRIM_THRESHOLD, 1 << 25);
 #endif
 }
 
