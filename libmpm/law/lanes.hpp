@@ -18,41 +18,24 @@ using Octet [[gnu::vector_size(64)]] = double;
 using OctetMask [[gnu::vector_size(64)]] = std::int64_t;
 
 inline Octet all_lanes(double x) { return Octet{x, x, x, x, x, x, x, x}; }
-/// a > b ? a : b in each lane. Spelled out: among other arithmetic the compiler makes two instructions of it.
-inline Octet max(const Octet& a, const Octet& b) {
-#ifdef __AVX512F__
-  return _mm512_maskz_max_pd(0xff, a, b);
-#else
-  return a > b ? a : b;
-#endif
-}
-inline Octet min(const Octet& a, const Octet& b) {
-#ifdef __AVX512F__
-  return _mm512_maskz_min_pd(0xff, a, b);
-#else
-  return a < b ? a : b;
-#endif
-}
 
 /// Singles numbers in single precision.
 using Singles [[gnu::vector_size(64)]] = float;
 inline constexpr std::size_t singles_size = 16;
 using WholeNumbers [[gnu::vector_size(64)]] = int;
 
-inline Singles max(const Singles& a, const Singles& b) {
-#ifdef __AVX512F__
-  return _mm512_maskz_max_ps(0xffff, a, b);
+// a > b ? a : b and a < b ? a : b in each lane.
+#ifdef __AVX512F__  // among other arithmetic the compiler would make two instructions of each
+inline Octet max(const Octet& a, const Octet& b) { return _mm512_maskz_max_pd(0xff, a, b); }
+inline Octet min(const Octet& a, const Octet& b) { return _mm512_maskz_min_pd(0xff, a, b); }
+inline Singles max(const Singles& a, const Singles& b) { return _mm512_maskz_max_ps(0xffff, a, b); }
+inline Singles min(const Singles& a, const Singles& b) { return _mm512_maskz_min_ps(0xffff, a, b); }
 #else
-  return a > b ? a : b;
+inline Octet max(const Octet& a, const Octet& b) { return a > b ? a : b; }
+inline Octet min(const Octet& a, const Octet& b) { return a < b ? a : b; }
+inline Singles max(const Singles& a, const Singles& b) { return a > b ? a : b; }
+inline Singles min(const Singles& a, const Singles& b) { return a < b ? a : b; }
 #endif
-}
-inline Singles min(const Singles& a, const Singles& b) {
-#ifdef __AVX512F__
-  return _mm512_maskz_min_ps(0xffff, a, b);
-#else
-  return a < b ? a : b;
-#endif
-}
 
 inline Singles sqrt(const Singles& a) {
   Singles r;
