@@ -67,7 +67,9 @@ bool update_active(std::vector<ContactPoint<D>>& contact,
                    const std::vector<std::array<int, power(3, D)>>& cell_nodes,
                    const std::vector<Vec<D>>& v) {
   bool changed = false;
-  for (ContactPoint<D>& c : contact) {
+#pragma omp parallel for schedule(static) reduction(|| : changed)
+  for (std::size_t p = 0; p < contact.size(); ++p) {
+    ContactPoint<D>& c = contact[p];
     const bool active = normal_velocity(c, cell_nodes, v) < c.target;
     changed = changed || active != c.active;
     c.active = active;

@@ -200,15 +200,26 @@ void number_nodes(ActiveGrid<D>& grid) {
                          : a.first_control(grid.cell_map.low[d] + grid.cell_map.extent[d] - 1) + 2;
   }
   grid.node_map.reset(low, high);
-  const auto control = [&](const Index<D>& cell, int k) {
-    const Index<D> o = local_offset<D>(k);
-    Index<D> j;
-    for (int d = 0; d < D; ++d) j[d] = grid.axes[d].control(grid.axes[d].first_control(cell[d]) + o[d]);
-    return j;
+  Index<D> stride;  // of the map
+  stride[D - 1] = 1;
+  for (int d = D - 1; d > 0; --d) stride[d - 1] = stride[d] * grid.node_map.extent[d];
+  // Calls visit(k, place in the map) for each control of a cell.
+  const auto for_each_control = [&](const Index<D>& cell, auto visit) {
+    std::array<Index<3>, D> at;  // direction by direction
+    for (int d = 0; d < D; ++d) {
+      const Axis& a = grid.axes[d];
+      const int first = a.first_control(cell[d]);
+      for (int o = 0; o < 3; ++o) at[d][o] = (a.control(first + o) - low[d]) * stride[d];
+    }
+    for (int k = 0; k < ActiveGrid<D>::n_local; ++k) {
+      const Index<D> o = local_offset<D>(k);
+      int place = 0;
+      for (int d = 0; d < D; ++d) place += at[d][o[d]];
+      visit(k, static_cast<std::size_t>(place));
+    }
   };
   for (const Index<D>& cell : grid.cell_index)
-    for (int k = 0; k < ActiveGrid<D>::n_local; ++k)
-      grid.node_map.value[grid.node_map.offset(control(cell, k))] = 0;
+    for_each_control(cell, [&](int, std::size_t place) { grid.node_map.value[place] = 0; });
   const auto& map = grid.node_map.value;
   make_room(grid.node_index, static_cast<std::size_t>(std::count(map.begin(), map.end(), 0)));
   grid.node_index.clear();
@@ -218,9 +229,11 @@ void number_nodes(ActiveGrid<D>& grid) {
     grid.node_index.push_back(j);
   });
   make_room(grid.cell_nodes, grid.cell_index.size());
+#pragma omp parallel for schedule(static)
   for (std::size_t c = 0; c < grid.cell_index.size(); ++c)
-    for (int k = 0; k < ActiveGrid<D>::n_local; ++k)
-      grid.cell_nodes[c][k] = grid.node_map.value[grid.node_map.offset(control(grid.cell_index[c], k))];
+    for_each_control(grid.cell_index[c], [&](int k, std::size_t place) {
+      grid.cell_nodes[c][k] = grid.node_map.value[place];
+    });
 }
 
 template <int D>

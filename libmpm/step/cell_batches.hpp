@@ -101,6 +101,7 @@ class CellBatches {
 
   static constexpr int of_cell = 32;         ///< entries of a cell, of which 27 are used: a power of two
   static constexpr int chunk_batches = 128;  ///< what their cells give stays in the second cache
+  static constexpr int most_at_once = 192;   ///< batches of a small body, which go in one chunk
   /// Batches that go together, and the nodes complete_[first_node .. last_node) whose last cells they have.
   struct Chunk {
     int first_batch, last_batch, first_node, last_node;
@@ -175,7 +176,8 @@ inline void CellBatches::lay_out(const ActiveGrid<3>& grid) {
 
 /// Chunks of batches, and a ring of cells that holds all cells of every node until its last one has given.
 inline void CellBatches::plan_sweep() {
-  const int chunk_cells = chunk_batches * batch_size;
+  const int together = n_batches() <= most_at_once ? std::max(1, n_batches()) : chunk_batches;
+  const int chunk_cells = together * batch_size;
   const int n = std::max(1, (n_cells_ + chunk_cells - 1) / chunk_cells);
   const auto first_cell = [&](int i) { return cell_of(*entries_begin(i)); };
   const auto chunk_of = [&](int i) { return cell_of(entries_end(i)[-1]) / chunk_cells; };
@@ -193,7 +195,7 @@ inline void CellBatches::plan_sweep() {
     const auto at = static_cast<std::size_t>(k);
     begin[at + 1] += begin[at];
     chunks_.push_back(
-        {k * chunk_batches, std::min((k + 1) * chunk_batches, n_batches()), begin[at], begin[at + 1]});
+        {k * together, std::min((k + 1) * together, n_batches()), begin[at], begin[at + 1]});
   }
   tremie::make_room(complete_, static_cast<std::size_t>(n_nodes_));
   for (int i = 0; i < n_nodes_; ++i)

@@ -4,27 +4,32 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <vector>
 
 namespace tremie {
 
+inline constexpr Eigen::Index block_size = 1024;
+
 /// Calls use(begin, size) for fixed blocks of n entries, on all threads.
 template <class Use>
 void for_each_block(Eigen::Index n, Use use) {
-  constexpr Eigen::Index block = 1024;
 #pragma omp parallel for schedule(static)
-  for (Eigen::Index i = 0; i < n; i += block) use(i, std::min(block, n - i));
+  for (Eigen::Index i = 0; i < n; i += block_size) use(i, std::min(block_size, n - i));
 }
 
-/// Sum of products in fixed blocks.
-template <class Vector>
-double block_dot(const Vector& a, const Vector& b) {
-  std::vector<double> part(static_cast<std::size_t>(a.size() / 512 + 1), 0.0);
-  for_each_block(a.size(), [&](Eigen::Index i, Eigen::Index size) {
-    part[static_cast<std::size_t>(i / 512)] = static_cast<double>(a.segment(i, size).dot(b.segment(i, size)));
+/// Sums of products with z, each in fixed blocks.
+template <class Vector, class... Others>
+std::array<double, sizeof...(Others)> block_dots(const Vector& z, const Others&... with) {
+  using Sums = std::array<double, sizeof...(Others)>;
+  std::vector<Sums> part(static_cast<std::size_t>((z.size() + block_size - 1) / block_size));
+  for_each_block(z.size(), [&](Eigen::Index i, Eigen::Index size) {
+    part[static_cast<std::size_t>(i / block_size)] = {
+        static_cast<double>(with.segment(i, size).dot(z.segment(i, size)))...};
   });
-  double sum = 0.0;
-  for (double p : part) sum += p;
+  Sums sum{};
+  for (const Sums& p : part)
+    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += p[k];
   return sum;
 }
 
@@ -41,15 +46,18 @@ double conjugate_gradients(Multiply multiply, Precondition precondition, const S
                            Vector& x) {
   using Scalar = typename Vector::Scalar;
   const Eigen::Index n = R.size();
-  Vector z(n), Ap(n);
-  x.setZero(n);
+  Vector z(n), Ap(n), p(n);
+  x.resize(n);
   precondition(R, z);
-  double rz = block_dot(R, z);
+  double rz = block_dots(z, R)[0];
   const double enough = std::max(goal.enough, goal.reduction * goal.reduction * rz);
-  Vector p = z;
+  for_each_block(n, [&](Eigen::Index j, Eigen::Index size) {
+    x.segment(j, size).setZero();
+    p.segment(j, size) = z.segment(j, size);
+  });
   for (int i = 0; rz > enough && i < goal.most; ++i) {
     multiply(p, Ap);
-    const double alpha = rz / block_dot(p, Ap);
+    const double alpha = rz / block_dots(Ap, p)[0];
     const auto step = static_cast<Scalar>(alpha);
     for_each_block(n, [&](Eigen::Index j, Eigen::Index size) {
       x.segment(j, size) += step * p.segment(j, size);
@@ -57,8 +65,9 @@ double conjugate_gradients(Multiply multiply, Precondition precondition, const S
     });
     precondition(R, z);
     // Polak and Ribiere's beta, (z, r_new - r_old) / rz, forgives a preconditioner that is rounded.
-    const double beta = -alpha * block_dot(Ap, z) / rz;
-    rz = block_dot(R, z);
+    const auto [Ap_z, R_z] = block_dots(z, Ap, R);
+    const double beta = -alpha * Ap_z / rz;
+    rz = R_z;
     const auto again = static_cast<Scalar>(beta);
     for_each_block(n, [&](Eigen::Index j, Eigen::Index size) {
       p.segment(j, size) = z.segment(j, size) + again * p.segment(j, size);

@@ -64,11 +64,14 @@ inline void PressureIteration::find_cubes(const ActiveGrid<3>& grid) {
 
 /// P' S P.
 inline void PressureIteration::fill_coarse() {
-  int bandwidth = 0;
-  entries.for_each(
-      [&](int c, int other, float) { bandwidth = std::max(bandwidth, std::abs(cube_[c] - cube_[other])); });
   const int n = static_cast<int>(cube_begin_.size()) - 1;
-  band_.reset(n, bandwidth);
+  std::vector<int> first(static_cast<std::size_t>(n));
+  for (int k = 0; k < n; ++k) first[static_cast<std::size_t>(k)] = k;
+  entries.for_each([&](int c, int other, float) {
+    const auto [low, high] = std::minmax(cube_[c], cube_[other]);
+    first[static_cast<std::size_t>(high)] = std::min(first[static_cast<std::size_t>(high)], low);
+  });
+  band_.reset(first);
   coarse_.setZero(n);
   entries.for_each([&](int c, int other, float value) {
     const int k = cube_[c], l = cube_[other];

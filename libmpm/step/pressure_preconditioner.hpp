@@ -16,6 +16,8 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "libmpm/step/pressure_iteration.hpp"
@@ -47,7 +49,7 @@ class PressurePreconditioner {
   void number_across_the_thin_way(const ActiveGrid<3>& grid);
   template <class Use>
   void for_each_neighbour(const ActiveGrid<3>& grid, int cell, Use use) const;
-  int find_bandwidth(const ActiveGrid<3>& grid, bool wraps) const;
+  void find_first_columns(const ActiveGrid<3>& grid, bool wraps);
   template <class Add>
   void fill_by_boxes(const ActiveGrid<3>& grid, Add add) const;
   template <class Add>
@@ -62,7 +64,7 @@ class PressurePreconditioner {
   PressureRows rows_;
   PressureIteration iteration_;  ///< where S is not factorised
   Eigen::VectorXf y_, p_, p_of_cell_;
-  int bandwidth_ = 0;
+  std::vector<int> first_;  ///< of each row of the band: its first column
   TwoEndedCholesky<float> band_;
 };
 
@@ -70,16 +72,16 @@ inline void PressurePreconditioner::number_across_the_thin_way(const ActiveGrid<
   way_ = {0, 1, 2};
   std::stable_sort(way_.begin(), way_.end(),
                    [&](int a, int b) { return grid.cell_map.extent[a] > grid.cell_map.extent[b]; });
-  std::vector<int> by_place(grid.n_cells());
-  for (int c = 0; c < grid.n_cells(); ++c) by_place[c] = c;
-  std::sort(by_place.begin(), by_place.end(), [&](int a, int b) {
-    for (int d : way_)
-      if (grid.cell_index[a][d] != grid.cell_index[b][d])
-        return grid.cell_index[a][d] < grid.cell_index[b][d];
-    return false;
-  });
+  std::vector<std::pair<std::int64_t, int>> by_place(grid.cell_index.size());
+  const Index<3>&low = grid.cell_map.low, &extent = grid.cell_map.extent;
+  for (int c = 0; c < grid.n_cells(); ++c) {
+    std::int64_t place = 0;
+    for (int d : way_) place = place * extent[d] + (grid.cell_index[c][d] - low[d]);
+    by_place[c] = {place, c};
+  }
+  if (way_ != Index<3>{0, 1, 2}) std::sort(by_place.begin(), by_place.end());  // that is the cells' own order
   number_.resize(by_place.size());
-  for (std::size_t k = 0; k < by_place.size(); ++k) number_[by_place[k]] = static_cast<int>(k);
+  for (std::size_t k = 0; k < by_place.size(); ++k) number_[by_place[k].second] = static_cast<int>(k);
 }
 
 /// Calls use(cell, offset) for the cells within two of `cell` in every direction, which are those that share
@@ -98,15 +100,17 @@ void PressurePreconditioner::for_each_neighbour(const ActiveGrid<3>& grid, int c
       }
 }
 
-inline int PressurePreconditioner::find_bandwidth(const ActiveGrid<3>& grid, bool wraps) const {
-  std::vector<int> reach(grid.cell_index.size(), 0);
+inline void PressurePreconditioner::find_first_columns(const ActiveGrid<3>& grid, bool wraps) {
+  first_.resize(grid.cell_index.size());
 #pragma omp parallel for schedule(static)
-  for (int c = 0; c < grid.n_cells(); ++c)
+  for (int c = 0; c < grid.n_cells(); ++c) {
+    int& first = first_[number_[c]];
+    first = number_[c];
     for_each_neighbour(grid, c, [&](int other, const Index<3>&) {
-      reach[c] = std::max(reach[c], number_[c] - number_[other]);
+      first = std::min(first, number_[other]);
       return wraps;  // else the first neighbour is the farthest
     });
-  return *std::max_element(reach.begin(), reach.end());
+  }
 }
 
 /// Calls add(c, other, value) for the part of S below its diagonal on a grid whose controls are numbered like
@@ -164,8 +168,10 @@ inline void PressurePreconditioner::lay_out(const ActiveGrid<3>& grid, double mo
   number_across_the_thin_way(grid);
   int periodic = 0;
   for (const Axis& a : grid.axes) periodic += a.periodic ? 1 : 0;
-  bandwidth_ = find_bandwidth(grid, periodic > 0);
-  const double n = grid.n_cells(), width = bandwidth_;
+  find_first_columns(grid, periodic > 0);
+  double width = 0.0;
+  for (int i = 0; i < grid.n_cells(); ++i) width = std::max(width, double(i - first_[i]));
+  const double n = grid.n_cells();
   by_band_ = periodic == 3 || n * width * width < most_band_operations;
   if (by_band_) return;
   for (int c = 0; c < grid.n_cells(); ++c) number_[c] = c;
@@ -185,7 +191,7 @@ inline bool PressurePreconditioner::build(const ActiveGrid<3>& grid, const CellB
     fill(grid, batches, [&](int c, int other, float value) { S.add(grid, c, other, value); });
     return iteration_.build(grid);
   }
-  band_.reset(grid.n_cells(), bandwidth_);
+  band_.reset(first_);
   fill(grid, batches, [&](int c, int other, float value) { band_.add(number_[c], number_[other], value); });
   return band_.factorise();
 }

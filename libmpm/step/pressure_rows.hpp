@@ -52,6 +52,8 @@ class PressureRows {
   std::size_t place_of(int c) const {
     return static_cast<std::size_t>(rows_of_[static_cast<std::size_t>(c)]);
   }
+  /// A cell that has rows r.
+  int a_cell_of(std::size_t r) const { return cell_of_rows_[r]; }
   const Eigen::Vector4f& of_entry(int e) const {
     return of_cell(CellBatches::cell_of(e))[static_cast<std::size_t>(CellBatches::local_of(e))];
   }
@@ -75,6 +77,7 @@ class PressureRows {
 
   std::vector<CellRows> rows_;            ///< those of full cells once a kind, of the others a cell each
   std::vector<int> rows_of_;              ///< of each cell: its place there
+  std::vector<int> cell_of_rows_;         ///< the last cell that has each of them
   std::vector<Eigen::Vector4f> by_node_;  ///< entry by entry, if asked for
 };
 
@@ -111,12 +114,11 @@ inline void PressureRows::build(const ActiveGrid<3>& grid, const CellBatches& ba
     softness[c] = left_out[c] ? 1.0f : static_cast<float>(1.0 / stiffness[c]);
   }
   number_rows(grid, quadrature);
-  std::vector<int> last(
-      rows_.size());  // the cell that fills in each set of rows: of those that share it, one
-  for (int c = 0; c < grid.n_cells(); ++c) last[rows_of_[c]] = c;
+  make_room(cell_of_rows_, rows_.size());
+  for (int c = 0; c < grid.n_cells(); ++c) cell_of_rows_[rows_of_[c]] = c;
 #pragma omp parallel for schedule(static)
   for (std::size_t r = 0; r < rows_.size(); ++r) {
-    const int c = last[r];
+    const int c = cell_of_rows_[r];
     const auto& b = quadrature.divergence_rows(c);
     for (std::size_t k = 0; k < 27; ++k)
       rows_[r][k] << (left_out[c] ? Vec<3>(Vec<3>::Zero()) : b[k]).template cast<float>(), 0.0f;

@@ -27,6 +27,30 @@ void add_bound_products(const std::vector<BoundPoint<3>>& bound,
   }
 }
 
+/// Adds what closed contacts with a moving wall do to the field x, four numbers a node.
+inline void add_contact_products(const std::vector<ContactPoint<3>>& contact,
+                                 const std::vector<std::array<int, 27>>& cell_nodes, const Eigen::VectorXf& x,
+                                 Eigen::VectorXf& out) {
+  std::vector<double> push(contact.size());
+#pragma omp parallel for schedule(static)
+  for (std::size_t p = 0; p < contact.size(); ++p) {
+    const ContactPoint<3>& c = contact[p];
+    if (!c.active) continue;
+    const auto N = c.shape();
+    double u = 0.0;
+    for (int k = 0; k < 27; ++k)
+      u += N[k] * c.normal.dot(x.segment<3>(4 * cell_nodes[c.cell][k]).cast<double>());
+    push[p] = c.stiffness * u;
+  }
+  for (std::size_t p = 0; p < contact.size(); ++p) {
+    const ContactPoint<3>& c = contact[p];
+    if (!c.active) continue;
+    const auto N = c.shape();
+    for (int k = 0; k < 27; ++k)
+      out.segment<3>(4 * cell_nodes[c.cell][k]) += (push[p] * N[k] * c.normal).cast<float>();
+  }
+}
+
 inline void add_bound_blocks(const std::vector<BoundPoint<3>>& bound,
                              const std::vector<std::array<int, 27>>& cell_nodes,
                              std::vector<Mat<3, 3>>& blocks) {
@@ -108,6 +132,12 @@ class SpaceSystem {
   /// Mean shear rate of every cell over its places, and the volume mean of all [1/s].
   void shear_rates(const YieldProblem<ThreeD>& problem, const std::vector<Vec<3>>& v,
                    std::vector<double>& of_cell, double& mean) const;
+
+  /// Gives back the room for forces of a large body. A small one keeps it: fresh pages cost more time than
+  /// they hold.
+  void give_back_forces() {
+    if (!preconditioner.factorised()) forces.give_back();
+  }
 
   CellBatches batches;
   CellForces forces;                      ///< room for what cells give their nodes in a pass over them
@@ -244,32 +274,27 @@ inline void SpaceSystem::multiply(const YieldProblem<ThreeD>& problem, const Eig
                             free_.segment<4>(4 * i).cwiseProduct(batches.gathered<float>(i, forces));
   });
   if (problem.contact.empty() && problem.bound.empty()) return fold_mirrors<3, 4>(problem.grid, out);
-  const auto& cell_nodes = problem.grid.cell_nodes;
-  for (const ContactPoint<3>& c : problem.contact) {
-    if (!c.active) continue;
-    const auto N = c.shape();
-    double u = 0.0;
-    for (int k = 0; k < 27; ++k)
-      u += N[k] * c.normal.dot(x.segment<3>(4 * cell_nodes[c.cell][k]).cast<double>());
-    for (int k = 0; k < 27; ++k)
-      out.segment<3>(4 * cell_nodes[c.cell][k]) += (c.stiffness * u * N[k] * c.normal).cast<float>();
-  }
-  add_bound_products(problem.bound, cell_nodes, x, out);
-  out = out.cwiseProduct(free_);
+  add_contact_products(problem.contact, problem.grid.cell_nodes, x, out);
+  add_bound_products(problem.bound, problem.grid.cell_nodes, x, out);
+  for_each_block(out.size(), [&](Eigen::Index i, Eigen::Index size) {
+    out.segment(i, size) = out.segment(i, size).cwiseProduct(free_.segment(i, size));
+  });
   fold_mirrors<3, 4>(problem.grid, out);
 }
 
 inline double SpaceSystem::solve(const YieldProblem<ThreeD>& problem, const Eigen::VectorXd& R,
                                  const SolveGoal& goal, std::vector<Vec<3>>& v) {
   const int n = problem.grid.n_nodes();
-  Eigen::VectorXf r = Eigen::VectorXf::Zero(4 * n), x;
-  for (int i = 0; i < n; ++i) r.segment<3>(4 * i) = R.segment<3>(3 * i).cast<float>();
+  Eigen::VectorXf r(4 * n), x;
+#pragma omp parallel for schedule(static)
+  for (int i = 0; i < n; ++i) r.segment<4>(4 * i) << R.segment<3>(3 * i).cast<float>(), 0.0f;
   const double left =
       conjugate_gradients([&](const Eigen::VectorXf& p, Eigen::VectorXf& Ap) { multiply(problem, p, Ap); },
                           [&](const Eigen::VectorXf& rest, Eigen::VectorXf& z) {
                             preconditioner.apply(batches, problem.grid, rest, z);
                           },
                           goal, r, x);
+#pragma omp parallel for schedule(static)
   for (int i = 0; i < n; ++i) v[i] += x.segment<3>(4 * i).cast<double>();
   fill_mirrors<3>(problem.grid, v);
   return left;

@@ -4,12 +4,14 @@
 //
 // Unknowns are eliminated from the first and from the last towards a dense block in the middle that is as
 // wide as the band: no more operations than from one end to the other, and two threads share them. What is
-// done does not depend on the threads, nor do the bits.
+// done does not depend on the threads, nor do the bits. Where the band is narrower than at its widest, as it
+// is towards the ends of a round body, the rows that stay zero are passed over.
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <utility>
 #include <vector>
 
 namespace tremie {
@@ -21,14 +23,18 @@ class TwoEndedCholesky {
   using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
   static constexpr int block = 32;
 
-  /// Makes room for n unknowns coupled over at most `bandwidth` rows below the diagonal; all entries zero.
-  void reset(int n, int bandwidth) {
-    n_ = n;
-    below_ = (bandwidth + block - 1) / block * block;
-    const int blocks = std::max(0, n - below_) / block;
+  /// Makes room for a row an entry of `first`, the first column that it is coupled with; all entries zero.
+  void reset(const std::vector<int>& first) {
+    n_ = static_cast<int>(first.size());
+    int bandwidth = 0;
+    for (int i = 0; i < n_; ++i) bandwidth = std::max(bandwidth, i - first[static_cast<std::size_t>(i)]);
+    below_ = whole_blocks(bandwidth);
+    const int blocks = std::max(0, n_ - below_) / block;
 #pragma omp parallel for schedule(static, 1)
-    for (int e = 0; e < 2; ++e) ends_[e].reset(e == 0 ? blocks - blocks / 2 : blocks / 2, below_);
-    middle_.setZero(n - ends_[0].size() - ends_[1].size(), n - ends_[0].size() - ends_[1].size());
+    for (int e = 0; e < 2; ++e)
+      e == 0 ? ends_[0].reset(heights_from_the_first(first, blocks - blocks / 2), below_)
+             : ends_[1].reset(heights_from_the_last(first, blocks / 2), below_);
+    middle_.setZero(n_ - ends_[0].size() - ends_[1].size(), n_ - ends_[0].size() - ends_[1].size());
   }
   /// Adds to the entry (i, j), i >= j. Threads may add to different entries.
   void add(int i, int j, Scalar value) {
@@ -76,24 +82,62 @@ class TwoEndedCholesky {
   }
 
  private:
+  static int whole_blocks(int rows) { return (std::max(0, rows) + block - 1) / block * block; }
+
+  /// Rows below the diagonal block that so many block columns have, those that elimination fills included.
+  static std::vector<int> heights_from_the_first(const std::vector<int>& first, int blocks) {
+    const int n = static_cast<int>(first.size());
+    std::vector<int> last(first.size(), 0);  // by column: the last row that begins there
+    for (int i = 0; i < n; ++i) last[static_cast<std::size_t>(first[static_cast<std::size_t>(i)])] = i;
+    std::vector<int> heights;
+    int end = 0;  // of the rows that begin in the columns so far
+    for (int k = 0; k < blocks; ++k) {
+      for (int j = k * block; j < (k + 1) * block; ++j)
+        end = std::max(end, last[static_cast<std::size_t>(j)] + 1);
+      heights.push_back(whole_blocks(end - (k + 1) * block));
+    }
+    return heights;
+  }
+  /// The same with rows and columns counted from the last.
+  static std::vector<int> heights_from_the_last(const std::vector<int>& first, int blocks) {
+    const int n = static_cast<int>(first.size());
+    std::vector<int> heights;
+    int begin = n;  // the first column of the rows so far
+    for (int k = 0; k < blocks; ++k) {
+      for (int i = n - 1 - k * block; i >= n - (k + 1) * block; --i)
+        begin = std::min(begin, first[static_cast<std::size_t>(i)]);
+      heights.push_back(whole_blocks(n - (k + 1) * block - begin));
+    }
+    return heights;
+  }
+
   /// The block columns that are eliminated from one end, numbered from there.
   struct End {
     std::vector<Matrix> columns;  ///< rows from the diagonal block downwards; that block's factor is inverted
+    std::vector<int> height;      ///< of each: the rows below its diagonal block that are not all zero
     Matrix rest;                  ///< what the elimination leaves to the middle's nearest unknowns
     Vector y;
-    int below = 0;
+    int below = 0;  ///< room for rows below a diagonal block
 
     int size() const { return static_cast<int>(columns.size()) * block; }
     bool empty() const { return columns.empty(); }
-    void reset(int blocks, int reach) {
+    void reset(std::vector<int> heights, int reach) {
       below = reach;
-      columns.resize(static_cast<std::size_t>(blocks));
+      height = std::move(heights);
+      columns.resize(height.size());
       for (Matrix& c : columns) c.setZero(block + below, block);
-      rest.setZero(blocks == 0 ? 0 : below, blocks == 0 ? 0 : below);
+      rest.setZero(empty() ? 0 : below, empty() ? 0 : below);
       y.setZero(size() + below);
     }
     void add(int i, int j, Scalar value) {
       columns[static_cast<std::size_t>(j / block)](i - j / block * block, j % block) += value;
+    }
+    /// Of the rows from j on that a product could have, those that it needs. Whole tiles of a matrix product:
+    /// then each entry is summed in the same order as without the rows left out.
+    int rows_needed(int k, int j) const {
+      constexpr int tile = 3 * 64 / static_cast<int>(sizeof(Scalar));
+      const int rows = std::max(0, height[static_cast<std::size_t>(k)] - j);
+      return std::min(below - j, (rows + tile - 1) / tile * tile);
     }
     bool factorise() {
       const int n = static_cast<int>(columns.size());
@@ -104,16 +148,17 @@ class TwoEndedCholesky {
         if (llt.info() != Eigen::Success) return false;
         diagonal.setIdentity();
         llt.matrixL().solveInPlace(diagonal);
-        auto panel = column.bottomRows(below);
+        auto panel = column.middleRows(block, rows_needed(k, 0));
         panel = (panel * diagonal.transpose()).eval();
-        for (int j = 0; j * block < below; ++j) {
-          const auto target =
-              panel.bottomRows(below - j * block) * panel.middleRows(j * block, block).transpose();
+        for (int j = 0; j * block < height[static_cast<std::size_t>(k)]; ++j) {
+          const int rows = rows_needed(k, j * block);
+          const auto target = column.middleRows((j + 1) * block, rows) *
+                              column.middleRows((j + 1) * block, block).transpose();
           if (k + 1 + j < n) {
-            columns[static_cast<std::size_t>(k + 1 + j)].topRows(below - j * block).noalias() -= target;
+            columns[static_cast<std::size_t>(k + 1 + j)].topRows(rows).noalias() -= target;
           } else {
             const int at = (k + 1 + j - n) * block;
-            rest.block(at, at, below - j * block, block).noalias() -= target;
+            rest.block(at, at, rows, block).noalias() -= target;
           }
         }
       }
@@ -126,14 +171,16 @@ class TwoEndedCholesky {
         const Eigen::Matrix<Scalar, block, 1> part =
             column.template topRows<block>() * y.template segment<block>(k * block);
         y.template segment<block>(k * block) = part;
-        y.segment((k + 1) * block, below).noalias() -= column.bottomRows(below) * part;
+        const int rows = height[static_cast<std::size_t>(k)];
+        y.segment((k + 1) * block, rows).noalias() -= column.middleRows(block, rows) * part;
       }
     }
     void backward() {
       for (int k = static_cast<int>(columns.size()) - 1; k >= 0; --k) {
         const Matrix& column = columns[static_cast<std::size_t>(k)];
         Eigen::Matrix<Scalar, block, 1> part = y.template segment<block>(k * block);
-        part.noalias() -= column.bottomRows(below).transpose() * y.segment((k + 1) * block, below);
+        const int rows = height[static_cast<std::size_t>(k)];
+        part.noalias() -= column.middleRows(block, rows).transpose() * y.segment((k + 1) * block, rows);
         y.template segment<block>(k * block) = column.template topRows<block>().transpose() * part;
       }
     }

@@ -7,6 +7,7 @@
 // tensor of the stencil is computed where the point is (tensor-product splines: it is diagonal).
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "libmpm/grid/active_grid.hpp"
@@ -180,7 +181,7 @@ void point_to_grid(const ActiveGrid<D>& grid, const Points<D>& points, NodalStat
   constexpr int n_local = power(3, D), at_a_time = 4096;
   nodes.mass.assign(grid.node_index.size(), 0.0);
   nodes.v.assign(grid.node_index.size(), Vec<D>::Zero());
-  std::vector<std::array<Vec<D + 1>, n_local>> local(
+  const auto local = std::make_unique_for_overwrite<std::array<Vec<D + 1>, n_local>[]>(
       static_cast<std::size_t>(std::min(grid.n_cells(), at_a_time)));
   for (int first = 0; first < grid.n_cells(); first += at_a_time) {
     const int last = std::min(first + at_a_time, grid.n_cells());

@@ -56,10 +56,23 @@ CellFill cell_fill(const YieldProblem<Space>& problem, const Points<Space::dim>&
   return cells;
 }
 
-/// Forces of the misfill on the nodes, and the components that walls prescribe.
+/// The components that walls hold back, and all of what is behind a plane of symmetry.
+template <int D>
+std::vector<char> held_by_walls(const ActiveGrid<D>& grid) {
+  std::vector<char> fixed(grid.node_index.size() * D, 0);
+  for (int i = 0; i < grid.n_nodes(); ++i)
+    for (int d = 0; d < D; ++d)
+      fixed[i * D + d] = grid.axes[d].on_low_wall(grid.node_index[i][d]) ||
+                         grid.axes[d].on_high_wall(grid.node_index[i][d]) ||
+                         block_of_node<D>(grid, grid.node_index[i]);
+  for (const MirrorNode<D>& m : grid.mirrors) std::fill_n(&fixed[m.node * D], D, 1);
+  return fixed;
+}
+
+/// Forces of the misfill on the nodes.
 template <class Space>
 Eigen::VectorXd fill_forces(const YieldProblem<Space>& problem, const CellFill& cells,
-                            std::vector<char>& fixed) {
+                            const std::vector<char>& fixed) {
   constexpr int D = Space::dim;
   const auto& grid = problem.grid;
   Eigen::VectorXd R = Eigen::VectorXd::Zero(grid.n_nodes() * D);
@@ -69,13 +82,6 @@ Eigen::VectorXd fill_forces(const YieldProblem<Space>& problem, const CellFill& 
       R.segment<D>(grid.cell_nodes[c][i] * D) += cells.stiffness[c] * cells.misfill[c] * b[i];
   }
   fold_mirrors<D>(grid, R);
-  fixed.assign(R.size(), 0);
-  for (int i = 0; i < grid.n_nodes(); ++i)
-    for (int d = 0; d < D; ++d)
-      fixed[i * D + d] = grid.axes[d].on_low_wall(grid.node_index[i][d]) ||
-                         grid.axes[d].on_high_wall(grid.node_index[i][d]) ||
-                         block_of_node<D>(grid, grid.node_index[i]);
-  for (const MirrorNode<D>& m : grid.mirrors) std::fill_n(&fixed[m.node * D], D, 1);
   mask(fixed, R);
   return R;
 }
@@ -86,7 +92,7 @@ std::vector<Vec<Space::dim>> even_out(const YieldProblem<Space>& problem, const 
                                       BlockSystem<Space::dim>& system) {
   constexpr int D = Space::dim, n_local = power(3, D), n_dof = n_local * D;
   const auto& grid = problem.grid;
-  std::vector<char> fixed;
+  const std::vector<char> fixed = held_by_walls<D>(grid);
   const Eigen::VectorXd R = fill_forces(problem, cells, fixed);
   system.set_pattern(grid);
   system.set_zero();
