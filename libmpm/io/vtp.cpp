@@ -1,5 +1,6 @@
 #include "libmpm/io/vtp.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cerrno>
@@ -23,8 +24,13 @@ class Base64 {
   explicit Base64(std::ostream& out) : out_(out) {}
   void add(const void* data, std::size_t size) {
     const auto* bytes = static_cast<const std::uint8_t*>(data);
-    for (std::size_t i = 0; i < size; ++i) {
-      held_[n_++] = bytes[i];
+    for (std::size_t i = 0; i < size;) {
+      if (n_ == 0 && i + 3 <= size) {
+        put_three(bytes + i);
+        i += 3;
+        continue;
+      }
+      held_[n_++] = bytes[i++];
       if (n_ == 3) put();
     }
   }
@@ -35,8 +41,15 @@ class Base64 {
   }
 
  private:
+  static constexpr std::string_view digits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+  void put_three(const std::uint8_t* b) {
+    const std::uint32_t group = std::uint32_t{b[0]} << 16 | std::uint32_t{b[1]} << 8 | b[2];
+    for (std::size_t k = 0; k < 4; ++k) text_[size_ + k] = digits[group >> (18 - 6 * k) & 63u];
+    if ((size_ += 4) == text_.size()) flush();
+  }
   void put() {
-    constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::uint32_t group = 0;
     for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (k < n_ ? held_[k] : 0u);
     for (std::size_t k = 0; k < 4; ++k) text_[size_++] = k <= n_ ? digits[group >> (18 - 6 * k) & 63u] : '=';
@@ -58,7 +71,7 @@ class Base64 {
 /// file well-formed XML.
 struct Array {
   std::size_t values, bytes_of_one;
-  std::function<void(Base64&, std::size_t)> add;  ///< one value
+  std::function<void(Base64&)> add;  ///< all of them
 
   std::uint64_t bytes() const { return values * bytes_of_one; }
   std::size_t characters() const { return (sizeof(std::uint64_t) + bytes() + 2) / 3 * 4; }
@@ -66,16 +79,20 @@ struct Array {
     Base64 text(out);
     const std::uint64_t length = bytes();
     text.add(&length, sizeof length);
-    for (std::size_t i = 0; i < values; ++i) add(text, i);
+    add(text);
     text.finish();
   }
 };
 
 template <class T, class Value>
 Array array_of(std::size_t n, Value value) {
-  return {n, sizeof(T), [value](Base64& text, std::size_t i) {
-            const T one = value(i);
-            text.add(&one, sizeof one);
+  return {n, sizeof(T), [n, value](Base64& text) {
+            std::array<T, 768> some;  // whole groups of three bytes
+            for (std::size_t first = 0; first < n; first += some.size()) {
+              const std::size_t size = std::min(some.size(), n - first);
+              for (std::size_t i = 0; i < size; ++i) some[i] = value(first + i);
+              text.add(some.data(), size * sizeof(T));
+            }
           }};
 }
 Array as_float(std::span<const double> values) {

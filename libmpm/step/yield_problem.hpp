@@ -126,6 +126,7 @@ Eigen::VectorXd residual(const YieldProblem<Space>& problem, const std::vector<V
 
 /// Sets to zero what walls prescribe.
 inline void mask(const std::vector<char>& fixed, Eigen::VectorXd& R) {
+#pragma omp parallel for schedule(static) if (R.size() > 10'000)
   for (Eigen::Index i = 0; i < R.size(); ++i)
     if (fixed[static_cast<std::size_t>(i)]) R[i] = 0.0;
 }
