@@ -231,9 +231,8 @@ void number_nodes(ActiveGrid<D>& grid) {
   make_room(grid.cell_nodes, grid.cell_index.size());
 #pragma omp parallel for schedule(static)
   for (std::size_t c = 0; c < grid.cell_index.size(); ++c)
-    for_each_control(grid.cell_index[c], [&](int k, std::size_t place) {
-      grid.cell_nodes[c][k] = grid.node_map.value[place];
-    });
+    for_each_control(grid.cell_index[c],
+                     [&](int k, std::size_t place) { grid.cell_nodes[c][k] = grid.node_map.value[place]; });
 }
 
 template <int D>

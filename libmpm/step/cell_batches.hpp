@@ -194,8 +194,7 @@ inline void CellBatches::plan_sweep() {
   for (int k = 0; k < n; ++k) {
     const auto at = static_cast<std::size_t>(k);
     begin[at + 1] += begin[at];
-    chunks_.push_back(
-        {k * together, std::min((k + 1) * together, n_batches()), begin[at], begin[at + 1]});
+    chunks_.push_back({k * together, std::min((k + 1) * together, n_batches()), begin[at], begin[at + 1]});
   }
   tremie::make_room(complete_, static_cast<std::size_t>(n_nodes_));
   for (int i = 0; i < n_nodes_; ++i)

@@ -70,8 +70,8 @@ inline std::vector<Vec<3>> even_out_in_space(const YieldProblem<ThreeD>& problem
   const auto& grid = problem.grid;
   PressurePreconditioner& preconditioner = system.preconditioner;  // its room: the step's solve is done
   const std::vector<char> fixed = held_by_walls<3>(grid);
-  detail::EveningMatrix matrix{
-      problem, cells.stiffness, fixed, system.batches, preconditioner.rows(), {}, {}, problem.bound};
+  detail::EveningMatrix matrix{problem, cells.stiffness, fixed, system.batches, preconditioner.rows(), {},
+                               {},      problem.bound};
   double trace = 0.0;
   for (double m : problem.nodes.mass) trace = std::max(trace, 1e-12 * m);
   for (double m : problem.nodes.mass) matrix.mass.push_back(std::max(trace, m));
@@ -92,8 +92,7 @@ inline std::vector<Vec<3>> even_out_in_space(const YieldProblem<ThreeD>& problem
   Eigen::VectorXf r4(4 * grid.n_nodes()), z4;
   const auto precondition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
 #pragma omp parallel for schedule(static)
-    for (int i = 0; i < grid.n_nodes(); ++i)
-      r4.segment<4>(4 * i) << r.segment<3>(3 * i).cast<float>(), 0.0f;
+    for (int i = 0; i < grid.n_nodes(); ++i) r4.segment<4>(4 * i) << r.segment<3>(3 * i).cast<float>(), 0.0f;
     preconditioner.apply(system.batches, grid, r4, z4);
 #pragma omp parallel for schedule(static)
     for (int i = 0; i < grid.n_nodes(); ++i) z.segment<3>(3 * i) = z4.segment<3>(4 * i).cast<double>();
