@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstdlib>
 #include <utility>
 #include <vector>
 
@@ -113,6 +114,38 @@ inline void PressurePreconditioner::find_first_columns(const ActiveGrid<3>& grid
   }
 }
 
+namespace detail {
+
+/// Sum of products over a box of so many controls a direction; the last direction runs fastest.
+template <int n0, int n1, int n2>
+float box_sum(const Eigen::Vector4f* a, const Eigen::Vector4f* b) {
+  Eigen::Vector4f sum = Eigen::Vector4f::Zero();
+  for (int i = 0; i < n0; ++i)
+    for (int j = 0; j < n1; ++j)
+      for (int k = 9 * i + 3 * j; k < 9 * i + 3 * j + n2; ++k) sum += a[k].cwiseProduct(b[k]);
+  return sum.sum();
+}
+
+/// The same over the box of controls that a cell with the values a shares with the one at `offset`, which has
+/// b.
+inline float box_product(const Index<3>& offset, const Eigen::Vector4f* a, const Eigen::Vector4f* b) {
+  using Sum = float (*)(const Eigen::Vector4f*, const Eigen::Vector4f*);
+  static constexpr Sum sums[3][3][3] = {{{box_sum<1, 1, 1>, box_sum<1, 1, 2>, box_sum<1, 1, 3>},
+                                         {box_sum<1, 2, 1>, box_sum<1, 2, 2>, box_sum<1, 2, 3>},
+                                         {box_sum<1, 3, 1>, box_sum<1, 3, 2>, box_sum<1, 3, 3>}},
+                                        {{box_sum<2, 1, 1>, box_sum<2, 1, 2>, box_sum<2, 1, 3>},
+                                         {box_sum<2, 2, 1>, box_sum<2, 2, 2>, box_sum<2, 2, 3>},
+                                         {box_sum<2, 3, 1>, box_sum<2, 3, 2>, box_sum<2, 3, 3>}},
+                                        {{box_sum<3, 1, 1>, box_sum<3, 1, 2>, box_sum<3, 1, 3>},
+                                         {box_sum<3, 2, 1>, box_sum<3, 2, 2>, box_sum<3, 2, 3>},
+                                         {box_sum<3, 3, 1>, box_sum<3, 3, 2>, box_sum<3, 3, 3>}}};
+  const auto [x, y, z] = offset;
+  const int own = 9 * std::max(0, x) + 3 * std::max(0, y) + std::max(0, z), shift = 9 * x + 3 * y + z;
+  return sums[2 - std::abs(x)][2 - std::abs(y)][2 - std::abs(z)](a + own, b + own - shift);
+}
+
+}  // namespace detail
+
 /// Calls add(c, other, value) for the part of S below its diagonal on a grid whose controls are numbered like
 /// its cells: two cells share a box of controls.
 template <class Add>
@@ -125,16 +158,7 @@ void PressurePreconditioner::fill_by_boxes(const ActiveGrid<3>& grid, Add add) c
     for (std::size_t k = 0; k < 27; ++k)
       w[k] = PressureRows::times(rows_.G_inverse[grid.cell_nodes[c][k]], rows_.of_cell(c)[k]);
     for_each_neighbour(grid, c, [&](int other, const Index<3>& offset) {
-      Index<3> low, high;
-      for (int d = 0; d < 3; ++d) low[d] = std::max(0, offset[d]), high[d] = std::min(2, 2 + offset[d]);
-      const auto& theirs = rows_.of_cell(other);
-      const int shift = -9 * offset[0] - 3 * offset[1] - offset[2];
-      Eigen::Vector4f sum = Eigen::Vector4f::Zero();
-      for (int i = low[0]; i <= high[0]; ++i)
-        for (int j = low[1]; j <= high[1]; ++j)
-          for (int k = 9 * i + 3 * j + low[2]; k <= 9 * i + 3 * j + high[2]; ++k)
-            sum += w[k].cwiseProduct(theirs[shift + k]);
-      add(c, other, sum.sum());
+      add(c, other, detail::box_product(offset, w.data(), rows_.of_cell(other).data()));
       return other != c;  // those behind are entered by themselves
     });
   }

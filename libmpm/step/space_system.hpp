@@ -212,7 +212,8 @@ inline bool SpaceSystem::prepare(YieldProblem<ThreeD>& problem, double eta) {
 inline std::vector<Mat<3, 3>> SpaceSystem::node_blocks(const YieldProblem<ThreeD>& problem,
                                                        const Eigen::VectorXd& diagonal) const {
   const auto& grid = problem.grid;
-  std::array<std::array<std::array<Mat<3, 3>, 27>, 8>, 64> viscous;
+  using Symmetric = Eigen::Matrix<double, 8, 1>;  // xx, yy, zz, xy, yz, xz and two zeros, for whole vectors
+  std::array<std::array<std::array<Symmetric, 27>, 8>, 64> viscous;
   std::array<bool, 64> done{};
   std::vector<unsigned char> kind(grid.n_cells());
   for (int c = 0; c < grid.n_cells(); ++c) {
@@ -221,19 +222,23 @@ inline std::vector<Mat<3, 3>> SpaceSystem::node_blocks(const YieldProblem<ThreeD
     done[kind[c]] = true;
     for (int k = 0; k < 8; ++k) {
       const Stencil<3> st = stencil<3>(grid.axes, grid.cell_index[c], gauss_place<3>(k));
-      for (int i = 0; i < 27; ++i)
-        viscous[kind[c]][k][i] =
+      for (int i = 0; i < 27; ++i) {
+        const Mat<3, 3> own =
             eta_ * (st.g[i].squaredNorm() * Mat<3, 3>::Identity() + st.g[i] * st.g[i].transpose() / 3.0);
+        viscous[kind[c]][k][i] << own.diagonal(), own(1, 0), own(2, 1), own(2, 0), 0.0, 0.0;
+      }
     }
   }
   std::vector<Mat<3, 3>> G(grid.n_nodes());
 #pragma omp parallel for schedule(static)
   for (int i = 0; i < grid.n_nodes(); ++i) {
-    G[i] = diagonal.segment<3>(3 * i).asDiagonal();
-    for (const int* e = batches.entries_begin(i); e != batches.entries_end(i); ++e)
-      for (int k = 0; k < 8; ++k)
-        G[i] += problem.quadrature.V[CellBatches::cell_of(*e)][k] *
-                viscous[kind[CellBatches::cell_of(*e)]][k][CellBatches::local_of(*e)];
+    Symmetric sum = Symmetric::Zero();
+    sum.head<3>() = diagonal.segment<3>(3 * i);
+    for (const int* e = batches.entries_begin(i); e != batches.entries_end(i); ++e) {
+      const int c = CellBatches::cell_of(*e), local = CellBatches::local_of(*e);
+      for (int k = 0; k < 8; ++k) sum += problem.quadrature.V[c][k] * viscous[kind[c]][k][local];
+    }
+    G[i] << sum[0], sum[3], sum[5], sum[3], sum[1], sum[4], sum[5], sum[4], sum[2];
   }
   for (const ContactPoint<3>& c : problem.contact) {
     if (!c.active) continue;
