@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -200,12 +201,13 @@ void number_nodes(ActiveGrid<D>& grid) {
                          : a.first_control(grid.cell_map.low[d] + grid.cell_map.extent[d] - 1) + 2;
   }
   grid.node_map.reset(low, high);
-  Index<D> stride;  // of the map
+  std::array<std::ptrdiff_t, D> stride;  // of the map
   stride[D - 1] = 1;
   for (int d = D - 1; d > 0; --d) stride[d - 1] = stride[d] * grid.node_map.extent[d];
   // Calls visit(k, place in the map) for each control of a cell.
   const auto for_each_control = [&](const Index<D>& cell, auto visit) {
-    std::array<Index<3>, D> at;  // direction by direction
+    std::array<std::array<std::ptrdiff_t, 3>, D>
+        at;  // what each of three controls adds, direction by direction
     for (int d = 0; d < D; ++d) {
       const Axis& a = grid.axes[d];
       const int first = a.first_control(cell[d]);
@@ -213,7 +215,7 @@ void number_nodes(ActiveGrid<D>& grid) {
     }
     for (int k = 0; k < ActiveGrid<D>::n_local; ++k) {
       const Index<D> o = local_offset<D>(k);
-      int place = 0;
+      std::ptrdiff_t place = 0;
       for (int d = 0; d < D; ++d) place += at[d][o[d]];
       visit(k, static_cast<std::size_t>(place));
     }

@@ -87,7 +87,7 @@ struct Array {
 template <class T, class Value>
 Array array_of(std::size_t n, Value value) {
   return {n, sizeof(T), [n, value](Base64& text) {
-            std::array<T, 768> some;  // whole groups of three bytes
+            std::array<T, 768> some;
             for (std::size_t first = 0; first < n; first += some.size()) {
               const std::size_t size = std::min(some.size(), n - first);
               for (std::size_t i = 0; i < size; ++i) some[i] = value(first + i);

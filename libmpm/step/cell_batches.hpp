@@ -34,7 +34,10 @@ class CellForces {
     tremie::make_room(room_, vectors * sizeof(NodeValue<double>));
     static_assert(sizeof(NodeValue<float>) <= sizeof(NodeValue<double>));
   }
-  void give_back() { tremie::give_back(room_); }
+  /// Gives back what a large body needs; some megabytes are kept, for new pages have to be zeroed again.
+  void give_back_much() {
+    if (room_.size() > most_kept) tremie::give_back(room_);
+  }
   template <class Scalar>
   Scalar* values() {
     return reinterpret_cast<Scalar*>(room_.data());  // bytes in which numbers come to be when written
@@ -45,6 +48,7 @@ class CellForces {
   }
 
  private:
+  static constexpr std::size_t most_kept = std::size_t{1} << 22;
   std::vector<std::byte> room_;
 };
 

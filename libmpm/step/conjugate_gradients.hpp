@@ -9,22 +9,22 @@
 
 namespace tremie {
 
-inline constexpr Eigen::Index block_size = 1024;
+inline constexpr Eigen::Index dot_block = 1024;
 
 /// Calls use(begin, size) for fixed blocks of n entries, on all threads.
 template <class Use>
 void for_each_block(Eigen::Index n, Use use) {
 #pragma omp parallel for schedule(static)
-  for (Eigen::Index i = 0; i < n; i += block_size) use(i, std::min(block_size, n - i));
+  for (Eigen::Index i = 0; i < n; i += dot_block) use(i, std::min(dot_block, n - i));
 }
 
 /// Sums of products with z, each in fixed blocks.
 template <class Vector, class... Others>
 std::array<double, sizeof...(Others)> block_dots(const Vector& z, const Others&... with) {
   using Sums = std::array<double, sizeof...(Others)>;
-  std::vector<Sums> part(static_cast<std::size_t>((z.size() + block_size - 1) / block_size));
+  std::vector<Sums> part(static_cast<std::size_t>((z.size() + dot_block - 1) / dot_block));
   for_each_block(z.size(), [&](Eigen::Index i, Eigen::Index size) {
-    part[static_cast<std::size_t>(i / block_size)] = {
+    part[static_cast<std::size_t>(i / dot_block)] = {
         static_cast<double>(with.segment(i, size).dot(z.segment(i, size)))...};
   });
   Sums sum{};

@@ -200,6 +200,7 @@ inline void PressurePreconditioner::lay_out(const ActiveGrid<3>& grid, double mo
   if (by_band_) return;
   for (int c = 0; c < grid.n_cells(); ++c) number_[c] = c;
   band_ = {};
+  tremie::give_back(first_);
 }
 
 inline bool PressurePreconditioner::build(const ActiveGrid<3>& grid, const CellBatches& batches,

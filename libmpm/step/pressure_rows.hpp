@@ -29,20 +29,20 @@ class PressureRows {
   float divergence(const ActiveGrid<3>& grid, int c, const Eigen::VectorXf& y) const {
     const auto& nodes = grid.cell_nodes[c];
     const Eigen::Vector4f* row = of_cell(c).data();
-    Eigen::Vector4f even = Eigen::Vector4f::Zero(), odd = even;  // controls: two sums that do not wait
+    Eigen::Vector4f even = Eigen::Vector4f::Zero(), odd = even;  // controls, in sums that do not wait
     const auto add = [&](Eigen::Vector4f& sum, int k, const float* at) {
       sum += row[k].cwiseProduct(Eigen::Map<const Eigen::Vector4f>(at));
     };
-    const auto line = [&](int k) { return y.data() + 4 * static_cast<std::ptrdiff_t>(nodes[k]); };
+    const auto node = [&](int k) { return y.data() + 4 * static_cast<std::ptrdiff_t>(nodes[k]); };
     if (grid.axes[2].periodic) {
-      for (int k = 0; k < 27; ++k) add(k % 2 == 0 ? even : odd, k, line(k));
+      for (int k = 0; k < 27; ++k) add(k % 2 == 0 ? even : odd, k, node(k));
       return (even + odd).sum();
     }
     for (int k = 0;; k += 6) {  // three nodes in a row have numbers in a row
-      const float* at = line(k);
+      const float* at = node(k);
       add(even, k, at), add(odd, k + 1, at + 4), add(even, k + 2, at + 8);
       if (k == 24) break;
-      at = line(k + 3);
+      at = node(k + 3);
       add(odd, k + 3, at), add(even, k + 4, at + 4), add(odd, k + 5, at + 8);
     }
     return (even + odd).sum();

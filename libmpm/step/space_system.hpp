@@ -133,12 +133,6 @@ class SpaceSystem {
   void shear_rates(const YieldProblem<ThreeD>& problem, const std::vector<Vec<3>>& v,
                    std::vector<double>& of_cell, double& mean) const;
 
-  /// Gives back the room for forces of a large body. A small one keeps it: fresh pages cost more time than
-  /// they hold.
-  void give_back_forces() {
-    if (!preconditioner.factorised()) forces.give_back();
-  }
-
   CellBatches batches;
   CellForces forces;                      ///< room for what cells give their nodes in a pass over them
   PressurePreconditioner preconditioner;  ///< of the last prepare(); free for others between solves

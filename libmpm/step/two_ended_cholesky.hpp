@@ -87,7 +87,7 @@ class TwoEndedCholesky {
   /// Rows below the diagonal block that so many block columns have, those that elimination fills included.
   static std::vector<int> heights_from_the_first(const std::vector<int>& first, int blocks) {
     const int n = static_cast<int>(first.size());
-    std::vector<int> last(first.size(), 0);  // by column: the last row that begins there
+    std::vector<int> last(first.size(), 0);  // by column: the last row that begins there, if any
     for (int i = 0; i < n; ++i) last[static_cast<std::size_t>(first[static_cast<std::size_t>(i)])] = i;
     std::vector<int> heights;
     int end = 0;  // of the rows that begin in the columns so far

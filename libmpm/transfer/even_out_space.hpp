@@ -34,6 +34,7 @@ struct EveningMatrix {
              b[rows.place_of(CellBatches::cell_of(*e))][CellBatches::local_of(*e)];
     return sum;
   }
+  /// fill_forces() by all threads.
   Eigen::VectorXd forces(const std::vector<double>& misfill) const {
     const auto& grid = problem.grid;
     std::vector<double> pull(stiffness.size());
@@ -74,7 +75,9 @@ inline std::vector<Vec<3>> even_out_in_space(const YieldProblem<ThreeD>& problem
                                {},      problem.bound};
   double trace = 0.0;
   for (double m : problem.nodes.mass) trace = std::max(trace, 1e-12 * m);
-  for (double m : problem.nodes.mass) matrix.mass.push_back(std::max(trace, m));
+  make_room(matrix.mass, problem.nodes.mass.size());
+  for (std::size_t i = 0; i < matrix.mass.size(); ++i)
+    matrix.mass[i] = std::max(trace, problem.nodes.mass[i]);
   for (BoundPoint<3>& wall : matrix.bound) wall.stiffness *= problem.dt;
 
   std::vector<Mat<3, 3>> G(grid.node_index.size());
