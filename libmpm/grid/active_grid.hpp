@@ -206,8 +206,7 @@ void number_nodes(ActiveGrid<D>& grid) {
   for (int d = D - 1; d > 0; --d) stride[d - 1] = stride[d] * grid.node_map.extent[d];
   // Calls visit(k, place in the map) for each control of a cell.
   const auto for_each_control = [&](const Index<D>& cell, auto visit) {
-    std::array<std::array<std::ptrdiff_t, 3>, D>
-        at;  // what each of three controls adds, direction by direction
+    std::array<std::array<std::ptrdiff_t, 3>, D> at;  // what each control adds, direction by direction
     for (int d = 0; d < D; ++d) {
       const Axis& a = grid.axes[d];
       const int first = a.first_control(cell[d]);

@@ -26,17 +26,22 @@ class Base64 {
     const auto* bytes = static_cast<const std::uint8_t*>(data);
     for (std::size_t i = 0; i < size;) {
       if (n_ == 0 && i + 3 <= size) {
-        put_three(bytes + i);
+        put(bytes + i);
         i += 3;
-        continue;
+      } else {
+        held_[n_++] = bytes[i++];
+        if (n_ == 3) put(held_.data()), n_ = 0;
       }
-      held_[n_++] = bytes[i++];
-      if (n_ == 3) put();
     }
   }
   /// Ends the text.
   void finish() {
-    if (n_ > 0) put();
+    if (n_ > 0) {
+      const std::size_t n = n_;
+      while (n_ < 3) held_[n_++] = 0;
+      put(held_.data());
+      for (std::size_t k = n + 1; k < 4; ++k) text_[size_ - 4 + k] = '=';
+    }
     flush();
   }
 
@@ -44,17 +49,11 @@ class Base64 {
   static constexpr std::string_view digits =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
-  void put_three(const std::uint8_t* b) {
-    const std::uint32_t group = std::uint32_t{b[0]} << 16 | std::uint32_t{b[1]} << 8 | b[2];
-    for (std::size_t k = 0; k < 4; ++k) text_[size_ + k] = digits[group >> (18 - 6 * k) & 63u];
-    if ((size_ += 4) == text_.size()) flush();
-  }
-  void put() {
-    std::uint32_t group = 0;
-    for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (k < n_ ? held_[k] : 0u);
-    for (std::size_t k = 0; k < 4; ++k) text_[size_++] = k <= n_ ? digits[group >> (18 - 6 * k) & 63u] : '=';
-    n_ = 0;
+  /// Three bytes.
+  void put(const std::uint8_t* b) {
     if (size_ == text_.size()) flush();
+    const std::uint32_t group = std::uint32_t{b[0]} << 16 | std::uint32_t{b[1]} << 8 | b[2];
+    for (std::size_t k = 0; k < 4; ++k) text_[size_++] = digits[group >> (18 - 6 * k) & 63u];
   }
   void flush() {
     out_.write(text_.data(), static_cast<std::streamsize>(size_));
