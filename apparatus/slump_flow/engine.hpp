@@ -152,20 +152,16 @@ inline void lifted_wall(const Scene& scene, double reach, RigidWall<3>& wall) {
   wall = revolved(lifted_wall(scene, reach));
 }
 
-/// Adds a line to the series and, where one is due, a frame. True where the flow has come to rest, clear of
-/// the cone; an interrupt sets the outcome's status.
+/// Adds a line to the series. True where the flow has come to rest, clear of the cone; an interrupt sets the
+/// outcome's status.
 template <class Space>
 bool record(const Scene& scene, const Body<Space>& body, const StepReport& step, const Observer& observer,
-            engine::RestWatch& watch, double& next_frame, Outcome& outcome) {
+            engine::RestWatch& watch, Outcome& outcome) {
   const bool low = scene.lift_speed && rim_height(scene, outcome.series.back().time) < scene.model.cell[1];
   if (low) outcome.results.through_the_cone = share_behind_wall(scene, body.time, body.points);
   outcome.series.push_back(read(scene, body, step));
   const Sample& now = outcome.series.back();
   if (observer.on_step) observer.on_step(now);
-  if (observer.on_frame && body.time >= next_frame) {
-    observer.on_frame(engine::frame_of(body));
-    next_frame += scene.frame_interval;
-  }
   if (observer.interrupted && *observer.interrupted) outcome.status = Status::interrupted;
   const bool clear = !scene.lift_speed || rim_height(scene, now.time) > now.height + scene.model.cell[1];
   return watch.at_rest(clear, now.max_speed, now.time);
@@ -202,7 +198,11 @@ Outcome run_in(const Scene& scene, const Law& law, const Observer& observer) {
     engine::count_step(body, step, outcome.checks, outcome.cost);
     engine::watch_fixed_step(body, scene.model, step, outcome.checks);
     if (engine::gave_up(step, outcome.status, outcome.checks, body.time)) break;
-    stopped = record(scene, body, step, observer, watch, next_frame, outcome);
+    stopped = record(scene, body, step, observer, watch, outcome);
+    if (observer.on_frame && body.time >= next_frame) {
+      observer.on_frame(engine::frame_of(body));
+      next_frame += scene.frame_interval;
+    }
     if (outcome.status == Status::interrupted) break;
   }
   read_results(watch, stopped, outcome);

@@ -19,6 +19,7 @@ inline ExplicitSettings explicit_settings(const Scene& scene) {
   settings.cell_pressure = scene.model.pressure == PressureKind::cell;
   settings.fixed_dt = scene.model.time_step;
   settings.single_precision = scene.model.precision == PrecisionKind::single_sums;
+  settings.keep_shear_rates = true;
   settings.friction_coefficient = common.friction_coefficient;
   settings.wall_gap = common.wall_gap;
   settings.wall_speed = scene.lift_speed.value_or(0.0);
@@ -35,10 +36,38 @@ Shape<Space::dim> shape_of(const Model& model) {
   return shape;
 }
 
-/// Bytes that one more point costs: what is sorted, and where it is sorted from.
+/// Bytes that one more point costs: sorted with its shear rate and its number, and in a reading, which has no
+/// affine velocities.
 template <int D>
 std::int64_t explicit_bytes_per_point(bool thixotropic) {
-  return 2 * bytes_per_point<D>(thixotropic) + static_cast<std::int64_t>(sizeof(std::int32_t));
+  const std::int64_t rate = thixotropic ? 0 : sizeof(double);
+  return 2 * (bytes_per_point<D>(thixotropic) + rate) -
+         static_cast<std::int64_t>(D * D * sizeof(double) - sizeof(std::int32_t));
+}
+
+/// The frame of a reading, which gives it its arrays: there is no room for both in a large body. Its shear
+/// rates are those of the last step.
+template <class Space>
+Frame frame_from(Body<Space>& body) {
+  auto& points = body.points;
+  const auto places = [](auto& from) {
+    std::vector<std::array<double, 3>> to(from.size());
+    std::transform(from.begin(), from.end(), to.begin(), engine::in_space<Space>);
+    give_back(from);
+    return to;
+  };
+  Frame frame;
+  frame.time = body.time;
+  frame.position = places(points.x);
+  frame.velocity = places(points.v);
+  frame.volume = std::move(points.V0);
+  for (std::size_t p = 0; p < frame.volume.size(); ++p) frame.volume[p] *= std::exp(points.ln_J[p]);
+  frame.pressure = std::move(points.ln_J);
+  for (double& ln_J : frame.pressure) ln_J = pressure(ln_J, body.mix.K);
+  frame.shear_rate = std::move(points.gamma_dot);
+  frame.flocculation = std::move(points.lambda);
+  points = {};
+  return frame;
 }
 
 /// Counts of the steps that were longer than the scheme allows.
@@ -82,10 +111,11 @@ Outcome run_explicit_in(const Scene& scene, const Law& law, const Observer& obse
   Outcome outcome;
   outcome.series.push_back(read(scene, body, {}));
   if (observer.on_frame) observer.on_frame(engine::frame_of(body));
+  EnergyWatch energy(energy_of<Space>(body.points, body.mix.K));
   auto state = start_explicit(body, law, settings, shape_of<Space>(scene.model));
+  write_back(state, body, Bring::all_but_affine);  // what a run that fails at once is read from
   engine::RestWatch watch;
   LimitWatch limits;
-  EnergyWatch energy(energy_of<Space>(body.points, body.mix.K));
   bool stopped = false;
   double next_frame = scene.frame_interval;
   while (!stopped && body.time < scene.duration - 0.5 * state.next_dt) {
@@ -100,11 +130,16 @@ Outcome run_explicit_in(const Scene& scene, const Law& law, const Observer& obse
       outcome.cost.steps += 1;
     } while (!step.failed && body.time < until - 0.5 * state.next_dt);
     if (engine::gave_up(step, outcome.status, outcome.checks, body.time)) break;
-    write_back(state, body);
+    write_back(state, body, Bring::all_but_affine);
     energy.see(energy_of<Space>(body.points, body.mix.K), bool{wall});
-    activate_cells(body.grid, body.points);
-    outcome.cost.cells_active = std::max<std::int64_t>(outcome.cost.cells_active, body.grid.n_cells());
-    stopped = record(scene, body, step, observer, watch, next_frame, outcome);
+    outcome.cost.cells_active =
+        std::max(outcome.cost.cells_active, count_active_cells<D>(body.grid.axes, body.points));
+    stopped = record(scene, body, step, observer, watch, outcome);
+    if (observer.on_frame && body.time >= next_frame) {
+      observer.on_frame(frame_from(body));
+      write_back(state, body, Bring::all_but_affine);
+      next_frame += scene.frame_interval;
+    }
     if (outcome.status == Status::interrupted) break;
   }
   read_results(watch, stopped, outcome);
@@ -115,7 +150,7 @@ Outcome run_explicit_in(const Scene& scene, const Law& law, const Observer& obse
   judge_depth(scene, outcome);
   judge_lift(outcome);
   outcome.cost.bytes_per_point = explicit_bytes_per_point<D>(body.points.thixotropic());
-  outcome.final_frame = engine::frame_of(body);
+  outcome.final_frame = frame_from(body);
   if (observer.on_frame) observer.on_frame(outcome.final_frame);
   return outcome;
 }

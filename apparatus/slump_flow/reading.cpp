@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 namespace tremie::slump_flow {
 namespace {
@@ -46,36 +47,47 @@ double outermost_radius(const Points<D>& points) {
   return std::sqrt(r2);
 }
 
-/// Whether a place is further out than `reach`, which may be negative.
-template <class Place>
-bool beyond(const Place& x, double reach) {
-  return reach < 0.0 || squared_radius(x) > reach * reach;
-}
-
-/// How far out the concrete reaches: the outermost value that has company, plus half the size of its point.
-double reach_of(std::vector<Weighted>& out, double cell) {
+/// How far out the concrete reaches by these points: the outermost value that has company, plus half the size
+/// of its point. Empty where none has.
+std::optional<double> reach_of(std::vector<Weighted>& out, double cell) {
   // Few are strays, so that a look at the outermost is nearly always enough.
-  for (std::size_t n = std::min<std::size_t>(out.size(), 32); n > 0; n = out.size()) {
+  for (std::size_t n = std::min<std::size_t>(out.size(), 32); n > company; n = out.size()) {
     std::partial_sort(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(n), out.end(),
                       [](const Weighted& a, const Weighted& b) { return a.value > b.value; });
     std::size_t i = 0;
     while (i + company < n && out[i].value - out[i + company].value > 0.5 * cell) ++i;
-    if (i + company < n || n == out.size()) return out[i].value + 0.5 * out[i].size;
+    if (i + company < n) return out[i].value + 0.5 * out[i].size;
+    if (n == out.size()) break;
   }
-  return 0.0;
+  return std::nullopt;
 }
 
-/// Numbers of the points that may lie on the outline: strays aside, within a few cells of the outermost.
+/// A point on the outline, or near it, from the axis [m].
 template <int D>
-std::vector<std::size_t> points_far_out(const Points<D>& points, double cell) {
-  std::vector<std::size_t> far;
-  double reach = outermost_radius(points) - 4.0 * cell;
-  for (; far.size() <= company && reach > -4.0 * cell; reach -= 4.0 * cell) {
-    far.clear();
-    for (std::size_t p = 0; p < points.size(); ++p)
-      if (beyond(points.x[p], reach)) far.push_back(p);
+struct Outer {
+  Vec<D - 1> at;
+  double size;
+};
+template <int D>
+std::vector<Outer<D>> points_beyond(const Points<D>& points, double reach) {
+  std::vector<Outer<D>> outer;
+  for (std::size_t p = 0; p < points.size(); ++p)
+    if (reach < 0.0 || squared_radius(points.x[p]) > reach * reach)
+      outer.push_back({points.x[p].template head<D - 1>(), section_size(points, p)});
+  return outer;
+}
+
+/// Twice the mean of what `reaches(outer, least)` finds, from points that lie within a cell of the outermost
+/// one; where one direction has none with company there, within four, and so on. Beyond `least` all are
+/// known.
+template <int D, class Reaches>
+double outline(const Points<D>& points, double cell, Reaches reaches) {
+  const double farthest = outermost_radius(points);
+  for (double depth = cell;; depth *= 4.0) {
+    const double least = farthest - depth;
+    if (const std::optional<double> mean = reaches(points_beyond(points, least), least)) return 2.0 * *mean;
+    if (!(least > 0.0)) return 2.0 * farthest;  // nothing but strays
   }
-  return far;
 }
 
 template <int D>
@@ -93,34 +105,39 @@ double spread_of_outermost_point(const Points<2>& points) { return 2.0 * outermo
 double spread_of_outermost_point(const Points<3>& points) { return 2.0 * outermost_radius(points); }
 
 double spread(const Points<2>& points, double cell) {
-  std::vector<Weighted> radii;
-  for (std::size_t p : points_far_out(points, cell))
-    radii.push_back({points.x[p][0], points.volume(p), section_size(points, p)});
-  return 2.0 * reach_of(radii, cell);
+  return outline<2>(points, cell, [cell](const std::vector<Outer<2>>& outer, double) {
+    std::vector<Weighted> radii;
+    for (const Outer<2>& point : outer) radii.push_back({point.at[0], 0.0, point.size});
+    return reach_of(radii, cell);
+  });
 }
 
 double spread(const Points<3>& points, double cell, bool quarter) {
-  // 16 directions over the full turn, opposite ones make a diameter; a quarter has four of its own.
-  const int directions = quarter ? 4 : 16;
-  const double turn = 2.0 * std::numbers::pi / 16.0;
-  const std::vector<std::size_t> far = points_far_out(points, cell);
-  std::vector<double> size;
-  for (std::size_t p : far) size.push_back(section_size(points, p));
-  double sum = 0.0;
-  std::vector<Weighted> out;
-  for (int k = 0; k < directions; ++k) {
-    const double angle = turn * (k + 0.5);
-    const double ex = std::cos(angle), ey = std::sin(angle);
-    out.clear();
-    for (std::size_t i = 0; i < far.size(); ++i)
-      for (int mirror = 0; mirror < (quarter ? 4 : 1); ++mirror) {
-        const Vec<3>& at = points.x[far[i]];
-        const double x = mirror & 1 ? -at[0] : at[0], y = mirror & 2 ? -at[1] : at[1];
-        if (const double a = ex * x + ey * y; a > 0.0) out.push_back({a, 0.0, size[i]});
-      }
-    sum += reach_of(out, cell);
-  }
-  return 2.0 * sum / directions;
+  // Directions over the full turn, opposite ones make a diameter; a quarter has some of its own. Points stand
+  // in rows: by 16 of them the outline of one body, turned, would differ by a millimetre (three_d.md).
+  constexpr int turn = 64;
+  const int directions = quarter ? turn / 4 : turn, images = quarter ? 4 : 1;
+  return outline<3>(points, cell,
+                    [=](const std::vector<Outer<3>>& outer, double least) -> std::optional<double> {
+                      double sum = 0.0;
+                      std::vector<Weighted> out;
+                      for (int k = 0; k < directions; ++k) {
+                        const double angle = 2.0 * std::numbers::pi * (k + 0.5) / turn, ex = std::cos(angle),
+                                     ey = std::sin(angle);
+                        out.clear();
+                        for (const Outer<3>& point : outer)
+                          for (int image = 0; image < images; ++image) {
+                            const double x = image & 1 ? -point.at[0] : point.at[0],
+                                         y = image & 2 ? -point.at[1] : point.at[1];
+                            if (const double a = ex * x + ey * y; a > std::max(least, 0.0))
+                              out.push_back({a, 0.0, point.size});
+                          }
+                        const std::optional<double> reach = reach_of(out, cell);
+                        if (!reach) return std::nullopt;
+                        sum += *reach;
+                      }
+                      return sum / directions;
+                    });
 }
 
 double centre_height(const Points<2>& points, double reach) { return height_within(points, reach); }

@@ -273,6 +273,26 @@ void activate_cells(ActiveGrid<D>& grid, const Points<D>& points) {
   detail::sort_points_by_cell<D>(grid, cell);
 }
 
+/// Number of cells with points, without sorting them. Points must be finite.
+template <int D>
+std::int64_t count_active_cells(const std::array<Axis, D>& axes, const Points<D>& points) {
+  if (points.size() == 0) return 0;
+  Index<D> low = detail::cell_of<D>(axes, points.x.front()), high = low;
+  for (const Vec<D>& x : points.x) {
+    const Index<D> cell = detail::cell_of<D>(axes, x);
+    for (int d = 0; d < D; ++d) low[d] = std::min(low[d], cell[d]), high[d] = std::max(high[d], cell[d]);
+  }
+  IndexMap<D> seen;
+  seen.reset(low, high);
+  std::int64_t cells = 0;
+  for (const Vec<D>& x : points.x) {
+    int& slot = seen.value[static_cast<std::size_t>(seen.offset(detail::cell_of<D>(axes, x)))];
+    if (slot < 0) ++cells;
+    slot = 0;
+  }
+  return cells;
+}
+
 /// Finds the active cells and nodes and sorts the points by cell. Points must be finite.
 template <int D>
 void activate(ActiveGrid<D>& grid, const Points<D>& points) {

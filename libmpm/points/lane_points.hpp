@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <vector>
 
+#include "libmpm/grid/room.hpp"
 #include "libmpm/grid/shares.hpp"
 #include "libmpm/law/lanes.hpp"
 #include "libmpm/points/points.hpp"
@@ -22,8 +24,10 @@ struct LanePoints {
   std::array<std::vector<Octet>, D> x, v;   ///< [m], [m/s]
   std::array<std::vector<Octet>, D * D> C;  ///< affine velocity, row by row [1/s]; empty with FLIP
   std::vector<Octet> mass, V0, ln_J;        ///< [kg], [m^3], ln(V/V0)
-  std::vector<Octet> lambda, gamma_dot;     ///< empty without thixotropy
+  std::vector<Octet> lambda;                ///< empty without thixotropy
+  std::vector<Octet> gamma_dot;             ///< [1/s]; empty where neither thixotropy nor a frame needs them
   std::vector<std::array<std::int32_t, octet_size>> id;  ///< place in the Points that it came from
+  std::size_t n = 0;                                     ///< number of real points
 
   std::size_t groups() const { return mass.size(); }
   bool thixotropic() const { return !lambda.empty(); }
@@ -46,36 +50,55 @@ int filled(const LanePoints<D>& points, std::size_t group) {
 
 namespace detail {
 
-/// Visits every array of the points with the double that each point keeps there.
+/// The k-th double of what a point has of one quantity; matrices row by row.
+inline double& entry(double& value, int) { return value; }
+template <int D>
+double& entry(Vec<D>& value, int k) {
+  return value[k];
+}
+template <int D>
+double& entry(Mat<D, D>& value, int k) {
+  return value(k / D, k % D);
+}
+
+/// Visits the quantities that both kinds of points have, each with its arrays here and its array there.
 template <int D, class Visit>
-void for_each_array(LanePoints<D>& lanes, bool affine, bool thixotropic, Visit visit) {
-  for (int d = 0; d < D; ++d) {
-    visit(lanes.x[d], [d](auto& p, std::size_t i) -> double& { return p.x[i][d]; });
-    visit(lanes.v[d], [d](auto& p, std::size_t i) -> double& { return p.v[i][d]; });
-  }
-  for (int k = 0; k < D * D && affine; ++k)
-    visit(lanes.C[k], [k](auto& p, std::size_t i) -> double& { return p.C[i](k / D, k % D); });
-  visit(lanes.mass, [](auto& p, std::size_t i) -> double& { return p.mass[i]; });
-  visit(lanes.V0, [](auto& p, std::size_t i) -> double& { return p.V0[i]; });
-  visit(lanes.ln_J, [](auto& p, std::size_t i) -> double& { return p.ln_J[i]; });
-  if (!thixotropic) return;
-  visit(lanes.lambda, [](auto& p, std::size_t i) -> double& { return p.lambda[i]; });
-  visit(lanes.gamma_dot, [](auto& p, std::size_t i) -> double& { return p.gamma_dot[i]; });
+void for_each_quantity(LanePoints<D>& lanes, Points<D>& points, Visit visit) {
+  const auto one = [](std::vector<Octet>& array) { return std::span<std::vector<Octet>>(&array, 1); };
+  visit(std::span<std::vector<Octet>>(lanes.x), points.x);
+  visit(std::span<std::vector<Octet>>(lanes.v), points.v);
+  visit(std::span<std::vector<Octet>>(lanes.C), points.C);
+  visit(one(lanes.mass), points.mass);
+  visit(one(lanes.V0), points.V0);
+  visit(one(lanes.ln_J), points.ln_J);
+  visit(one(lanes.lambda), points.lambda);
+  visit(one(lanes.gamma_dot), points.gamma_dot);
 }
 
 }  // namespace detail
 
-/// Writes the state of the points back to where they came from.
+enum class Bring {
+  all,
+  all_but_affine  ///< no affine velocities: nearly half of a point, and few readings need them
+};
+
+/// Writes the state of the points to where they came from.
 template <int D>
-void write_back(LanePoints<D>& lanes, const std::array<Axis, D>& axes, Points<D>& points) {
-  const auto copy = [&](std::vector<Octet>& from, auto member) {
+void write_back(LanePoints<D>& lanes, const std::array<Axis, D>& axes, Points<D>& points,
+                Bring bring = Bring::all) {
+  const bool affine = bring == Bring::all;
+  points.C.assign(affine ? lanes.n : 0, Mat<D, D>::Zero());  // with FLIP they stay so
+  detail::for_each_quantity<D>(lanes, points, [&](std::span<std::vector<Octet>> from, auto& to) {
+    if (from.front().empty() || (!affine && from.data() == lanes.C.data())) return;
+    to.resize(lanes.n);
     for (std::size_t g = 0; g < lanes.groups(); ++g)
       for (int l = 0; l < octet_size; ++l) {
         const std::int32_t id = lanes.id[g][static_cast<std::size_t>(l)];
-        if (id >= 0) member(points, static_cast<std::size_t>(id)) = from[g][l];
+        if (id < 0) break;  // the rest fills up the group
+        for (std::size_t k = 0; k < from.size(); ++k)
+          detail::entry(to[static_cast<std::size_t>(id)], static_cast<int>(k)) = from[k][g][l];
       }
-  };
-  detail::for_each_array<D>(lanes, !lanes.C[0].empty(), lanes.thixotropic(), copy);
+  });
   for (int d = 0; d < D; ++d) {
     const Axis& a = axes[d];
     if (!a.periodic) continue;
@@ -83,20 +106,26 @@ void write_back(LanePoints<D>& lanes, const std::array<Axis, D>& axes, Points<D>
   }
 }
 
-/// Takes over the points, eight by eight as they come: to be sorted. Theirs give up the room to grow.
+/// Takes over the points, eight by eight as they come: to be sorted. One array after the other is given back:
+/// there is no room for both in a large body. `rates`: keeps shear rates for a mix without thixotropy, too.
 template <int D>
-void take_points(Points<D>& points, bool affine, LanePoints<D>& lanes) {
-  shrink(points);
-  const std::size_t groups = (points.size() + octet_size - 1) / octet_size;
+void take_points(Points<D>& points, bool affine, bool rates, LanePoints<D>& lanes) {
+  const std::size_t n = points.size(), groups = (n + octet_size - 1) / octet_size;
+  if (!affine) give_back(points.C);
+  if (rates) points.gamma_dot.resize(n, 0.0);
+  lanes.n = n;
+  detail::for_each_quantity<D>(lanes, points, [&](std::span<std::vector<Octet>> to, auto& from) {
+    for (std::size_t k = 0; k < to.size() && !from.empty(); ++k) {
+      to[k].reserve(groups + groups / 4);  // sorting fills groups up
+      to[k].assign(groups, Octet{});
+      for (std::size_t p = 0; p < n; ++p)
+        to[k][p / octet_size][p % octet_size] = detail::entry(from[p], static_cast<int>(k));
+    }
+    give_back(from);
+  });
   lanes.id.assign(groups, {});
-  const auto copy = [&](std::vector<Octet>& to, auto member) {
-    to.reserve(groups + groups / 4);  // sorting fills groups up
-    to.assign(groups, Octet{});
-    for (std::size_t p = 0; p < points.size(); ++p) to[p / octet_size][p % octet_size] = member(points, p);
-  };
-  detail::for_each_array<D>(lanes, affine, points.thixotropic(), copy);
   for (std::size_t p = 0; p < groups * octet_size; ++p)
-    lanes.id[p / octet_size][p % octet_size] = p < points.size() ? static_cast<std::int32_t>(p) : -1;
+    lanes.id[p / octet_size][p % octet_size] = p < n ? static_cast<std::int32_t>(p) : -1;
 }
 
 namespace detail {
@@ -232,7 +261,10 @@ inline void permute(const std::vector<GroupSlots>& groups, bool zero_filled, std
 template <int D>
 void permute_points(const std::vector<GroupSlots>& groups, LanePoints<D>& lanes) {
   std::vector<std::vector<Octet>*> arrays;
-  for_each_array<D>(lanes, true, true, [&](std::vector<Octet>& array, auto) { arrays.push_back(&array); });
+  Points<D> none;
+  for_each_quantity<D>(lanes, none, [&](std::span<std::vector<Octet>> of_quantity, auto&) {
+    for (std::vector<Octet>& array : of_quantity) arrays.push_back(&array);
+  });
   constexpr std::size_t many = 20000;  // below, waking OpenMP's threads takes longer
 #pragma omp parallel if (groups.size() > many)
   {

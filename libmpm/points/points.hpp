@@ -18,7 +18,7 @@ struct Points {
   std::vector<double> V0;         ///< stress-free volume [m^3]
   std::vector<double> ln_J;       ///< ln(V / V0)
   std::vector<double> lambda;     ///< flocculation state; empty without thixotropy
-  std::vector<double> gamma_dot;  ///< shear rate of the last step [1/s]; empty without thixotropy
+  std::vector<double> gamma_dot;  ///< shear rate of the last step [1/s]; empty where nothing needs it
 
   std::size_t size() const { return x.size(); }
   bool thixotropic() const { return !lambda.empty(); }

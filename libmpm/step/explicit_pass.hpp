@@ -37,7 +37,10 @@ template <class Space, class Lanes, std::size_t n>
 template <int D>
 Octet update_yield_stress(const Mix& mix, double dt, const Octet& gamma_dot, LanePoints<D>& points,
                           std::size_t g, LaneSums& sums) {
-  if (!points.thixotropic()) return all_lanes(mix.tau_0);
+  if (!points.thixotropic()) {
+    if (!points.gamma_dot.empty()) points.gamma_dot[g] = gamma_dot;
+    return all_lanes(mix.tau_0);
+  }
   Octet& lambda = points.lambda[g];
   if (dt > 0.0)
     lambda = flocculation_step(lambda, *mix.thixotropy, mix.tau_0, points.gamma_dot[g], gamma_dot, dt);

@@ -11,6 +11,7 @@
 namespace tremie {
 
 /// Sorts the body's points into tiles and brings their mass, momentum and first stresses to the grid.
+/// body.points is empty from here to the next write_back.
 template <class Space, class Law>
 ExplicitState<Space> start_explicit(Body<Space>& body, const Law& law, const ExplicitSettings& settings,
                                     const Shape<Space::dim>& shape) {
@@ -18,9 +19,9 @@ ExplicitState<Space> start_explicit(Body<Space>& body, const Law& law, const Exp
   state.shape = shape;
   state.grid.axes = body.grid.axes;
   state.grid.single = settings.single_precision;
-  take_points<Space::dim>(body.points, !settings.transfer.flip, state.points);
-  detail::sort_points(settings, state);
   for (double lambda : body.points.lambda) state.lambda_max = std::max(state.lambda_max, lambda);
+  take_points<Space::dim>(body.points, !settings.transfer.flip, settings.keep_shear_rates, state.points);
+  detail::sort_points(settings, state);
   detail::choose_next_step(body, law, settings, state);
   const detail::PassInput input{.impulse_dt = state.next_dt};
   look_into_wall_cells(state);

@@ -329,7 +329,8 @@ TEST(SortedPoints, GroupsOfOneCell) {
   std::uniform_real_distribution<double> u(-1.0, 1.0);
   for (int p = 0; p < 1000; ++p) add_point<D>(points, {u(random), u(random)}, 1.0 + p, 1.0, 0.0);
   LanePoints<D> lanes;
-  take_points<D>(points, true, lanes);
+  Points<D> taken = points;
+  take_points<D>(taken, true, false, lanes);
   const auto sorted = sort_into_tiles<D>(axes, 0.0, lanes);
   std::vector<int> seen(points.size(), 0);
   std::int64_t mixed = 0;

@@ -1,20 +1,10 @@
 // What a large body in space costs in memory, in bytes that the process held at most.
 
 #include <gtest/gtest.h>
-#include <malloc.h>
-#include <omp.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "libmpm/step/implicit_step.hpp"
 #include "tests/libmpm/bodies.hpp"
-
-#if defined(__SANITIZE_ADDRESS__)
-#define WITH_ASAN 1
-#else
-#define WITH_ASAN 0
-#endif
+#include "tests/peak_memory.hpp"
 
 namespace tremie {
 namespace {
@@ -42,25 +32,12 @@ bool slumps(int n) {
   return true;
 }
 
-/// Most memory that a process of its own holds for it [bytes]; 0 where it fails.
-double peak_of(int n) {
-  const pid_t child = fork();
-  if (child == 0) {
-    mallopt(M_MMAP_THRESHOLD, 1 << 20);
-    omp_set_num_threads(1);
-    _exit(slumps(n) ? 0 : 1);
-  }
-  int status = 0;
-  struct rusage usage {};
-  if (wait4(child, &status, 0, &usage) != child || status != 0) return 0.0;
-  return 1024.0 * static_cast<double>(usage.ru_maxrss);
-}
-
 // From 64,000 to 140,608 points the peak grows by what a point costs, all told: its state of 160 bytes, grid,
 // solver, evening-out. It is 340; the aim is 400.
 TEST(SpaceMemory, BytesAPointOfALargeBody) {
-  if (WITH_ASAN) GTEST_SKIP() << "the sanitizer's own memory is most of it";
-  const double small = peak_of(20), large = peak_of(26);
+  if (!test::memory_can_be_measured) GTEST_SKIP() << "the sanitizer's own memory is most of it";
+  const double small = test::peak_memory_of([] { return slumps(20); }),
+               large = test::peak_memory_of([] { return slumps(26); });
   ASSERT_GT(small, 0.0);
   ASSERT_GT(large, 0.0);
   const double bytes = (large - small) / (8.0 * (26 * 26 * 26 - 20 * 20 * 20));
