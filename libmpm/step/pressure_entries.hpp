@@ -4,12 +4,15 @@
 //
 // A cell is coupled with those within two of it in every direction, 125 with itself. S is symmetric: the 63
 // entries with itself and the cells ahead are kept, and a product uses each twice, for the cell and for the
-// one ahead; 252 bytes a cell are read where the rows of B would be 864. The cells lie in columns along the
-// body's longest way, sixteen of them go side by side, and every cell adds up its own entries in one order:
-// the bits do not depend on the threads.
+// one ahead; 252 bytes a cell are read, in the order in which they lie, where the rows of B would be 864. The
+// cells lie in columns along the body's longest way, sixteen of them go side by side. Columns go together in
+// strips, eight wide, each of which gives what its entries make of x to room of its own; where strips meet,
+// it is added up in their order: the bits do not depend on the threads.
 
 #include <algorithm>
 #include <array>
+#include <numeric>
+#include <utility>
 #include <vector>
 
 #include "libmpm/grid/active_grid.hpp"
@@ -33,6 +36,8 @@ class PressureEntries {
  private:
   static constexpr int reach = 2, kept = 63;
   static constexpr int slack = batch_size + 2 * reach;  ///< of reading whole batches
+  static constexpr int strip = 8,
+                       strip_span = strip + 2 * reach;  ///< columns across: its own, and that it reaches
 
   /// Cells next to each other along way_[2], with what lies between them if they have gaps.
   struct Column {
@@ -49,16 +54,26 @@ class PressureEntries {
   int place(const Index<3>& at) const { return (at[0] * extent_[1] + at[1]) * extent_[2] + at[2]; }
   void find_columns(const std::vector<Index<3>>& at);
   void find_ghosts(const ActiveGrid<3>& grid, const std::vector<Index<3>>& at);
-  void multiply_column(const Column& column);
+  int n_strips() const { return (extent_[1] - 1) / strip + 1; }
+  std::size_t strip_size() const { return static_cast<std::size_t>(extent_[0]) * strip_span * extent_[2]; }
+  /// Where the column at `across` begins in the room of a strip.
+  std::size_t place_in_strip(int which, const Index<2>& across) const {
+    const int beside = across[1] - strip * which + reach;
+    return strip_size() * which + static_cast<std::size_t>((across[0] * strip_span + beside) * extent_[2]);
+  }
+  void multiply_column(const Column& column, float* in_strip);
+  void add_up_strips(const Index<2>& across, const Column& column);
 
-  Index<3> way_{}, extent_{};  ///< axes, the longest one last; the box with a margin on all sides
-  std::vector<Column> columns_;
+  Index<3> way_{}, extent_{};        ///< axes, the longest one last; the box with a margin on all sides
+  std::vector<Column> columns_;      ///< those of a strip follow each other
+  std::vector<int> strip_begin_;     ///< strip k has the columns strip_begin_[k] .. strip_begin_[k + 1]
   std::vector<int> column_at_;       ///< by place across, -1 where none
   std::vector<int> place_, column_;  ///< of each cell
   std::vector<std::size_t> first_;   ///< each cell's diagonal entry
   std::vector<Ghost> ghosts_;        ///< places in the margin that repeat a cell on a periodic axis
   std::vector<float> entries_, x_,
-      y_;  ///< x_, y_: a vector and its product in the box, zero where no cell is
+      y_;                         ///< x_, y_: a vector, zero where no cell is, and its product in the box
+  std::vector<float> in_strips_;  ///< the product's parts
 };
 
 inline void PressureEntries::find_columns(const std::vector<Index<3>>& at) {
@@ -75,8 +90,13 @@ inline void PressureEntries::find_columns(const std::vector<Index<3>>& at) {
     columns_[k].low = std::min(columns_[k].low, cell[2]);
     columns_[k].end = std::max(columns_[k].end, cell[2] + 1);
   }
-  std::sort(columns_.begin(), columns_.end(),
-            [](const Column& a, const Column& b) { return a.across < b.across; });
+  const auto strip_of = [](const Column& column) { return column.across[1] / strip; };
+  std::sort(columns_.begin(), columns_.end(), [&](const Column& a, const Column& b) {
+    return std::pair(strip_of(a), a.across) < std::pair(strip_of(b), b.across);
+  });
+  strip_begin_.assign(static_cast<std::size_t>(n_strips() + 1), 0);
+  for (const Column& column : columns_) ++strip_begin_[strip_of(column) + 1];
+  std::partial_sum(strip_begin_.begin(), strip_begin_.end(), strip_begin_.begin());
   std::size_t size = slack;
   for (std::size_t k = 0; k < columns_.size(); ++k) {
     Column& column = columns_[k];
@@ -125,6 +145,7 @@ inline void PressureEntries::reset(const ActiveGrid<3>& grid) {
   find_ghosts(grid, at);
   const auto box = static_cast<std::size_t>(extent_[0]) * extent_[1] * extent_[2] + slack;
   x_.assign(box, 0.0f), y_.assign(box, 0.0f);
+  make_room(in_strips_, strip_size() * static_cast<std::size_t>(n_strips()) + slack);
 }
 
 inline void PressureEntries::add(const ActiveGrid<3>& grid, int c, int other, float value) {
@@ -153,50 +174,79 @@ void PressureEntries::for_each(Use use) const {
                          static_cast<std::size_t>(offset(a, b, d) * columns_[column_[c]].size())]);
 }
 
-/// Products of sixteen cells at a time. Beyond the ends of a column entries of others are read, finite and
-/// times zero.
-inline void PressureEntries::multiply_column(const Column& column) {
+/// What a column's entries make of x, sixteen cells at a time, for its own cells and for those of the columns
+/// ahead; `in_strip`: where the column begins in its strip. Beyond the ends of a column entries of others are
+/// read, finite and times zero, or for places that have no cell.
+inline void PressureEntries::multiply_column(const Column& column, float* in_strip) {
   using Sixteen = Eigen::Map<const Lanes<float>>;
   const auto at = [](const float* from) { return Sixteen(from); };
-  const int size = column.size(), start = place({column.across[0], column.across[1], column.low});
+  const auto add_to = [](float* y, const Lanes<float>& more) { Eigen::Map<Lanes<float>>{y} += more; };
+  const int size = column.size();
+  const float* const x = &x_[place({column.across[0], column.across[1], column.low})];
+  const float* const own = &entries_[column.at];
+  float* const y = in_strip + column.low;
   for (int i = 0; i < size; i += batch_size) {
-    const float *x = &x_[start + i], *own = &entries_[column.at + static_cast<std::size_t>(i)];
-    Lanes<float> to = at(own) * at(x), from = Lanes<float>::Zero();
-    for (int d = 1; d <= reach; ++d) {
-      to += at(own + d * size) * at(x + d);
-      from += at(own + d * size - d) * at(x - d);
-    }
-    const auto beside = [&](int a, int b) -> const Column* {
+    Lanes<float> sum = at(own + i) * at(x + i);
+    for (int d = 1; d <= reach; ++d)
+      sum += at(own + d * size + i) * at(x + i + d) + at(own + d * size + i - d) * at(x + i - d);
+    add_to(y + i, sum);
+  }
+  for (int a = 0; a <= reach; ++a)
+    for (int b = a == 0 ? 1 : -reach; b <= reach; ++b) {
       const int k = column_at_[(column.across[0] + a) * extent_[1] + column.across[1] + b];
-      if (k < 0) return nullptr;
-      const Column& other = columns_[k];
-      const int first = column.low + i;
-      return first - reach < other.end && first + batch_size + reach > other.low ? &other : nullptr;
-    };
-    for (int a = 0; a <= reach; ++a)
-      for (int b = a == 0 ? 1 : -reach; b <= reach; ++b) {
-        const int there = place({a, b, 0});
-        if (beside(a, b))
-          for (int d = -reach; d <= reach; ++d) to += at(own + offset(a, b, d) * size) * at(x + there + d);
-        if (const Column* other = beside(-a, -b)) {
-          const float* theirs = entries_.data() + other->at + (column.low + i - other->low);
-          for (int d = -reach; d <= reach; ++d)
-            from += at(theirs + offset(a, b, d) * other->size() - d) * at(x - there - d);
-        }
+      if (k < 0) continue;
+      // Of both columns the places that have a neighbour in the other, from the own column's low on.
+      const int low = columns_[k].low - column.low, end = columns_[k].end - column.low;
+      const float* const entries = own + offset(a, b, 0) * size;
+      const float* const x_there = x + place({a, b, 0});
+      float* const y_there = y + (a * strip_span + b) * extent_[2];
+      for (int i = std::max(0, low - reach); i < std::min(size, end + reach); i += batch_size) {
+        Lanes<float> sum = at(entries + i) * at(x_there + i);
+        for (int d = 1; d <= reach; ++d)
+          sum += at(entries + d * size + i) * at(x_there + i + d) +
+                 at(entries - d * size + i) * at(x_there + i - d);
+        add_to(y + i, sum);
       }
-    Eigen::Map<Lanes<float>> y(&y_[start + i]);
-    y = to + from;
+      for (int i = std::max(-reach, low); i < std::min(size + reach, end); i += batch_size) {
+        Lanes<float> sum = at(entries + i) * at(x + i);
+        for (int d = 1; d <= reach; ++d)
+          sum +=
+              at(entries + d * size + i - d) * at(x + i - d) + at(entries - d * size + i + d) * at(x + i + d);
+        add_to(y_there + i, sum);
+      }
+    }
+}
+
+/// The product along a column at `across`, of all strips that reach it.
+inline void PressureEntries::add_up_strips(const Index<2>& across, const Column& column) {
+  const int first = std::max(0, (across[1] - reach) / strip);
+  const int last = std::min(n_strips() - 1, (across[1] + reach) / strip);
+  float* const y = &y_[place({across[0], across[1], column.low})];
+  for (int which = first; which <= last; ++which) {
+    const float* const part =
+        &in_strips_[place_in_strip(which, across) + static_cast<std::size_t>(column.low)];
+    for (int i = 0; i < column.size(); ++i) y[i] = which == first ? part[i] : y[i] + part[i];
   }
 }
 
 inline void PressureEntries::multiply_in_region(const Eigen::VectorXf& p, Eigen::VectorXf& Sp) {
-  const int n = static_cast<int>(place_.size());
+  const int n = static_cast<int>(place_.size()), strips = n_strips();
 #pragma omp for schedule(static)
   for (int c = 0; c < n; ++c) x_[place_[c]] = p[c];
 #pragma omp for schedule(static)
   for (std::size_t g = 0; g < ghosts_.size(); ++g) x_[ghosts_[g].place] = p[ghosts_[g].cell];
+#pragma omp for schedule(dynamic)
+  for (int which = 0; which < strips; ++which) {
+    std::fill_n(in_strips_.begin() + static_cast<std::ptrdiff_t>(strip_size()) * which, strip_size(), 0.0f);
+    for (int k = strip_begin_[which]; k < strip_begin_[which + 1]; ++k)
+      multiply_column(columns_[k], &in_strips_[place_in_strip(which, columns_[k].across)]);
+  }
 #pragma omp for schedule(static)
-  for (std::size_t k = 0; k < columns_.size(); ++k) multiply_column(columns_[k]);
+  for (int across = 0; across < static_cast<int>(column_at_.size()); ++across)
+    if (const int k = column_at_[across]; k >= 0)
+      add_up_strips({across / extent_[1], across % extent_[1]}, columns_[k]);
+#pragma omp single
+  for (const Ghost& g : ghosts_) y_[place_[g.cell]] += y_[g.place];
 #pragma omp for schedule(static)
   for (int c = 0; c < n; ++c) Sp[c] = y_[place_[c]];
 }

@@ -121,16 +121,18 @@ ActiveGrid<3> holey_grid(const Index<3>& extent, const std::array<bool, 3>& peri
   return grid;
 }
 
-// S by its entries against a dense matrix: columns along each axis, longer and shorter than a batch, holes,
-// one and two periodic axes, one so short that a cell sees another from both sides. A product adds up 125
-// numbers of the order 1 in single precision.
+// S by its entries against a dense matrix: columns along each axis, longer and shorter than a batch, up to
+// four strips of them, holes, one and two periodic axes, one so short that a cell sees another from both
+// sides. A product adds up 125 numbers of the order 1 in single precision.
 TEST(SpaceSolver, PressureEntriesMultiplyLikeADenseMatrix) {
   omp_set_num_threads(1);
   const std::pair<Index<3>, std::array<bool, 3>> cases[] = {{{5, 9, 37}, {}},
                                                             {{6, 20, 4}, {}},
                                                             {{17, 3, 7}, {}},
+                                                            {{21, 3, 22}, {}},
                                                             {{8, 7, 5}, {true, false, false}},
                                                             {{4, 7, 6}, {true, true, false}},
+                                                            {{5, 18, 6}, {true, true, false}},
                                                             {{3, 5, 18}, {false, true, false}}};
   for (const auto& [extent, periodic] : cases) {
     const ActiveGrid<3> grid = holey_grid(extent, periodic);
