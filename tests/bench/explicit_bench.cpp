@@ -52,7 +52,7 @@ struct Set {
     state = start_explicit(body, law, settings, shape);
   }
   void count(benchmark::State& run) const {
-    run.counters["points/s"] = benchmark::Counter(static_cast<double>(body.points.size()),
+    run.counters["points/s"] = benchmark::Counter(static_cast<double>(state.points.n),
                                                   benchmark::Counter::kIsIterationInvariantRate);
   }
 };
