@@ -111,7 +111,7 @@ void write_back(LanePoints<D>& lanes, const std::array<Axis, D>& axes, Points<D>
 template <int D>
 void take_points(Points<D>& points, bool affine, bool rates, LanePoints<D>& lanes) {
   const std::size_t n = points.size(), groups = (n + octet_size - 1) / octet_size;
-  if (!affine) give_back(points.C);
+  points.C.resize(affine ? n : 0, Mat<D, D>::Zero());  // none were brought back to points that start anew
   if (rates) points.gamma_dot.resize(n, 0.0);
   lanes.n = n;
   detail::for_each_quantity<D>(lanes, points, [&](std::span<std::vector<Octet>> to, auto& from) {

@@ -62,7 +62,7 @@ struct Holding {
   }
 };
 
-/// The body on its tiles. body.points is what it was at the last write_back.
+/// The body on its tiles. body.points is what it was at the last write_back, and empty before the first.
 template <class Space>
 struct ExplicitState {
   static constexpr int D = Space::dim;

@@ -40,7 +40,7 @@ double points_of(const char* cell) {
 }
 
 // From 43,976 to 203,652 points of Mix A the peak grows by what a point costs, all told: its state sorted
-// (168 bytes), what a reading has of it (88), tiles, what a frame has more. It is 340; the aim is 400.
+// (164 bytes), what a reading has of it (88), tiles, what a frame has more. It is 340; the aim is 400.
 TEST(ExplicitMemory, BytesAPointOfALargeBody) {
   if (!test::memory_can_be_measured) GTEST_SKIP() << "the sanitizer's own memory is most of it";
   const double small = test::peak_memory_of([] { return runs("10 mm"); }),

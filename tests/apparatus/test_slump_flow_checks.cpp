@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "apparatus/engine.hpp"
 #include "apparatus/scene/scene.hpp"
 #include "apparatus/slump_flow/energy_watch.hpp"
@@ -134,6 +136,38 @@ TEST(SlumpFlowChecks, StiffExplicitStepsThatMakeEnergyAreMarked) {
                                     {"model.space=quarter", "model.cell=20 mm", "model.time_step=auto",
                                      "mix.bulk_modulus=2 GPa", std::string("model.precision=") + precision}));
     EXPECT_FALSE(outcome.checks.reasons.empty()) << precision;
+  }
+}
+
+// A frame takes over what a reading brought, which is then brought again: the run goes on as without frames,
+// and every frame has all points with all their fields, a mix without thixotropy its shear rates too.
+TEST(SlumpFlowChecks, FramesDoNotChangeAnExplicitRun) {
+  const std::vector<std::string> cone = {
+      "model.scheme=explicit",   "model.yield=papanastasiou", "model.space=quarter",
+      "model.cell=25 mm",        "test.duration=0.13 s",      "test.lift_speed=0.15 m/s",
+      "mix.bulk_modulus=33 kPa", "output.frames=true",        "output.frame_interval=30 ms"};
+  const std::vector<std::string> kinds[] = {
+      {}, {"mix.thixotropy.structuration_rate=1.3 Pa/s", "mix.thixotropy.destructuration=0.01"}};
+  for (const auto& kind : kinds) {
+    std::vector<std::string> overrides = cone;
+    overrides.insert(overrides.end(), kind.begin(), kind.end());
+    const auto scene = scene::read_text(thin, "thin.toml", overrides);
+    std::vector<Frame> frames;
+    scene::Observer observer;
+    observer.on_frame = [&](const Frame& frame) { frames.push_back(frame); };
+    const auto seen = scene::run(scene, observer), unseen = scene::run(scene);
+    ASSERT_GE(frames.size(), 5u);
+    for (const Frame& frame : frames) {
+      const std::size_t n = frames.front().position.size();
+      for (const std::size_t size : {frame.position.size(), frame.velocity.size(), frame.volume.size(),
+                                     frame.pressure.size(), frame.shear_rate.size()})
+        EXPECT_EQ(size, n);
+      EXPECT_EQ(frame.flocculation.size(), kind.empty() ? 0 : n);
+    }
+    EXPECT_GT(*std::max_element(frames.back().shear_rate.begin(), frames.back().shear_rate.end()), 0.0);
+    ASSERT_EQ(seen.series.size(), unseen.series.size());
+    for (std::size_t k = 0; k < seen.series.size(); ++k)
+      EXPECT_EQ(seen.series[k].values, unseen.series[k].values);
   }
 }
 

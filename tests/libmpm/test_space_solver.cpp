@@ -155,6 +155,10 @@ TEST(SpaceSolver, PressureEntriesMultiplyLikeADenseMatrix) {
     Eigen::VectorXf p(n), Sp(n);
     for (int c = 0; c < n; ++c) p[c] = static_cast<float>(std::cos(0.7 * c));
     entries.multiply_in_region(p, Sp);
+    Eigen::VectorXf by_threads(n);
+#pragma omp parallel num_threads(3)
+    entries.multiply_in_region(p, by_threads);
+    EXPECT_EQ(by_threads, Sp);
     EXPECT_LE((Sp.cast<double>() - S * p.cast<double>()).cwiseAbs().maxCoeff(), 1e-4);
     Eigen::MatrixXd seen = Eigen::MatrixXd::Zero(n, n);
     entries.for_each([&](int c, int other, float value) {

@@ -184,7 +184,7 @@ void print_rates(const Asked& asked) {
   lifted_wall(scene, settings.wall_gap + 0.6 * cell, wall);
   const Papanastasiou law{scene.model.regularisation};
   auto state = start_explicit(body, law, settings, shape_of<Space>(scene.model));
-  std::vector<Mat<D, D>> L(body.points.size());
+  std::vector<Mat<D, D>> L(state.points.n);
   Rates peak{}, total{};
   constexpr double interval = 0.01;
   while (body.time < seconds - 1e-9) {
