@@ -90,6 +90,34 @@ double outline(const Points<D>& points, double cell, Reaches reaches) {
   }
 }
 
+/// Directions over the full turn; opposite ones make a diameter. Points stand in rows: by 16 directions the
+/// outline of one body, turned, would differ by two millimetres (three_d.md).
+constexpr int turn = 64;
+
+/// Mean of the reaches beyond `least` in all directions; a quarter has some of its own. Empty where one
+/// direction has no point with company there.
+std::optional<double> mean_reach(const std::vector<Outer<3>>& outer, double least, double cell,
+                                 bool quarter) {
+  const int directions = quarter ? turn / 4 : turn, images = quarter ? 4 : 1;
+  double sum = 0.0;
+  std::vector<Weighted> out;
+  for (int k = 0; k < directions; ++k) {
+    const double angle = 2.0 * std::numbers::pi * (k + 0.5) / turn;
+    const double ex = std::cos(angle), ey = std::sin(angle);
+    out.clear();
+    for (const Outer<3>& point : outer)
+      for (int image = 0; image < images; ++image) {
+        const double x = image & 1 ? -point.at[0] : point.at[0];
+        const double y = image & 2 ? -point.at[1] : point.at[1];
+        if (const double a = ex * x + ey * y; a > least) out.push_back({a, 0.0, point.size});
+      }
+    const std::optional<double> reach = reach_of(out, cell);
+    if (!reach) return std::nullopt;
+    sum += *reach;
+  }
+  return sum / directions;
+}
+
 template <int D>
 double height_within(const Points<D>& points, double reach) {
   std::vector<Weighted> heights;
@@ -113,31 +141,9 @@ double spread(const Points<2>& points, double cell) {
 }
 
 double spread(const Points<3>& points, double cell, bool quarter) {
-  // Directions over the full turn, opposite ones make a diameter; a quarter has some of its own. Points stand
-  // in rows: by 16 of them the outline of one body, turned, would differ by a millimetre (three_d.md).
-  constexpr int turn = 64;
-  const int directions = quarter ? turn / 4 : turn, images = quarter ? 4 : 1;
-  return outline<3>(points, cell,
-                    [=](const std::vector<Outer<3>>& outer, double least) -> std::optional<double> {
-                      double sum = 0.0;
-                      std::vector<Weighted> out;
-                      for (int k = 0; k < directions; ++k) {
-                        const double angle = 2.0 * std::numbers::pi * (k + 0.5) / turn, ex = std::cos(angle),
-                                     ey = std::sin(angle);
-                        out.clear();
-                        for (const Outer<3>& point : outer)
-                          for (int image = 0; image < images; ++image) {
-                            const double x = image & 1 ? -point.at[0] : point.at[0],
-                                         y = image & 2 ? -point.at[1] : point.at[1];
-                            if (const double a = ex * x + ey * y; a > std::max(least, 0.0))
-                              out.push_back({a, 0.0, point.size});
-                          }
-                        const std::optional<double> reach = reach_of(out, cell);
-                        if (!reach) return std::nullopt;
-                        sum += *reach;
-                      }
-                      return sum / directions;
-                    });
+  return outline<3>(points, cell, [=](const std::vector<Outer<3>>& outer, double least) {
+    return mean_reach(outer, std::max(least, 0.0), cell, quarter);
+  });
 }
 
 double centre_height(const Points<2>& points, double reach) { return height_within(points, reach); }
