@@ -62,7 +62,7 @@ class Base64 {
 
   std::ostream& out_;
   std::array<std::uint8_t, 3> held_{};
-  std::array<char, 4096> text_;
+  std::array<char, 1 << 16> text_;  // a call of the system a piece
   std::size_t n_ = 0, size_ = 0;
 };
 
