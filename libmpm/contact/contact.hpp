@@ -61,6 +61,22 @@ double normal_velocity(const ContactPoint<D>& c, const std::vector<std::array<in
   return c.normal.dot(u);
 }
 
+/// The same in space, one direction at a time.
+inline double normal_velocity(const ContactPoint<3>& c, const std::vector<std::array<int, 27>>& cell_nodes,
+                              const std::vector<Vec<3>>& v) {
+  const std::array<int, 27>& nodes = cell_nodes[c.cell];
+  Vec<3> u = Vec<3>::Zero();
+  for (std::size_t i = 0; i < 3; ++i) {
+    Vec<3> plane = Vec<3>::Zero();
+    for (std::size_t j = 0; j < 3; ++j) {
+      const int* line = &nodes[9 * i + 3 * j];
+      plane += c.one[1][j] * (c.one[2][0] * v[line[0]] + c.one[2][1] * v[line[1]] + c.one[2][2] * v[line[2]]);
+    }
+    u += c.one[0][i] * plane;
+  }
+  return c.normal.dot(u);
+}
+
 /// Closes contacts that are violated and opens those that would pull; true if any changed.
 template <int D>
 bool update_active(std::vector<ContactPoint<D>>& contact,

@@ -38,19 +38,19 @@ Duals<ThreeD> split(const Law& law, const SpaceDuals& joined, int n_cells) {
 }
 
 /// One pass over the cells at the velocities v: updates the duals if asked to, adds up the mismatch, and
-/// the forces R of stress and pressure on the nodes.
+/// the forces R of stress, pressure and closed contacts on the nodes.
 template <class Law>
 Mismatch pass_over_cells(const YieldProblem<ThreeD>& problem, const Law& law, const AdmmSettings& settings,
-                         double r, const double* v, bool update, SpaceSystem& system, SpaceDuals& duals,
-                         Eigen::VectorXd& R) {
+                         double r, const std::vector<Vec<3>>& v, bool update, SpaceSystem& system,
+                         SpaceDuals& duals, Eigen::VectorXd& R) {
   const double mu = problem.mu, rho = settings.over_relaxation, bulk = problem.K * problem.dt;
   const auto& quad = problem.quadrature;
   const int last = problem.grid.n_cells() - 1;
   std::vector<Mismatch> part(duals.batch.size());
   R.resize(3 * problem.grid.n_nodes());
-  const auto give = [&](int b) {
+  const auto give_batch = [&](int b, double* to) {
     PlaceTensors<double> G;
-    system.batches.gradients(b, v, G);
+    system.batches.gradients(b, v.data()->data(), G);
     const BatchVolumes<double> vol = batch_volumes(quad, b);
     SpaceDuals::Batch& own = duals.batch[b];
     Lanes<double> p, mean = Lanes<double>::Zero(), primal = mean, dual = mean, scale = mean;
@@ -78,12 +78,21 @@ Mismatch pass_over_cells(const YieldProblem<ThreeD>& problem, const Law& law, co
       for (int j = 0; j < 5; ++j) stress[j] = -vol.V[k] * (mu * q[j] + s[j] + r * (q[j] - d[j]));
       stress_at<double>(stress, vol.V[k] * p, k, G);
     }
-    system.batches.scatter(b, G, system.forces);
+    system.batches.scatter(b, G, to);
     part[b] = {r * r * sum_of(primal), r * r * sum_of(dual), sum_of(scale)};
   };
+  const auto give = [&](int strip, double* to) {
+    for (int b = system.batches.first_batch(strip); b < system.batches.last_batch(strip); ++b)
+      give_batch(b, to);
+    for_each_contact(problem.contact, system.batches.strips(), strip, [&](const ContactPoint<3>& c) {
+      add_at_contact(c, problem.grid.cell_nodes[c.cell],
+                     c.stiffness * (c.target - normal_velocity(c, problem.grid.cell_nodes, v)), to);
+    });
+  };
 #pragma omp parallel
-  system.batches.sweep_in_region(
-      give, [&](int i) { R.segment<3>(3 * i) = system.batches.gathered<double>(i, system.forces); });
+  system.batches.strips().sweep_in_region<double>(system.forces, give, [&](int i) {
+    R.segment<3>(3 * i) = system.batches.strips().sum_at<double, 3>(i, system.forces);
+  });
   if (update) duals.r = r;
   Mismatch sum;
   for (const Mismatch& m : part) sum.primal += m.primal, sum.dual += m.dual, sum.scale += m.scale;
@@ -97,7 +106,6 @@ inline void residual_in_space(const YieldProblem<ThreeD>& problem, const std::ve
   for (int i = 0; i < problem.grid.n_nodes(); ++i)
     R.segment<3>(3 * i) = problem.nodes.mass[i] / problem.dt * (problem.nodes.v[i] - v[i]) -
                           (problem.drag.empty() ? 0.0 : problem.drag[i]) * v[i] + R.segment<3>(3 * i);
-  add_contact_forces<3>(problem.contact, problem.grid.cell_nodes, v, R);
   add_bound_forces<3>(problem.bound, problem.grid.cell_nodes, v, R);
   add_friction_forces_admm<3>(problem.friction, v, R);
   fold_mirrors<3>(problem.grid, R);
@@ -115,8 +123,7 @@ SolveReport solve_admm_in_space(YieldProblem<ThreeD>& problem, const Law& law, c
   system.set_up(problem, settings.most_band_operations);
   if (!system.prepare(problem, eta)) return report;
   Eigen::VectorXd R;
-  auto mismatch =
-      detail::pass_over_cells(problem, law, settings, r, v.data()->data(), false, system, duals, R);
+  auto mismatch = detail::pass_over_cells(problem, law, settings, r, v, false, system, duals, R);
   for (; report.iterations < settings.max_iterations; ++report.iterations) {
     detail::residual_in_space(problem, v, R);
     // An error e of v that the solve leaves is worth a stress of (mu + r) |q(e)|, whose square over the
@@ -127,7 +134,7 @@ SolveReport solve_admm_in_space(YieldProblem<ThreeD>& problem, const Law& law, c
     const bool contact_changed = update_active<3>(problem.contact, problem.grid.cell_nodes, v);
     const bool friction_settled =
         update_friction_admm<3>(problem.friction, v, settings.over_relaxation, settings.tolerance);
-    mismatch = detail::pass_over_cells(problem, law, settings, r, v.data()->data(), true, system, duals, R);
+    mismatch = detail::pass_over_cells(problem, law, settings, r, v, true, system, duals, R);
     report.converged =
         mismatch.within(settings.tolerance) && friction_settled && !contact_changed && left <= tolerated;
     if (report.converged) break;

@@ -5,16 +5,16 @@
 // Quadratic splines are products of one spline a direction, so the 27 controls of a cell are contracted one
 // direction at a time: about 1,000 operations for the nine gradient components at eight places where the rows
 // of the strain matrix would cost 3,200. Cells are taken sixteen at a time, one a vector lane, in double
-// precision or, for the products of a linear solve, in single. What a cell gives its nodes is stored, and
-// each node adds up its cells in their order: the bits do not depend on the threads. In a large body that
-// room is a ring: some batches at a time store theirs, and the nodes whose last cell was among them add up.
+// precision or, for the products of a linear solve, in single.
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <vector>
 
 #include "libmpm/grid/active_grid.hpp"
+#include "libmpm/grid/cell_strips.hpp"
 #include "libmpm/grid/room.hpp"
 #include "libmpm/step/cell_lanes.hpp"
 
@@ -27,31 +27,6 @@ struct PlaceTensors {
   Lanes<Scalar> g[3][3][8];
 };
 
-/// Room for what cells give their nodes, in either precision: they are not needed at the same time.
-class CellForces {
- public:
-  void make_room(std::size_t vectors) {
-    tremie::make_room(room_, vectors * sizeof(NodeValue<double>));
-    static_assert(sizeof(NodeValue<float>) <= sizeof(NodeValue<double>));
-  }
-  /// Gives back what a large body needs; some megabytes are kept, for new pages have to be zeroed again.
-  void give_back_much() {
-    if (room_.size() > most_kept) tremie::give_back(room_);
-  }
-  template <class Scalar>
-  Scalar* values() {
-    return reinterpret_cast<Scalar*>(room_.data());  // bytes in which numbers come to be when written
-  }
-  template <class Scalar>
-  const Scalar* values() const {
-    return reinterpret_cast<const Scalar*>(room_.data());
-  }
-
- private:
-  static constexpr std::size_t most_kept = std::size_t{1} << 22;
-  std::vector<std::byte> room_;
-};
-
 class CellBatches {
  public:
   /// Lays the batches out for a grid.
@@ -60,37 +35,17 @@ class CellBatches {
   int n_cells() const { return n_cells_; }
   int n_nodes() const { return n_nodes_; }
   int n_batches() const { return static_cast<int>(ends_.size()); }
-  /// Room for scatter().
-  void make_room(CellForces& forces) const { forces.make_room(static_cast<std::size_t>(ring_) * of_cell); }
+  /// Strips of whole batches.
+  const CellStrips& strips() const { return strips_; }
+  int first_batch(int strip) const { return strips_.first_cell(strip) / batch_size; }
+  int last_batch(int strip) const { return (strips_.last_cell(strip) + batch_size - 1) / batch_size; }
 
   /// Gradients of the nodal vector field v in a batch.
   template <class Scalar>
   void gradients(int batch, const Scalar* v, PlaceTensors<Scalar>& out) const;
-  /// Gives each node of the batch's cells sum_k T_k grad N.
+  /// Adds sum_k T_k grad N to each node of the batch's cells; `to`: its strip's nodes.
   template <class Scalar>
-  void scatter(int batch, const PlaceTensors<Scalar>& T, CellForces& forces) const;
-  /// Sum at node i of what its cells were given.
-  template <class Scalar>
-  NodeValue<Scalar> gathered(int i, const CellForces& forces) const {
-    const Scalar* from = forces.values<Scalar>();
-    const int mask = ring_ * of_cell - 1;
-    NodeValue<Scalar> sum = NodeValue<Scalar>::Zero();
-    for (const int *e = entries_begin(i), *end = entries_end(i); e != end; ++e)
-      sum += Eigen::Map<const NodeValue<Scalar>>(from + node_stride<Scalar> *
-                                                            static_cast<std::ptrdiff_t>(*e & mask));
-    return sum;
-  }
-  /// Calls give(batch) for every batch, which scatters, and take(node) for every node when all of its cells
-  /// have. To be called by all threads of a parallel region.
-  template <class Give, class Take>
-  void sweep_in_region(Give give, Take take) const {
-    for (const Chunk& chunk : chunks_) {
-#pragma omp for schedule(static)
-      for (int b = chunk.first_batch; b < chunk.last_batch; ++b) give(b);
-#pragma omp for schedule(static)
-      for (int i = chunk.first_node; i < chunk.last_node; ++i) take(complete_[static_cast<std::size_t>(i)]);
-    }
-  }
+  void scatter(int batch, const PlaceTensors<Scalar>& T, Scalar* to) const;
   /// Cells of node i in their order: cell_of() and local_of() tell what an entry means.
   const int* entries_begin(int i) const { return &node_entry_[node_begin_[i]]; }
   const int* entries_end(int i) const { return node_entry_.data() + node_begin_[i + 1]; }
@@ -103,14 +58,7 @@ class CellBatches {
   // t = 1 - s.
   static constexpr double near_ = 0.78867513459481288, far_ = 1.0 - near_;
 
-  static constexpr int of_cell = 32;         ///< entries of a cell, of which 27 are used: a power of two
-  static constexpr int chunk_batches = 128;  ///< what their cells give stays in the second cache
-  static constexpr int most_at_once = 192;   ///< batches of a small body, which go in one chunk
-  /// Batches that go together, and the nodes complete_[first_node .. last_node) whose last cells they have.
-  struct Chunk {
-    int first_batch, last_batch, first_node, last_node;
-  };
-  void plan_sweep();
+  static constexpr int of_cell = 32;  ///< entries of a cell, of which 27 are used: a power of two
 
   /// Local nodes 3 j, 3 j + 1, 3 j + 2 of a cell follow each other in number too, unless the last axis is
   /// periodic: of nine lines the first nodes are kept, else all 27.
@@ -140,9 +88,7 @@ class CellBatches {
   std::vector<Nodes> nodes_;  ///< kept_nodes() of each batch
   std::vector<Ends> ends_;
   std::vector<int> node_begin_, node_entry_;
-  std::vector<Chunk> chunks_;
-  std::vector<int> complete_;  ///< nodes in the order in which they are complete
-  int ring_ = batch_size;      ///< cells that the room for forces holds, a power of two
+  CellStrips strips_;
 };
 
 inline void CellBatches::lay_out(const ActiveGrid<3>& grid) {
@@ -175,34 +121,7 @@ inline void CellBatches::lay_out(const ActiveGrid<3>& grid) {
   std::vector<int> next(node_begin_.begin(), node_begin_.end() - 1);
   for (int c = 0; c < n_cells_; ++c)
     for (int k = 0; k < 27; ++k) node_entry_[next[grid.cell_nodes[c][k]]++] = c * of_cell + k;
-  plan_sweep();
-}
-
-/// Chunks of batches, and a ring of cells that holds all cells of every node until its last one has given.
-inline void CellBatches::plan_sweep() {
-  const int together = n_batches() <= most_at_once ? std::max(1, n_batches()) : chunk_batches;
-  const int chunk_cells = together * batch_size;
-  const int n = std::max(1, (n_cells_ + chunk_cells - 1) / chunk_cells);
-  const auto first_cell = [&](int i) { return cell_of(*entries_begin(i)); };
-  const auto chunk_of = [&](int i) { return cell_of(entries_end(i)[-1]) / chunk_cells; };
-  std::vector<int> begin(static_cast<std::size_t>(n) + 1, 0);
-  int needed = 0;
-  for (int i = 0; i < n_nodes_; ++i) {
-    const int chunk = chunk_of(i);
-    ++begin[static_cast<std::size_t>(chunk) + 1];
-    needed = std::max(needed, (chunk + 1) * chunk_cells - first_cell(i));
-  }
-  needed = std::min(needed, n_batches() * batch_size);
-  for (ring_ = batch_size; ring_ < needed;) ring_ *= 2;
-  chunks_.clear();
-  for (int k = 0; k < n; ++k) {
-    const auto at = static_cast<std::size_t>(k);
-    begin[at + 1] += begin[at];
-    chunks_.push_back({k * together, std::min((k + 1) * together, n_batches()), begin[at], begin[at + 1]});
-  }
-  tremie::make_room(complete_, static_cast<std::size_t>(n_nodes_));
-  for (int i = 0; i < n_nodes_; ++i)
-    complete_[static_cast<std::size_t>(begin[static_cast<std::size_t>(chunk_of(i))]++)] = i;
+  strips_.lay_out(grid, batch_size);
 }
 
 template <class Scalar>
@@ -260,7 +179,7 @@ void CellBatches::gradients(int batch, const Scalar* v, PlaceTensors<Scalar>& ou
 }
 
 template <class Scalar>
-void CellBatches::scatter(int batch, const PlaceTensors<Scalar>& T, CellForces& forces) const {
+void CellBatches::scatter(int batch, const PlaceTensors<Scalar>& T, Scalar* to) const {
   constexpr auto near = static_cast<Scalar>(near_), far = static_cast<Scalar>(far_);
   constexpr auto near2 = static_cast<Scalar>(0.5 * near_ * near_),
                  far2 = static_cast<Scalar>(0.5 * far_ * far_);
@@ -308,10 +227,13 @@ void CellBatches::scatter(int batch, const PlaceTensors<Scalar>& T, CellForces& 
               far2 * x0 + near2 * x1 + far * d0 + near * d1, x0 + x1, u[d][j], u[d][9 + j], u[d][18 + j]);
     }
   }
-  constexpr int stride = node_stride<Scalar>;
-  const int first = batch * batch_size & (ring_ - 1);
-  Scalar* out = forces.values<Scalar>() + static_cast<std::ptrdiff_t>(first) * of_cell * stride;
-  for (int k = 0; k < 27; ++k) store_lanes(u[0][k], u[1][k], u[2][k], out + stride * k, of_cell);
+  const int n = std::min(batch_size, n_cells_ - batch * batch_size);
+  const Nodes* nodes = &nodes_[static_cast<std::size_t>(batch * kept_nodes())];
+  for (int k = 0; k < 27; ++k) {
+    for (int d = 0; d < 3 && n < batch_size; ++d) u[d][k].tail(batch_size - n).setZero();
+    const int* first = nodes[lines_ ? k / 3 : k].data();
+    add_lanes(u[0][k], u[1][k], u[2][k], first, to + (lines_ ? 4 * (k % 3) : 0));
+  }
 }
 
 }  // namespace tremie

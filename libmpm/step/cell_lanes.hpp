@@ -7,6 +7,10 @@
 #include <cstring>
 #include <type_traits>
 
+#ifdef __AVX512VL__
+#include <immintrin.h>
+#endif
+
 namespace tremie {
 
 inline constexpr int batch_size = 16;
@@ -60,10 +64,76 @@ inline Sixteen of_lanes(const Lanes<float>& a) {
 }
 inline void to_lanes(const Sixteen& s, Lanes<float>& a) { std::memcpy(a.data(), &s, sizeof s); }
 
-inline void store_four_lanes(const Sixteen& s, int j, float* out, std::ptrdiff_t stride) {
-  float value[16];
+inline void add_four(const Four& value, float* at) {
+  Four sum;
+  std::memcpy(&sum, at, sizeof sum);
+  sum += value;
+  std::memcpy(at, &sum, sizeof sum);
+}
+/// Lanes j, 4 + j, 8 + j and 12 + j.
+inline void add_four_lanes(const Sixteen& s, const int* node, int j, float* room) {
+  Four value[4];
   std::memcpy(value, &s, sizeof s);
-  for (int i = 0; i < 4; ++i) std::memcpy(out + 4 * stride * (4 * i + j), value + 4 * i, sizeof(Four));
+  for (int i = 0; i < 4; ++i) add_four(value[i], room + 4 * static_cast<std::ptrdiff_t>(node[4 * i + j]));
+}
+
+using FourD [[gnu::vector_size(32)]] = double;
+using EightD [[gnu::vector_size(64)]] = double;
+
+/// Three numbers and anything.
+inline FourD load_three(const double* from) {
+#ifdef __AVX512VL__
+  return _mm256_maskz_loadu_pd(7, from);
+#else
+  return FourD{from[0], from[1], from[2], 0.0};
+#endif
+}
+/// Lanes j and 4 + j.
+inline EightD two_lanes(const double* v, const int* node, int j) {
+  return __builtin_shufflevector(load_three(v + 3 * static_cast<std::ptrdiff_t>(node[j])),
+                                 load_three(v + 3 * static_cast<std::ptrdiff_t>(node[4 + j])), 0, 1, 2, 3, 4,
+                                 5, 6, 7);
+}
+inline void to_lanes(const EightD& s, double* a) { std::memcpy(a, &s, sizeof s); }
+inline EightD of_lanes(const double* a) {
+  EightD s;
+  std::memcpy(&s, a, sizeof s);
+  return s;
+}
+/// The vectors of eight nodes.
+inline void load_eight(const double* v, const int* node, double* x, double* y, double* z) {
+  const EightD a = two_lanes(v, node, 0), b = two_lanes(v, node, 1), c = two_lanes(v, node, 2),
+               d = two_lanes(v, node, 3);
+  const EightD xz_ab = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14),
+               xz_cd = __builtin_shufflevector(c, d, 0, 8, 2, 10, 4, 12, 6, 14),
+               y_ab = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15),
+               y_cd = __builtin_shufflevector(c, d, 1, 9, 3, 11, 5, 13, 7, 15);
+  to_lanes(__builtin_shufflevector(xz_ab, xz_cd, 0, 1, 8, 9, 4, 5, 12, 13), x);
+  to_lanes(__builtin_shufflevector(y_ab, y_cd, 0, 1, 8, 9, 4, 5, 12, 13), y);
+  to_lanes(__builtin_shufflevector(xz_ab, xz_cd, 2, 3, 10, 11, 6, 7, 14, 15), z);
+}
+inline void add_four(const FourD& value, double* at) {
+  FourD sum;
+  std::memcpy(&sum, at, sizeof sum);
+  sum += value;
+  std::memcpy(at, &sum, sizeof sum);
+}
+/// Lanes j and 4 + j.
+inline void add_two_lanes(const EightD& s, const int* node, int j, double* room) {
+  FourD value[2];
+  std::memcpy(value, &s, sizeof s);
+  for (int i = 0; i < 2; ++i) add_four(value[i], room + 4 * static_cast<std::ptrdiff_t>(node[4 * i + j]));
+}
+inline void add_eight(const double* x, const double* y, const double* z, const int* node, double* room) {
+  const EightD none = {}, a = of_lanes(x), b = of_lanes(y), c = of_lanes(z);
+  const EightD even = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14),
+               odd = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15),
+               even_z = __builtin_shufflevector(c, none, 0, 8, 2, 10, 4, 12, 6, 14),
+               odd_z = __builtin_shufflevector(c, none, 1, 9, 3, 11, 5, 13, 7, 15);
+  add_two_lanes(__builtin_shufflevector(even, even_z, 0, 1, 8, 9, 4, 5, 12, 13), node, 0, room);
+  add_two_lanes(__builtin_shufflevector(odd, odd_z, 0, 1, 8, 9, 4, 5, 12, 13), node, 1, room);
+  add_two_lanes(__builtin_shufflevector(even, even_z, 2, 3, 10, 11, 6, 7, 14, 15), node, 2, room);
+  add_two_lanes(__builtin_shufflevector(odd, odd_z, 2, 3, 10, 11, 6, 7, 14, 15), node, 3, room);
 }
 
 }  // namespace detail
@@ -80,27 +150,26 @@ inline void load_nodes(const float* v, const int* node, Lanes<float>& x, Lanes<f
 }
 inline void load_nodes(const double* v, const int* node, Lanes<double>& x, Lanes<double>& y,
                        Lanes<double>& z) {
-  for (int l = 0; l < batch_size; ++l) {
-    const double* at = v + 3 * static_cast<std::ptrdiff_t>(node[l]);
-    x[l] = at[0], y[l] = at[1], z[l] = at[2];
-  }
+  for (int l = 0; l < batch_size; l += 8)
+    detail::load_eight(v, node + l, x.data() + l, y.data() + l, z.data() + l);
 }
 
-/// One vector a lane to places 0, stride, 2 stride, ... of out.
-inline void store_lanes(const Lanes<float>& x, const Lanes<float>& y, const Lanes<float>& z, float* out,
-                        std::ptrdiff_t stride) {
+/// Adds a vector a lane to the nodes, which have room for four numbers each.
+inline void add_lanes(const Lanes<float>& x, const Lanes<float>& y, const Lanes<float>& z, const int* node,
+                      float* room) {
   using namespace detail;
   const Sixteen none = {}, a = of_lanes(x), b = of_lanes(y), c = of_lanes(z);
   const Sixteen ab = lower_pairs(a, b), cd = lower_pairs(c, none);
   const Sixteen high_ab = upper_pairs(a, b), high_cd = upper_pairs(c, none);
-  store_four_lanes(lower_halves(ab, cd), 0, out, stride);
-  store_four_lanes(upper_halves(ab, cd), 1, out, stride);
-  store_four_lanes(lower_halves(high_ab, high_cd), 2, out, stride);
-  store_four_lanes(upper_halves(high_ab, high_cd), 3, out, stride);
+  add_four_lanes(lower_halves(ab, cd), node, 0, room);
+  add_four_lanes(upper_halves(ab, cd), node, 1, room);
+  add_four_lanes(lower_halves(high_ab, high_cd), node, 2, room);
+  add_four_lanes(upper_halves(high_ab, high_cd), node, 3, room);
 }
-inline void store_lanes(const Lanes<double>& x, const Lanes<double>& y, const Lanes<double>& z, double* out,
-                        std::ptrdiff_t stride) {
-  for (int l = 0; l < batch_size; ++l, out += 3 * stride) out[0] = x[l], out[1] = y[l], out[2] = z[l];
+inline void add_lanes(const Lanes<double>& x, const Lanes<double>& y, const Lanes<double>& z, const int* node,
+                      double* room) {
+  for (int l = 0; l < batch_size; l += 8)
+    detail::add_eight(x.data() + l, y.data() + l, z.data() + l, node + l, room);
 }
 
 }  // namespace tremie

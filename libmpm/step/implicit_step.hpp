@@ -61,7 +61,6 @@ StepReport implicit_step(Body<Space>& body, const Law& law, const StepSettings& 
   if (settings.keep_forces) detail::keep_forces(problem, law, body);
 
   give_back(posed->contact);
-  if constexpr (D == 3) body.space_system.forces.give_back_much();
 
   // Grid to points: state first, where the points were, then the move.
   if (body.points.thixotropic()) detail::update_flocculation(body, dt, body.points);

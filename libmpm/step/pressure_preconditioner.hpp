@@ -40,6 +40,7 @@ class PressurePreconditioner {
     if (by_band_) return;
     rows_ = {};
     iteration_ = {};
+    forces_ = {};
   }
   const PressureRows& rows() const { return rows_; }
   /// z = P^-1 r, four numbers a node.
@@ -47,10 +48,11 @@ class PressurePreconditioner {
              Eigen::VectorXf& z);
 
  private:
-  void number_across_the_thin_way(const ActiveGrid<3>& grid);
+  void order_across_the_thin_way(const ActiveGrid<3>& grid);
+  void number_cells(const std::vector<char>& left_out);
   template <class Use>
   void for_each_neighbour(const ActiveGrid<3>& grid, int cell, Use use) const;
-  void find_first_columns(const ActiveGrid<3>& grid, bool wraps);
+  void find_first_columns(const ActiveGrid<3>& grid);
   template <class Add>
   void fill_by_boxes(const ActiveGrid<3>& grid, Add add) const;
   template <class Add>
@@ -61,15 +63,17 @@ class PressurePreconditioner {
   double reduction_ = 1e-2;  ///< of the residual in a solve with S by iteration
 
   Index<3> way_{};           ///< the axes, the one that the concrete is longest on first
-  std::vector<int> number_;  ///< of each cell in the band
+  std::vector<int> order_;   ///< the cells as the band has them
+  std::vector<int> number_;  ///< of each cell in the band; -1 where it is left out
   PressureRows rows_;
   PressureIteration iteration_;  ///< where S is not factorised
-  Eigen::VectorXf y_, p_, p_of_cell_;
+  Eigen::VectorXf y_, p_;
+  StripRoom forces_;        ///< what the pressures give the nodes
   std::vector<int> first_;  ///< of each row of the band: its first column
   TwoEndedCholesky<float> band_;
 };
 
-inline void PressurePreconditioner::number_across_the_thin_way(const ActiveGrid<3>& grid) {
+inline void PressurePreconditioner::order_across_the_thin_way(const ActiveGrid<3>& grid) {
   way_ = {0, 1, 2};
   std::stable_sort(way_.begin(), way_.end(),
                    [&](int a, int b) { return grid.cell_map.extent[a] > grid.cell_map.extent[b]; });
@@ -81,33 +85,54 @@ inline void PressurePreconditioner::number_across_the_thin_way(const ActiveGrid<
     by_place[c] = {place, c};
   }
   if (way_ != Index<3>{0, 1, 2}) std::sort(by_place.begin(), by_place.end());  // that is the cells' own order
-  number_.resize(by_place.size());
-  for (std::size_t k = 0; k < by_place.size(); ++k) number_[by_place[k].second] = static_cast<int>(k);
+  order_.resize(by_place.size());
+  for (std::size_t k = 0; k < by_place.size(); ++k) order_[k] = by_place[k].second;
+}
+
+inline void PressurePreconditioner::number_cells(const std::vector<char>& left_out) {
+  number_.resize(order_.size());
+  int n = 0;
+  for (int c : order_) number_[c] = left_out[c] ? -1 : n++;
+  first_.resize(static_cast<std::size_t>(n));
 }
 
 /// Calls use(cell, offset) for the cells within two of `cell` in every direction, which are those that share
 /// a node with it, in the order of their numbers; until one returns false.
 template <class Use>
 void PressurePreconditioner::for_each_neighbour(const ActiveGrid<3>& grid, int cell, Use use) const {
+  const auto& map = grid.cell_map;
+  std::array<std::array<std::ptrdiff_t, 5>, 3> at;  // what each offset adds to the place in the map; -1: none
+  std::ptrdiff_t stride = 1;
+  for (int d = 2; d >= 0; stride *= map.extent[d--])
+    for (int o = -2; o <= 2; ++o) {
+      const int i = grid.axes[d].cell(grid.cell_index[cell][d] + o) - map.low[d];
+      at[d][o + 2] = i < 0 || i >= map.extent[d] ? -1 : i * stride;
+    }
   const auto [a, b, c] = way_;
   Index<3> offset;
   for (offset[a] = -2; offset[a] <= 2; ++offset[a])
-    for (offset[b] = -2; offset[b] <= 2; ++offset[b])
+    for (offset[b] = -2; offset[b] <= 2; ++offset[b]) {
+      const std::ptrdiff_t at_a = at[a][offset[a] + 2], at_b = at[b][offset[b] + 2];
+      if (at_a < 0 || at_b < 0) continue;
       for (offset[c] = -2; offset[c] <= 2; ++offset[c]) {
-        Index<3> other = grid.cell_index[cell];
-        for (int d = 0; d < 3; ++d) other[d] = grid.axes[d].cell(other[d] + offset[d]);
-        const int o = grid.cell_map.at(other);
-        if (o >= 0 && !use(o, offset)) return;
+        const std::ptrdiff_t at_c = at[c][offset[c] + 2];
+        if (at_c < 0) continue;
+        const int other = map.value[static_cast<std::size_t>(at_a + at_b + at_c)];
+        if (other >= 0 && !use(other, offset)) return;
       }
+    }
 }
 
-inline void PressurePreconditioner::find_first_columns(const ActiveGrid<3>& grid, bool wraps) {
-  first_.resize(grid.cell_index.size());
+inline void PressurePreconditioner::find_first_columns(const ActiveGrid<3>& grid) {
+  bool wraps = false;
+  for (const Axis& a : grid.axes) wraps = wraps || a.periodic;
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < grid.n_cells(); ++c) {
+    if (number_[c] < 0) continue;
     int& first = first_[number_[c]];
     first = number_[c];
     for_each_neighbour(grid, c, [&](int other, const Index<3>&) {
+      if (number_[other] < 0) return true;
       first = std::min(first, number_[other]);
       return wraps;  // else the first neighbour is the farthest
     });
@@ -158,7 +183,8 @@ void PressurePreconditioner::fill_by_boxes(const ActiveGrid<3>& grid, Add add) c
     for (std::size_t k = 0; k < 27; ++k)
       w[k] = PressureRows::times(rows_.G_inverse[grid.cell_nodes[c][k]], rows_.of_cell(c)[k]);
     for_each_neighbour(grid, c, [&](int other, const Index<3>& offset) {
-      add(c, other, detail::box_product(offset, w.data(), rows_.of_cell(other).data()));
+      if (!rows_.left_out[other])
+        add(c, other, detail::box_product(offset, w.data(), rows_.of_cell(other).data()));
       return other != c;  // those behind are entered by themselves
     });
   }
@@ -189,17 +215,19 @@ void PressurePreconditioner::fill(const ActiveGrid<3>& grid, const CellBatches& 
 }
 
 inline void PressurePreconditioner::lay_out(const ActiveGrid<3>& grid, double most_band_operations) {
-  number_across_the_thin_way(grid);
-  int periodic = 0;
-  for (const Axis& a : grid.axes) periodic += a.periodic ? 1 : 0;
-  find_first_columns(grid, periodic > 0);
+  order_across_the_thin_way(grid);
+  number_cells(std::vector<char>(order_.size(), 0));
+  find_first_columns(grid);
   double width = 0.0;
   for (int i = 0; i < grid.n_cells(); ++i) width = std::max(width, double(i - first_[i]));
   const double n = grid.n_cells();
-  by_band_ = periodic == 3 || n * width * width < most_band_operations;
+  bool wraps = true;  // in all directions
+  for (const Axis& a : grid.axes) wraps = wraps && a.periodic;
+  by_band_ = wraps || n * width * width < most_band_operations;
   if (by_band_) return;
   for (int c = 0; c < grid.n_cells(); ++c) number_[c] = c;
   band_ = {};
+  tremie::give_back(order_);
   tremie::give_back(first_);
 }
 
@@ -209,43 +237,52 @@ inline bool PressurePreconditioner::build(const ActiveGrid<3>& grid, const CellB
                                           const std::vector<double>& stiffness, double ratio) {
   // What S^-1 misses, C makes ratio times as large.
   reduction_ = std::clamp(0.3 / ratio, 5e-4, 1e-2);
-  rows_.build(grid, batches, quadrature, G_inverse, stiffness, by_band_);
+  rows_.build(grid, quadrature, G_inverse, stiffness);
+  batches.strips().make_room(forces_);
   if (!by_band_) {
     auto& S = iteration_.entries;
     S.reset(grid);
     fill(grid, batches, [&](int c, int other, float value) { S.add(grid, c, other, value); });
     return iteration_.build(grid);
   }
+  number_cells(rows_.left_out);
+  find_first_columns(grid);
   band_.reset(first_);
-  fill(grid, batches, [&](int c, int other, float value) { band_.add(number_[c], number_[other], value); });
-  return band_.factorise();
+  fill(grid, batches, [&](int c, int other, float value) {
+    if (number_[c] >= 0) band_.add(number_[c], number_[other], value);
+  });
+  return first_.empty() || band_.factorise();
 }
 
 inline void PressurePreconditioner::apply(const CellBatches& batches, const ActiveGrid<3>& grid,
                                           const Eigen::VectorXf& r, Eigen::VectorXf& z) {
-  const int n = grid.n_cells(), n_nodes = grid.n_nodes();
+  const int n_cells = grid.n_cells(), n_nodes = grid.n_nodes();
   z.resize(r.size());
   y_.resize(r.size());
-  p_.resize(n);
-  p_of_cell_.resize(n);
+  p_.resize(by_band_ ? static_cast<Eigen::Index>(first_.size()) : n_cells);
 #pragma omp parallel
   {
 #pragma omp for schedule(static)
     for (int i = 0; i < n_nodes; ++i)
       y_.segment<4>(4 * i) = PressureRows::times(rows_.G_inverse[i], r.segment<4>(4 * i));
 #pragma omp for schedule(static)
-    for (int c = 0; c < n; ++c) p_[number_[c]] = rows_.divergence(grid, c, y_);
-    if (by_band_) band_.solve_in_region(p_);
+    for (int c = 0; c < n_cells; ++c)
+      if (number_[c] >= 0) p_[number_[c]] = rows_.divergence(grid, c, y_);
+    if (by_band_ && p_.size() > 0) band_.solve_in_region(p_);
   }
   if (!by_band_) iteration_.solve(reduction_, p_);
 #pragma omp parallel
   {
-#pragma omp for schedule(static)
-    for (int c = 0; c < n; ++c) p_of_cell_[c] = p_[number_[c]];
-#pragma omp for schedule(static)
-    for (int i = 0; i < n_nodes; ++i)
+    const CellStrips& strips = batches.strips();
+    const auto give = [&](int strip, float* to) {
+      rows_.push(
+          grid, strips.first_cell(strip), strips.last_cell(strip),
+          [&](int c) { return number_[c] < 0 ? 0.0f : p_[number_[c]]; }, to);
+    };
+    strips.sweep_in_region<float>(forces_, give, [&](int i) {
       z.segment<4>(4 * i) =
-          y_.segment<4>(4 * i) - PressureRows::times(rows_.G_inverse[i], rows_.push(batches, i, p_of_cell_));
+          y_.segment<4>(4 * i) - PressureRows::times(rows_.G_inverse[i], strips.sum_at<float, 4>(i, forces_));
+    });
   }
   for (const MirrorNode<3>& m : grid.mirrors)
     z.segment<3>(4 * m.node) = m.sign.cast<float>().cwiseProduct(z.segment<3>(4 * m.of));

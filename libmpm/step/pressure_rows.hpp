@@ -20,10 +20,9 @@ class PressureRows {
   }
 
   /// `inverse_blocks`: of the nodes, zero where a wall prescribes; `stiffness`: C [J s], a cell with 0 is
-  /// left out; `by_node`: keeps the rows in the nodes' order as well, which is faster in a small body.
-  void build(const ActiveGrid<3>& grid, const CellBatches& batches, const Quadrature<ThreeD>& quadrature,
-             const std::vector<Mat<3, 3>>& inverse_blocks, const std::vector<double>& stiffness,
-             bool by_node);
+  /// left out.
+  void build(const ActiveGrid<3>& grid, const Quadrature<ThreeD>& quadrature,
+             const std::vector<Mat<3, 3>>& inverse_blocks, const std::vector<double>& stiffness);
 
   /// Divergence of the field y in cell c, four numbers a node.
   float divergence(const ActiveGrid<3>& grid, int c, const Eigen::VectorXf& y) const {
@@ -47,12 +46,28 @@ class PressureRows {
     }
     return (even + odd).sum();
   }
-  /// What the cells' pressures p push node i with.
-  Eigen::Vector4f push(const CellBatches& batches, int i, const Eigen::VectorXf& p) const {
-    const int *e = batches.entries_begin(i), *end = batches.entries_end(i);
-    if (by_node_.empty()) return add_up(e, end, p, [&](const int* at) { return of_entry(*at); });
-    const Eigen::Vector4f* of_node = &by_node_[static_cast<std::size_t>(e - batches.entries_begin(0))];
-    return add_up(e, end, p, [&](const int* at) { return of_node[at - e]; });
+  /// Adds what the pressures p(c) of the cells [first, last) push their nodes with; `to`: the nodes, four
+  /// numbers each.
+  template <class Pressure>
+  void push(const ActiveGrid<3>& grid, int first, int last, Pressure p, float* to) const {
+    // Going up a column of cells: what the middle and the top controls have been given so far.
+    Eigen::Vector4f middle[9], top[9];
+    for (int c = first; c < last; ++c) {
+      const auto& nodes = grid.cell_nodes[c];
+      const Eigen::Vector4f* row = of_cell(c).data();
+      const float pressure = p(c);
+      const auto at = [&](int k) { return Eigen::Map<Eigen::Vector4f>(to + 4 * std::ptrdiff_t{nodes[k]}); };
+      if (c == first || !follows(grid, c))
+        for (int j = 0; j < 9; ++j) middle[j].setZero(), top[j].setZero();
+#pragma GCC unroll 9
+      for (int j = 0; j < 9; ++j) {
+        at(3 * j) += middle[j] + pressure * row[3 * j];
+        middle[j] = top[j] + pressure * row[3 * j + 1];
+        top[j] = pressure * row[3 * j + 2];
+      }
+      if (c + 1 == last || !follows(grid, c + 1))
+        for (int j = 0; j < 9; ++j) at(3 * j + 1) += middle[j], at(3 * j + 2) += top[j];
+    }
   }
   /// The rows of a cell, one a local node; zero in cells left out.
   using CellRows = std::array<Eigen::Vector4f, 27>;
@@ -73,22 +88,18 @@ class PressureRows {
   std::vector<char> left_out;
 
  private:
-  /// In two sums that do not wait for each other.
-  template <class Row>
-  static Eigen::Vector4f add_up(const int* e, const int* end, const Eigen::VectorXf& p, Row row) {
-    Eigen::Vector4f sum = Eigen::Vector4f::Zero(), other = sum;
-    for (; e + 1 < end; e += 2)
-      sum += p[CellBatches::cell_of(e[0])] * row(e), other += p[CellBatches::cell_of(e[1])] * row(e + 1);
-    if (e != end) sum += p[CellBatches::cell_of(*e)] * row(e);
-    return sum + other;
+  /// Whether cell c is the next of a column of cells: its first two controls of a line are the last two of
+  /// the cell before.
+  static bool follows(const ActiveGrid<3>& grid, int c) {
+    const auto &nodes = grid.cell_nodes[c], &before = grid.cell_nodes[c - 1];
+    return nodes[0] == before[1] && nodes[1] == before[2];
   }
   void number_rows(const ActiveGrid<3>& grid, const Quadrature<ThreeD>& quadrature);
   void mirror(const ActiveGrid<3>& grid, int c, CellRows& row) const;
 
-  std::vector<CellRows> rows_;            ///< those of full cells once a kind, of the others a cell each
-  std::vector<int> rows_of_;              ///< of each cell: its place there
-  std::vector<int> cell_of_rows_;         ///< the last cell that has each of them
-  std::vector<Eigen::Vector4f> by_node_;  ///< entry by entry, if asked for
+  std::vector<CellRows> rows_;     ///< those of full cells once a kind, of the others a cell each
+  std::vector<int> rows_of_;       ///< of each cell: its place there
+  std::vector<int> cell_of_rows_;  ///< the last cell that has each of them
 };
 
 inline void PressureRows::number_rows(const ActiveGrid<3>& grid, const Quadrature<ThreeD>& quadrature) {
@@ -108,10 +119,9 @@ inline void PressureRows::number_rows(const ActiveGrid<3>& grid, const Quadratur
   make_room(rows_, static_cast<std::size_t>(n));
 }
 
-inline void PressureRows::build(const ActiveGrid<3>& grid, const CellBatches& batches,
-                                const Quadrature<ThreeD>& quadrature,
+inline void PressureRows::build(const ActiveGrid<3>& grid, const Quadrature<ThreeD>& quadrature,
                                 const std::vector<Mat<3, 3>>& inverse_blocks,
-                                const std::vector<double>& stiffness, bool by_node) {
+                                const std::vector<double>& stiffness) {
   make_room(G_inverse, inverse_blocks.size());
 #pragma omp parallel for schedule(static)
   for (std::size_t i = 0; i < G_inverse.size(); ++i)
@@ -134,11 +144,6 @@ inline void PressureRows::build(const ActiveGrid<3>& grid, const CellBatches& ba
       rows_[r][k] << (left_out[c] ? Vec<3>(Vec<3>::Zero()) : b[k]).template cast<float>(), 0.0f;
     mirror(grid, c, rows_[r]);
   }
-  make_room(by_node_, by_node ? 27 * grid.cell_index.size() : 0);
-#pragma omp parallel for schedule(static)
-  for (int i = 0; i < (by_node ? grid.n_nodes() : 0); ++i)
-    for (const int* e = batches.entries_begin(i); e != batches.entries_end(i); ++e)
-      by_node_[e - batches.entries_begin(0)] = of_entry(*e);
 }
 
 /// A cell's rows at nodes behind a plane of symmetry join those of the nodes before it, which it sees too.

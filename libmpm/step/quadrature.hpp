@@ -92,11 +92,12 @@ struct Quadrature {
     if constexpr (D < 3) {
       return b[c];
     } else {
-      DivergenceRows sum;
-      const auto flat = [](auto& rows) { return Eigen::Map<Vec<3 * n_local>>(rows[0].data()); };
-      flat(sum).setZero();
-      for (int k = 0; k < n_places; ++k)
-        flat(sum) += V[c][k] / V_cell[c] * Eigen::Map<const Vec<3 * n_local>>(slopes[c][k][0].data());
+      const auto of_place = [&](int k) {
+        return V[c][k] / V_cell[c] * Eigen::Map<const Vec<3 * n_local>>(slopes[c][k][0].data());
+      };
+      DivergenceRows sum;  // at once: it stays in registers
+      Eigen::Map<Vec<3 * n_local>>(sum[0].data()) = of_place(0) + of_place(1) + of_place(2) + of_place(3) +
+                                                    of_place(4) + of_place(5) + of_place(6) + of_place(7);
       return sum;
     }
   }

@@ -27,28 +27,44 @@ void add_bound_products(const std::vector<BoundPoint<3>>& bound,
   }
 }
 
-/// Adds what closed contacts with a moving wall do to the field x, four numbers a node.
-inline void add_contact_products(const std::vector<ContactPoint<3>>& contact,
-                                 const std::vector<std::array<int, 27>>& cell_nodes, const Eigen::VectorXf& x,
-                                 Eigen::VectorXf& out) {
-  std::vector<double> push(contact.size());
-#pragma omp parallel for schedule(static)
-  for (std::size_t p = 0; p < contact.size(); ++p) {
-    const ContactPoint<3>& c = contact[p];
-    if (!c.active) continue;
-    const auto N = c.shape();
-    double u = 0.0;
-    for (int k = 0; k < 27; ++k)
-      u += N[k] * c.normal.dot(x.segment<3>(4 * cell_nodes[c.cell][k]).cast<double>());
-    push[p] = c.stiffness * u;
-  }
-  for (std::size_t p = 0; p < contact.size(); ++p) {
-    const ContactPoint<3>& c = contact[p];
-    if (!c.active) continue;
-    const auto N = c.shape();
-    for (int k = 0; k < 27; ++k)
-      out.segment<3>(4 * cell_nodes[c.cell][k]) += (push[p] * N[k] * c.normal).cast<float>();
-  }
+/// Adds the force f at a contact to its nodes; four numbers a node.
+template <class Scalar>
+void add_at_contact(const ContactPoint<3>& c, const std::array<int, 27>& nodes, double f, Scalar* to) {
+  using Four = Eigen::Matrix<Scalar, 4, 1>;
+  Four force;
+  force << (f * c.normal).cast<Scalar>(), Scalar(0);
+  for (std::size_t i = 0, k = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) {
+      const Four line = static_cast<Scalar>(c.one[0][i] * c.one[1][j]) * force;
+      for (std::size_t l = 0; l < 3; ++l, ++k)
+        Eigen::Map<Four>(to + 4 * static_cast<std::ptrdiff_t>(nodes[k])) +=
+            static_cast<Scalar>(c.one[2][l]) * line;
+    }
+}
+
+/// Normal velocity at a contact of the field x, four numbers a node.
+inline double normal_velocity(const ContactPoint<3>& c, const std::array<int, 27>& nodes, const float* x) {
+  Eigen::Vector4f u = Eigen::Vector4f::Zero();
+  for (std::size_t i = 0, k = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) {
+      Eigen::Vector4f line = Eigen::Vector4f::Zero();
+      for (std::size_t l = 0; l < 3; ++l, ++k)
+        line += static_cast<float>(c.one[2][l]) *
+                Eigen::Map<const Eigen::Vector4f>(x + 4 * static_cast<std::ptrdiff_t>(nodes[k]));
+      u += static_cast<float>(c.one[0][i] * c.one[1][j]) * line;
+    }
+  return c.normal.dot(u.head<3>().cast<double>());
+}
+
+/// Calls use(contact) for the closed ones with a moving wall in a strip of cells; they are in the cells'
+/// order.
+template <class Use>
+void for_each_contact(const std::vector<ContactPoint<3>>& contact, const CellStrips& strips, int strip,
+                      Use use) {
+  auto c = std::lower_bound(contact.begin(), contact.end(), strips.first_cell(strip),
+                            [](const ContactPoint<3>& one, int cell) { return one.cell < cell; });
+  for (; c != contact.end() && c->cell < strips.last_cell(strip); ++c)
+    if (c->active) use(*c);
 }
 
 inline void add_bound_blocks(const std::vector<BoundPoint<3>>& bound,
@@ -134,7 +150,7 @@ class SpaceSystem {
                    std::vector<double>& of_cell, double& mean) const;
 
   CellBatches batches;
-  CellForces forces;                      ///< room for what cells give their nodes in a pass over them
+  StripRoom forces;                       ///< room for what cells give their nodes in a pass over them
   PressurePreconditioner preconditioner;  ///< of the last prepare(); free for others between solves
   long long products = 0;
 
@@ -158,7 +174,7 @@ inline void SpaceSystem::set_up(YieldProblem<ThreeD>& problem, double most_band_
   batches.lay_out(problem.grid);
   preconditioner.lay_out(problem.grid, most_band_operations);
   make_room(weights_, static_cast<std::size_t>(batches.n_batches()));
-  batches.make_room(forces);
+  batches.strips().make_room(forces);
 #pragma omp parallel for schedule(static)
   for (int b = 0; b < batches.n_batches(); ++b) {
     const BatchVolumes<double> own = batch_volumes(quad, b);
@@ -173,6 +189,7 @@ inline bool SpaceSystem::prepare(YieldProblem<ThreeD>& problem, double eta) {
   double trace = 0.0;
   for (double m : problem.nodes.mass) trace = std::max(trace, 1e-12 * m);
   Eigen::VectorXd diagonal(3 * n);
+#pragma omp parallel for schedule(static)
   for (int i = 0; i < n; ++i)
     diagonal.segment<3>(3 * i).setConstant(std::max(trace, problem.nodes.mass[i]) / problem.dt +
                                            (problem.drag.empty() ? 0.0 : problem.drag[i]));
@@ -184,13 +201,15 @@ inline bool SpaceSystem::prepare(YieldProblem<ThreeD>& problem, double eta) {
     Diagonal to{diagonal};
     add_friction_stiffness_admm<3>(problem.grid, V, eta, problem.friction, to);
   }
-  free_.setZero(4 * n);
-  for (int i = 0; i < n; ++i)
-    for (int d = 0; d < 3; ++d) free_[4 * i + d] = problem.fixed[3 * i + d] ? 0.0f : 1.0f;
-  free_diagonal_.setZero(4 * n);
-  for (int i = 0; i < n; ++i)
-    free_diagonal_.segment<3>(4 * i) =
-        free_.segment<3>(4 * i).cwiseProduct(diagonal.segment<3>(3 * i).cast<float>());
+  free_.resize(4 * n), free_diagonal_.resize(4 * n);
+#pragma omp parallel for schedule(static)
+  for (int i = 0; i < n; ++i) {
+    auto free = free_.segment<4>(4 * i);
+    for (int d = 0; d < 3; ++d) free[d] = problem.fixed[3 * i + d] ? 0.0f : 1.0f;
+    free[3] = 0.0f;
+    free_diagonal_.segment<4>(4 * i) << free.head<3>().cwiseProduct(diagonal.segment<3>(3 * i).cast<float>()),
+        0.0f;
+  }
   // What a product gives a node behind a plane of symmetry is kept until it is mirrored.
   for (const MirrorNode<3>& m : problem.grid.mirrors)
     free_.segment<4>(4 * m.node) = free_.segment<4>(4 * m.of);
@@ -251,7 +270,7 @@ inline void SpaceSystem::multiply(const YieldProblem<ThreeD>& problem, const Eig
   const auto bulk = static_cast<float>(problem.K * problem.dt), eta = static_cast<float>(eta_);
   ++products;
   out.resize(x.size());
-  const auto give = [&](int b) {
+  const auto give_batch = [&](int b, float* to) {
     PlaceTensors<float> G;
     batches.gradients(b, x.data(), G);
     const BatchVolumes<float>& v = weights_[b];
@@ -265,19 +284,25 @@ inline void SpaceSystem::multiply(const YieldProblem<ThreeD>& problem, const Eig
       for (Lanes<float>& s : q) s *= w;
       stress_at<float>(q, v.V[k] * mean, k, G);
     }
-    batches.scatter(b, G, forces);
+    batches.scatter(b, G, to);
+  };
+  const auto give = [&](int strip, float* to) {
+    for (int b = batches.first_batch(strip); b < batches.last_batch(strip); ++b) give_batch(b, to);
+    for_each_contact(problem.contact, batches.strips(), strip, [&](const ContactPoint<3>& c) {
+      const auto& nodes = problem.grid.cell_nodes[c.cell];
+      add_at_contact(c, nodes, c.stiffness * normal_velocity(c, nodes, x.data()), to);
+    });
   };
 #pragma omp parallel
-  batches.sweep_in_region(give, [&](int i) {
-    out.segment<4>(4 * i) = free_diagonal_.segment<4>(4 * i).cwiseProduct(x.segment<4>(4 * i)) +
-                            free_.segment<4>(4 * i).cwiseProduct(batches.gathered<float>(i, forces));
+  batches.strips().sweep_in_region<float>(forces, give, [&](int i) {
+    out.segment<4>(4 * i) =
+        free_diagonal_.segment<4>(4 * i).cwiseProduct(x.segment<4>(4 * i)) +
+        free_.segment<4>(4 * i).cwiseProduct(batches.strips().sum_at<float, 4>(i, forces));
   });
-  if (problem.contact.empty() && problem.bound.empty()) return fold_mirrors<3, 4>(problem.grid, out);
-  add_contact_products(problem.contact, problem.grid.cell_nodes, x, out);
-  add_bound_products(problem.bound, problem.grid.cell_nodes, x, out);
-  for_each_block(out.size(), [&](Eigen::Index i, Eigen::Index size) {
-    out.segment(i, size) = out.segment(i, size).cwiseProduct(free_.segment(i, size));
-  });
+  if (!problem.bound.empty()) {
+    add_bound_products(problem.bound, problem.grid.cell_nodes, x, out);
+    out = out.cwiseProduct(free_);
+  }
   fold_mirrors<3, 4>(problem.grid, out);
 }
 

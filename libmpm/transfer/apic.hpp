@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "libmpm/grid/active_grid.hpp"
+#include "libmpm/grid/cell_strips.hpp"
 #include "libmpm/points/points.hpp"
 #include "libmpm/space/motion.hpp"
 #include "libmpm/transfer/space_stencil.hpp"
@@ -134,8 +135,7 @@ void cell_momenta(const ActiveGrid<D>& grid, const Points<D>& points, int c,
     }
   }
 }
-inline void cell_momenta(const ActiveGrid<3>& grid, const Points<3>& points, int c,
-                         std::array<Vec<4>, 27>& local) {
+inline CellQuads cell_momenta(const ActiveGrid<3>& grid, const Points<3>& points, int c) {
   const auto xi = control_positions<3>(grid.axes, grid.cell_index[c]);
   CellQuads sum{};
   for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
@@ -146,38 +146,12 @@ inline void cell_momenta(const ActiveGrid<3>& grid, const Points<3>& points, int
     for (int d = 0; d < 3; ++d) slope[d] = m * to_quad(points.C[p].col(d));
     spread(st.with_arms(), m * to_quad(points.v[p], 1.0), slope, sum);
   }
-  for (std::size_t k = 0; k < 27; ++k) local[k] << to_vec(sum[k]), sum[k][3];
+  return sum;
 }
 
-/// What the controls of a cell say of the place of a point: velocity and, column by column, its moments about
-/// it.
+/// Masses, and momenta in the place of velocities, that the points give the nodes: cell by cell.
 template <int D>
-void velocity_at(const ActiveGrid<D>& grid, const PointStencil<D>& st, const std::vector<Vec<D>>& v, int c,
-                 Vec<D>& vp, Mat<D, D>& moment) {
-  vp.setZero(), moment.setZero();
-  for (int k = 0; k < power(3, D); ++k) {
-    const Index<D> o = local_offset<D>(k);
-    const Vec<D> Nv = st.N(o) * v[grid.cell_nodes[c][k]];
-    vp += Nv;
-    moment += Nv * st.arms(o).transpose();
-  }
-}
-inline void velocity_at(const ActiveGrid<3>& grid, const PointStencil<3>& st, const std::vector<Vec<3>>& v,
-                        int c, Vec<3>& vp, Mat<3, 3>& moment) {
-  Quad value;
-  std::array<Quad, 3> slope;
-  contract(of_cell(grid, v, c), st.with_arms(), value, slope);
-  vp = to_vec(value);
-  for (int d = 0; d < 3; ++d) moment.col(d) = to_vec(slope[d]);
-}
-
-}  // namespace detail
-
-/// Point to grid: nodal masses and velocities, momentum and angular momentum kept. Cells are taken some
-/// thousand at a time, and the nodes add up theirs in the order of the cells: the sums do not depend on the
-/// threads.
-template <int D>
-void point_to_grid(const ActiveGrid<D>& grid, const Points<D>& points, NodalState<D>& nodes) {
+void add_momenta(const ActiveGrid<D>& grid, const Points<D>& points, NodalState<D>& nodes) {
   constexpr int n_local = power(3, D), at_a_time = 4096;
   nodes.mass.assign(grid.node_index.size(), 0.0);
   nodes.v.assign(grid.node_index.size(), Vec<D>::Zero());
@@ -186,7 +160,7 @@ void point_to_grid(const ActiveGrid<D>& grid, const Points<D>& points, NodalStat
   for (int first = 0; first < grid.n_cells(); first += at_a_time) {
     const int last = std::min(first + at_a_time, grid.n_cells());
 #pragma omp parallel for schedule(static)
-    for (int c = first; c < last; ++c) detail::cell_momenta(grid, points, c, local[c - first]);
+    for (int c = first; c < last; ++c) cell_momenta(grid, points, c, local[c - first]);
     for (int c = first; c < last; ++c)
       for (int k = 0; k < n_local; ++k) {
         const int i = grid.cell_nodes[c][k];
@@ -194,8 +168,72 @@ void point_to_grid(const ActiveGrid<D>& grid, const Points<D>& points, NodalStat
         nodes.mass[i] += local[c - first][k][D];
       }
   }
+}
+/// In space in strips of cells.
+inline void add_momenta(const ActiveGrid<3>& grid, const Points<3>& points, NodalState<3>& nodes) {
+  make_room(nodes.mass, grid.node_index.size());
+  make_room(nodes.v, grid.node_index.size());
+  CellStrips strips;
+  strips.lay_out(grid);
+  StripRoom room;
+  strips.make_room(room);
+  const auto give = [&](int strip, double* to) {
+    for (int c = strips.first_cell(strip); c < strips.last_cell(strip); ++c) {
+      const CellQuads momenta = cell_momenta(grid, points, c);
+      for (std::size_t k = 0; k < 27; ++k)
+        add_quad(momenta[k], to + 4 * std::ptrdiff_t{grid.cell_nodes[c][k]});
+    }
+  };
+#pragma omp parallel
+  strips.sweep_in_region<double>(room, give, [&](int i) {
+    const Vec<4> sum = strips.sum_at<double, 4>(i, room);
+    nodes.v[i] = sum.head<3>();
+    nodes.mass[i] = sum[3];
+  });
+}
+
+/// Nodal vectors of the controls of a cell.
+template <int D>
+std::array<Vec<D>, power(3, D)> at_controls(const ActiveGrid<D>& grid, const std::vector<Vec<D>>& v, int c) {
+  std::array<Vec<D>, power(3, D)> u;
+  for (std::size_t k = 0; k < u.size(); ++k) u[k] = v[grid.cell_nodes[c][k]];
+  return u;
+}
+inline CellQuads at_controls(const ActiveGrid<3>& grid, const std::vector<Vec<3>>& v, int c) {
+  return of_cell(grid, v, c);
+}
+
+/// What the controls of a cell say of the place of a point: velocity and, column by column, its moments about
+/// it.
+template <int D>
+void velocity_at(const std::array<Vec<D>, power(3, D)>& u, const PointStencil<D>& st, Vec<D>& vp,
+                 Mat<D, D>& moment) {
+  vp.setZero(), moment.setZero();
+  for (int k = 0; k < power(3, D); ++k) {
+    const Index<D> o = local_offset<D>(k);
+    const Vec<D> Nv = st.N(o) * u[k];
+    vp += Nv;
+    moment += Nv * st.arms(o).transpose();
+  }
+}
+inline void velocity_at(const CellQuads& u, const PointStencil<3>& st, Vec<3>& vp, Mat<3, 3>& moment) {
+  Quad value;
+  std::array<Quad, 3> slope;
+  contract(u, st.with_arms(), value, slope);
+  vp = to_vec(value);
+  for (int d = 0; d < 3; ++d) moment.col(d) = to_vec(slope[d]);
+}
+
+}  // namespace detail
+
+/// Point to grid: nodal masses and velocities, momentum and angular momentum kept. The sums do not depend on
+/// the threads.
+template <int D>
+void point_to_grid(const ActiveGrid<D>& grid, const Points<D>& points, NodalState<D>& nodes) {
+  detail::add_momenta(grid, points, nodes);
   for (const MirrorNode<D>& m : grid.mirrors) nodes.v[m.of] += m.sign.cwiseProduct(nodes.v[m.node]);
   fold_mirrors<D>(grid, nodes.mass);
+#pragma omp parallel for schedule(static)
   for (int i = 0; i < grid.n_nodes(); ++i)
     if (nodes.mass[i] > 0.0) nodes.v[i] /= nodes.mass[i];
   fill_mirrors<D>(grid, nodes.v);
@@ -216,13 +254,14 @@ void grid_to_point(const ActiveGrid<D>& grid, const std::vector<Vec<D>>& v, cons
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < grid.n_cells(); ++c) {
     const auto xi = detail::control_positions<D>(grid.axes, grid.cell_index[c]);
+    const auto u = detail::at_controls(grid, v, c);
     for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
       const int p = grid.order[i];
       const detail::PointStencil<D> st(grid.axes, grid.cell_index[c], xi, points.x[p]);
       Vec<D> vp, vp_old = Vec<D>::Zero();
       Mat<D, D> moment, unused;
-      detail::velocity_at(grid, st, v, c, vp, moment);
-      if (transfer.flip) detail::velocity_at(grid, st, v_old, c, vp_old, unused);
+      detail::velocity_at(u, st, vp, moment);
+      if (transfer.flip) detail::velocity_at(detail::at_controls(grid, v_old, c), st, vp_old, unused);
       points.C[p] =
           transfer.flip ? Mat<D, D>(Mat<D, D>::Zero()) : Mat<D, D>(moment * st.inverse_inertia.asDiagonal());
       points.v[p] = transfer.flip ? Vec<D>(vp + transfer.flip_blend * (points.v[p] - vp_old)) : vp;
@@ -240,12 +279,13 @@ void affine_from_grid(const ActiveGrid<D>& grid, const std::vector<Vec<D>>& v, P
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < grid.n_cells(); ++c) {
     const auto xi = detail::control_positions<D>(grid.axes, grid.cell_index[c]);
+    const auto u = detail::at_controls(grid, v, c);
     for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
       const int p = grid.order[i];
       const detail::PointStencil<D> st(grid.axes, grid.cell_index[c], xi, points.x[p]);
       Vec<D> vp;
       Mat<D, D> moment;
-      detail::velocity_at(grid, st, v, c, vp, moment);
+      detail::velocity_at(u, st, vp, moment);
       points.C[p] = moment * st.inverse_inertia.asDiagonal();
     }
   }
@@ -260,13 +300,14 @@ void shear_rate_at_points(const ActiveGrid<Space::dim>& grid, const std::vector<
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < grid.n_cells(); ++c) {
     const auto xi = detail::control_positions<D>(grid.axes, grid.cell_index[c]);
+    const auto u = detail::at_controls(grid, v, c);
     for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
       const int p = grid.order[i];
       const detail::PointStencil<D> st(grid.axes, grid.cell_index[c], xi, points.x[p]);
       if constexpr (D == 3) {
         detail::Quad value;
         std::array<detail::Quad, 3> slope;
-        detail::contract(detail::of_cell(grid, v, c), st.with_slopes(), value, slope);
+        detail::contract(u, st.with_slopes(), value, slope);
         Mat<3, 3> L;
         for (int d = 0; d < 3; ++d) L.col(d) = detail::to_vec(slope[d]);
         const Mat<3, 3> rate = L + L.transpose();  // 2 D
@@ -275,7 +316,7 @@ void shear_rate_at_points(const ActiveGrid<Space::dim>& grid, const std::vector<
         Vec<Space::n_strain> q = Vec<Space::n_strain>::Zero();
         for (int k = 0; k < power(3, D); ++k) {
           const Index<D> o = local_offset<D>(k);
-          q += Space::strain_rows(st.N(o), st.gradient(o), points.x[p]) * v[grid.cell_nodes[c][k]];
+          q += Space::strain_rows(st.N(o), st.gradient(o), points.x[p]) * u[k];
         }
         gamma_dot[p] = q.norm();
       }

@@ -60,11 +60,12 @@ CellFill cell_fill(const YieldProblem<Space>& problem, const Points<Space::dim>&
 template <int D>
 std::vector<char> held_by_walls(const ActiveGrid<D>& grid) {
   std::vector<char> fixed(grid.node_index.size() * D, 0);
-  for (int i = 0; i < grid.n_nodes(); ++i)
+  for (int i = 0; i < grid.n_nodes(); ++i) {
+    const bool in_block = !grid.blocks.empty() && block_of_node<D>(grid, grid.node_index[i]);
     for (int d = 0; d < D; ++d)
-      fixed[i * D + d] = grid.axes[d].on_low_wall(grid.node_index[i][d]) ||
-                         grid.axes[d].on_high_wall(grid.node_index[i][d]) ||
-                         block_of_node<D>(grid, grid.node_index[i]);
+      fixed[i * D + d] = in_block || grid.axes[d].on_low_wall(grid.node_index[i][d]) ||
+                         grid.axes[d].on_high_wall(grid.node_index[i][d]);
+  }
   for (const MirrorNode<D>& m : grid.mirrors) std::fill_n(&fixed[m.node * D], D, 1);
   return fixed;
 }
@@ -118,21 +119,44 @@ std::vector<Vec<Space::dim>> even_out(const YieldProblem<Space>& problem, const 
   return u;
 }
 
+namespace detail {
+
+/// Value of a nodal field in cell c, of which u are the controls, at the local coordinates s.
+template <int D>
+Vec<D> value_at(const ActiveGrid<D>& grid, int c, const std::array<Vec<D>, power(3, D)>& u, const Vec<D>& s) {
+  const Stencil<D> st = stencil<D>(grid.axes, grid.cell_index[c], s);
+  Vec<D> value = Vec<D>::Zero();
+  for (int k = 0; k < power(3, D); ++k) value += st.N[k] * u[k];
+  return value;
+}
+inline Vec<3> value_at(const ActiveGrid<3>& grid, int c, const CellQuads& u, const Vec<3>& s) {
+  std::array<std::array<double, 3>, 3> N;
+  for (int d = 0; d < 3; ++d) N[d] = splines(grid.axes[d], grid.cell_index[c][d], s[d]).N;
+  Quad value = {};
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) {
+      const Quad* line = &u[9 * i + 3 * j];
+      value += N[0][i] * N[1][j] * (N[2][0] * line[0] + N[2][1] * line[1] + N[2][2] * line[2]);
+    }
+  return to_vec(value);
+}
+
+}  // namespace detail
+
 /// Moves the points by the displacements u; their velocities follow the field they move in.
 template <int D, class Move = StraightAhead>
 void shift_points(const ActiveGrid<D>& grid, const std::vector<Vec<D>>& u, Points<D>& points,
                   const Move& motion = {}) {
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < grid.n_cells(); ++c) {
+    const auto of_cell = detail::at_controls(grid, u, c);
     for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
       const int p = grid.order[i];
       // The point may have left its cell by now; beyond it the cell's polynomials run away with the square of
       // the distance.
       const Vec<D> s =
           local_coordinates<D>(grid.axes, grid.cell_index[c], points.x[p]).cwiseMax(0.0).cwiseMin(1.0);
-      const Stencil<D> st = stencil<D>(grid.axes, grid.cell_index[c], s);
-      Vec<D> shift = Vec<D>::Zero();
-      for (int k = 0; k < power(3, D); ++k) shift += st.N[k] * u[grid.cell_nodes[c][k]];
+      const Vec<D> shift = detail::value_at(grid, c, of_cell, s);
       points.v[p] += points.C[p] * shift;
       const Vec<D> from = points.x[p];
       motion.shift(points, p, shift);

@@ -81,6 +81,7 @@ inline std::vector<Vec<3>> even_out_in_space(const YieldProblem<ThreeD>& problem
   for (BoundPoint<3>& wall : matrix.bound) wall.stiffness *= problem.dt;
 
   std::vector<Mat<3, 3>> G(grid.node_index.size());
+#pragma omp parallel for schedule(static)
   for (int i = 0; i < grid.n_nodes(); ++i) G[i] = matrix.mass[i] * Mat<3, 3>::Identity();
   add_bound_blocks(matrix.bound, grid.cell_nodes, G);
   fold_mirrors(grid, G);

@@ -177,16 +177,17 @@ TEST(SpaceSolver, GradientsAndTheirAdjoint) {
   activate(body.grid, body.points);
   CellBatches batches;
   batches.lay_out(body.grid);
-  CellForces forces;
-  batches.make_room(forces);
+  const CellStrips& strips = batches.strips();
+  StripRoom forces;
+  strips.make_room(forces);
   const int n = body.grid.n_nodes();
   Eigen::VectorXd v(3 * n), sum = Eigen::VectorXd::Zero(3 * n);
   for (int i = 0; i < 3 * n; ++i) v[i] = std::sin(1.7 * i);
   double worst = 0.0, work_on_gradients = 0.0;
-  for (int b = 0; b < batches.n_batches(); ++b) {
+  const auto give_batch = [&](int b, double* to) {
     PlaceTensors<double> G;
     batches.gradients(b, v.data(), G);
-    batches.scatter(b, G, forces);
+    batches.scatter(b, G, to);
     for (int c = b * batch_size; c < std::min((b + 1) * batch_size, body.grid.n_cells()); ++c)
       for (int k = 0; k < 8; ++k) {
         const Stencil<3> st = stencil<3>(body.grid.axes, body.grid.cell_index[c], gauss_place<3>(k));
@@ -197,8 +198,12 @@ TEST(SpaceSolver, GradientsAndTheirAdjoint) {
             worst = std::max(worst, std::abs(G.g[d][e][k][c % batch_size] - L(d, e)));
         work_on_gradients += L.squaredNorm();
       }
-  }
-  for (int i = 0; i < n; ++i) sum.segment<3>(3 * i) = batches.gathered<double>(i, forces);
+  };
+  const auto give = [&](int strip, double* to) {
+    for (int b = batches.first_batch(strip); b < batches.last_batch(strip); ++b) give_batch(b, to);
+  };
+  strips.sweep_in_region<double>(forces, give,
+                                 [&](int i) { sum.segment<3>(3 * i) = strips.sum_at<double, 3>(i, forces); });
   EXPECT_LE(worst, 1e-11 * 100.0);  // gradients are of the order 1/h = 100 1/s
   EXPECT_NEAR(sum.dot(v) / work_on_gradients, 1.0, 1e-12);
 }
