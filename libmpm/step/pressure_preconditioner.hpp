@@ -201,7 +201,8 @@ void PressurePreconditioner::fill_by_nodes(const ActiveGrid<3>& grid, const Cell
       const int i = grid.cell_nodes[c][k];
       const Eigen::Vector4f w = PressureRows::times(rows_.G_inverse[i], rows_.of_cell(c)[k]);
       for (const int* e = batches.entries_begin(i); e != batches.entries_end(i); ++e)
-        if (const int other = CellBatches::cell_of(*e); number_[other] <= number_[c])
+        if (const int other = CellBatches::cell_of(*e);
+            !rows_.left_out[other] && number_[other] <= number_[c])
           add(c, other, w.dot(rows_.of_entry(*e)));
     }
   }
