@@ -81,7 +81,7 @@ class CellStrips {
   }
 
  private:
-  static constexpr int least_cells = 256, most_strips = 64;
+  static constexpr int least_cells = 256, most_strips = 16;
   /// Cells [first_cell, last_cell), and the nodes [first_node, last_node) around them.
   struct Strip {
     int first_cell, last_cell, first_node, last_node;

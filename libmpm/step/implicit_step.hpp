@@ -70,7 +70,7 @@ StepReport implicit_step(Body<Space>& body, const Law& law, const StepSettings& 
   const bool even = Space::advects && settings.even_out.on, measured = settings.time_error > 0.0;
   const std::vector<Vec<D>> u =
       even ? detail::evening_shift(problem, settings, gamma_dot, body) : std::vector<Vec<D>>{};
-  if constexpr (D == 3) body.space_system.preconditioner.give_back();
+  if constexpr (D == 3) body.space_system.give_back();
   const std::vector<Vec<D>> v_before = measured ? body.points.v : std::vector<Vec<D>>{};
   grid_to_point(body.grid, body.v, v_old, settings.transfer, Space::advects ? dt : 0.0, body.points,
                 body.motion);

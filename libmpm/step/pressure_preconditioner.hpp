@@ -35,16 +35,16 @@ class PressurePreconditioner {
   /// Decides whether S is to be factorised: up to so many operations. Before build().
   void lay_out(const ActiveGrid<3>& grid, double most_band_operations);
   bool factorised() const { return by_band_; }
-  /// Gives back the room of a large body until the next build().
-  void give_back() {
-    if (by_band_) return;
+  /// Gives back the room of a large body until the next build(); false if it is none.
+  bool give_back() {
+    if (by_band_) return false;
     rows_ = {};
     iteration_ = {};
-    forces_ = {};
+    return true;
   }
   const PressureRows& rows() const { return rows_; }
-  /// z = P^-1 r, four numbers a node.
-  void apply(const CellBatches& batches, const ActiveGrid<3>& grid, const Eigen::VectorXf& r,
+  /// z = P^-1 r, four numbers a node; `room`: of the batches' strips.
+  void apply(const CellBatches& batches, const ActiveGrid<3>& grid, const Eigen::VectorXf& r, StripRoom& room,
              Eigen::VectorXf& z);
 
  private:
@@ -68,7 +68,6 @@ class PressurePreconditioner {
   PressureRows rows_;
   PressureIteration iteration_;  ///< where S is not factorised
   Eigen::VectorXf y_, p_;
-  StripRoom forces_;        ///< what the pressures give the nodes
   std::vector<int> first_;  ///< of each row of the band: its first column
   TwoEndedCholesky<float> band_;
 };
@@ -239,7 +238,6 @@ inline bool PressurePreconditioner::build(const ActiveGrid<3>& grid, const CellB
   // What S^-1 misses, C makes ratio times as large.
   reduction_ = std::clamp(0.3 / ratio, 5e-4, 1e-2);
   rows_.build(grid, quadrature, G_inverse, stiffness);
-  batches.strips().make_room(forces_);
   if (!by_band_) {
     auto& S = iteration_.entries;
     S.reset(grid);
@@ -256,7 +254,7 @@ inline bool PressurePreconditioner::build(const ActiveGrid<3>& grid, const CellB
 }
 
 inline void PressurePreconditioner::apply(const CellBatches& batches, const ActiveGrid<3>& grid,
-                                          const Eigen::VectorXf& r, Eigen::VectorXf& z) {
+                                          const Eigen::VectorXf& r, StripRoom& room, Eigen::VectorXf& z) {
   const int n_cells = grid.n_cells(), n_nodes = grid.n_nodes();
   z.resize(r.size());
   y_.resize(r.size());
@@ -280,9 +278,9 @@ inline void PressurePreconditioner::apply(const CellBatches& batches, const Acti
           grid, strips.first_cell(strip), strips.last_cell(strip),
           [&](int c) { return number_[c] < 0 ? 0.0f : p_[number_[c]]; }, to);
     };
-    strips.sweep_in_region<float>(forces_, give, [&](int i) {
+    strips.sweep_in_region<float>(room, give, [&](int i) {
       z.segment<4>(4 * i) =
-          y_.segment<4>(4 * i) - PressureRows::times(rows_.G_inverse[i], strips.sum_at<float, 4>(i, forces_));
+          y_.segment<4>(4 * i) - PressureRows::times(rows_.G_inverse[i], strips.sum_at<float, 4>(i, room));
     });
   }
   for (const MirrorNode<3>& m : grid.mirrors)

@@ -149,8 +149,17 @@ class SpaceSystem {
   void shear_rates(const YieldProblem<ThreeD>& problem, const std::vector<Vec<3>>& v,
                    std::vector<double>& of_cell, double& mean) const;
 
+  /// Gives back the room of a large body until the next set_up().
+  void give_back() {
+    if (!preconditioner.give_back()) return;
+    batches = {};
+    forces = {};
+    tremie::give_back(weights_);
+    free_.resize(0), free_diagonal_.resize(0);
+  }
+
   CellBatches batches;
-  StripRoom forces;                       ///< room for what cells give their nodes in a pass over them
+  StripRoom forces;                       ///< room for what strips of cells give their nodes
   PressurePreconditioner preconditioner;  ///< of the last prepare(); free for others between solves
   long long products = 0;
 
@@ -315,7 +324,7 @@ inline double SpaceSystem::solve(const YieldProblem<ThreeD>& problem, const Eige
   const double left =
       conjugate_gradients([&](const Eigen::VectorXf& p, Eigen::VectorXf& Ap) { multiply(problem, p, Ap); },
                           [&](const Eigen::VectorXf& rest, Eigen::VectorXf& z) {
-                            preconditioner.apply(batches, problem.grid, rest, z);
+                            preconditioner.apply(batches, problem.grid, rest, forces, z);
                           },
                           goal, r, x);
 #pragma omp parallel for schedule(static)

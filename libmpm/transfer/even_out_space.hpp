@@ -97,7 +97,7 @@ inline std::vector<Vec<3>> even_out_in_space(const YieldProblem<ThreeD>& problem
   const auto precondition = [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) {
 #pragma omp parallel for schedule(static)
     for (int i = 0; i < grid.n_nodes(); ++i) r4.segment<4>(4 * i) << r.segment<3>(3 * i).cast<float>(), 0.0f;
-    preconditioner.apply(system.batches, grid, r4, z4);
+    preconditioner.apply(system.batches, grid, r4, system.forces, z4);
 #pragma omp parallel for schedule(static)
     for (int i = 0; i < grid.n_nodes(); ++i) z.segment<3>(3 * i) = z4.segment<3>(4 * i).cast<double>();
   };

@@ -165,7 +165,7 @@ void precondition(benchmark::State& run) {
   system.prepare(*set.problem, 2.5 * set.body.mix.mu);
   const Eigen::VectorXf x = some_field(set);
   Eigen::VectorXf out;
-  for (auto _ : run) system.preconditioner.apply(system.batches, set.body.grid, x, out);
+  for (auto _ : run) system.preconditioner.apply(system.batches, set.body.grid, x, system.forces, out);
   set.count(run);
 }
 

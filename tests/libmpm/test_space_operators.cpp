@@ -125,7 +125,9 @@ TEST(PressurePreconditioner, IsTheInverse) {
         Eigen::VectorXf r = Eigen::VectorXf::Zero(4 * n), z;
         for (int i = 0; i < n; ++i)
           for (int d = 0; d < 3; ++d) r[4 * i + d] = std::sin(1.7f * static_cast<float>(3 * i + d));
-        P.apply(batches, grid, r, z);
+        StripRoom room;
+        batches.strips().make_room(room);
+        P.apply(batches, grid, r, room, z);
         Eigen::VectorXd Pz = Eigen::VectorXd::Zero(4 * n);
         for (int i = 0; i < n; ++i)
           Pz.segment<3>(4 * i) = parts.G[static_cast<std::size_t>(i)] * z.segment<3>(4 * i).cast<double>();
