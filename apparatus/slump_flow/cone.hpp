@@ -49,9 +49,16 @@ inline void fill(const Cone& cone, const Mix& mix, double g, double dr, double d
                  Points<3>& points) {
   Points<2> rings;
   fill(cone, mix, g, dr, dz, rings);
+  const double right = 0.5 * std::numbers::pi;
+  const auto in_quadrant = [&](const Vec<2>& ring) {
+    return std::max(1, static_cast<int>(std::lround(right * ring[0] / dr)));
+  };
+  std::size_t all = 0;
+  for (const Vec<2>& ring : rings.x) all += static_cast<std::size_t>(in_quadrant(ring)) * (quarter ? 1 : 4);
+  reserve(points, points.size() + all);
   for (std::size_t i = 0; i < rings.size(); ++i) {
-    const double r = rings.x[i][0], z = rings.x[i][1], right = 0.5 * std::numbers::pi;
-    const int n = std::max(1, static_cast<int>(std::lround(right * r / dr)));
+    const double r = rings.x[i][0], z = rings.x[i][1];
+    const int n = in_quadrant(rings.x[i]);
     for (int k = 0; k < n; ++k) {
       const double x = r * std::cos(right * (k + 0.5) / n), y = r * std::sin(right * (k + 0.5) / n);
       for (int quadrant = 0; quadrant < (quarter ? 1 : 4); ++quadrant)

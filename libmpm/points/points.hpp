@@ -32,6 +32,13 @@ std::int64_t bytes_per_point(bool thixotropic) {
   return static_cast<std::int64_t>(doubles * sizeof(double));
 }
 
+/// Room for n points without thixotropy.
+template <int D>
+void reserve(Points<D>& points, std::size_t n) {
+  points.x.reserve(n), points.v.reserve(n), points.C.reserve(n);
+  for (std::vector<double>* array : {&points.mass, &points.V0, &points.ln_J}) array->reserve(n);
+}
+
 /// Gives back the room to grow.
 template <int D>
 void shrink(Points<D>& points) {

@@ -19,11 +19,17 @@ void seed_box(const Vec<Space::dim>& low, const Vec<Space::dim>& high, const std
     spacing[d] = (high[d] - low[d]) / n[d];
     total *= static_cast<std::size_t>(n[d]);
   }
-  for (std::size_t i = 0; i < total; ++i) {
+  const auto place = [&](std::size_t i) {
     Vec<D> x;
-    std::size_t rest = i;
-    for (int d = D - 1; d >= 0; rest /= static_cast<std::size_t>(n[d]), --d)
-      x[d] = low[d] + (static_cast<double>(rest % static_cast<std::size_t>(n[d])) + 0.5) * spacing[d];
+    for (int d = D - 1; d >= 0; i /= static_cast<std::size_t>(n[d]), --d)
+      x[d] = low[d] + (static_cast<double>(i % static_cast<std::size_t>(n[d])) + 0.5) * spacing[d];
+    return x;
+  };
+  std::size_t points_inside = 0;  // arrays that grow would be there twice
+  for (std::size_t i = 0; i < total; ++i) points_inside += inside(place(i)) ? 1 : 0;
+  reserve(points, points.size() + points_inside);
+  for (std::size_t i = 0; i < total; ++i) {
+    const Vec<D> x = place(i);
     if (!inside(x)) continue;
     const double V = spacing.prod() * Space::measure(x);
     const double ln_J = ln_J_under(pressure_at(x), K);
