@@ -3,9 +3,9 @@
 // Adds up at the nodes what cells give them, without locks and with bits that do not depend on the threads.
 //
 // The cells are cut into strips, as many as the body asks for. Each strip adds what its cells give, in their
-// order, to room of its own for the nodes that it sees; then each node adds up its strips, two at most but
-// for tiny bodies. Cells are in lexicographic order, so that a strip sees a range of nodes and few of its
-// neighbours'.
+// order, to room of its own for the nodes that it sees; then each node adds up its strips, two or three of
+// them. Cells are in lexicographic order, so that a strip sees a range of nodes; where the first axis is
+// periodic the last strip's begins with the first node, and the room of all of them is larger.
 
 #include <algorithm>
 #include <cstddef>
@@ -81,7 +81,7 @@ class CellStrips {
   }
 
  private:
-  static constexpr int least_cells = 256, most_strips = 16;
+  static constexpr int least_cells = 256, least_planes = 2, most_strips = 64;
   /// Cells [first_cell, last_cell), and the nodes [first_node, last_node) around them.
   struct Strip {
     int first_cell, last_cell, first_node, last_node;
@@ -92,11 +92,13 @@ class CellStrips {
   std::size_t room_nodes_ = 0;    ///< of all strips
 };
 
-/// A power of two strips, so that threads share them evenly.
+/// A power of two strips, so that two, four or eight threads share them evenly.
 inline void CellStrips::lay_out(const ActiveGrid<3>& grid, int unit) {
   const int n_cells = grid.n_cells(), n_nodes = grid.n_nodes(), units = (n_cells + unit - 1) / unit;
   int n = 1;
-  while (n < most_strips && 2 * n * least_cells <= units * unit) n *= 2;
+  while (2 * n <= most_strips && 2 * n * least_cells <= n_cells &&
+         2 * n * least_planes <= grid.cell_map.extent[0])
+    n *= 2;
   strips_.resize(static_cast<std::size_t>(n));
 #pragma omp parallel for schedule(static)
   for (int s = 0; s < n; ++s) {

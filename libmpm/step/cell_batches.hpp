@@ -33,7 +33,6 @@ class CellBatches {
   void lay_out(const ActiveGrid<3>& grid);
 
   int n_cells() const { return n_cells_; }
-  int n_nodes() const { return n_nodes_; }
   int n_batches() const { return static_cast<int>(ends_.size()); }
   /// Strips of whole batches.
   const CellStrips& strips() const { return strips_; }
@@ -58,7 +57,7 @@ class CellBatches {
   // t = 1 - s.
   static constexpr double near_ = 0.78867513459481288, far_ = 1.0 - near_;
 
-  static constexpr int of_cell = 32;  ///< entries of a cell, of which 27 are used: a power of two
+  static constexpr int of_cell = 32;  ///< numbers of a cell's entries, of which 27 are used
 
   /// Local nodes 3 j, 3 j + 1, 3 j + 2 of a cell follow each other in number too, unless the last axis is
   /// periodic: of nine lines the first nodes are kept, else all 27.
@@ -82,7 +81,7 @@ class CellBatches {
     return f;
   }
 
-  int n_cells_ = 0, n_nodes_ = 0;
+  int n_cells_ = 0;
   double inverse_h_[3] = {1.0, 1.0, 1.0};
   bool lines_ = true;
   std::vector<Nodes> nodes_;  ///< kept_nodes() of each batch
@@ -93,7 +92,7 @@ class CellBatches {
 
 inline void CellBatches::lay_out(const ActiveGrid<3>& grid) {
   n_cells_ = grid.n_cells();
-  n_nodes_ = grid.n_nodes();
+  const int n_nodes = grid.n_nodes();
   for (int d = 0; d < 3; ++d) inverse_h_[d] = 1.0 / grid.axes[d].h;
   const int n = (n_cells_ + batch_size - 1) / batch_size;
   lines_ = !grid.axes[2].periodic;
@@ -113,10 +112,10 @@ inline void CellBatches::lay_out(const ActiveGrid<3>& grid) {
         ends_[b].high[d][l] = a.clamped_high() && i == a.n_cells - 1 ? 2.0f : 1.0f;
       }
     }
-  node_begin_.assign(n_nodes_ + 1, 0);
+  node_begin_.assign(n_nodes + 1, 0);
   for (const auto& nodes : grid.cell_nodes)
     for (int i : nodes) ++node_begin_[i + 1];
-  for (int i = 0; i < n_nodes_; ++i) node_begin_[i + 1] += node_begin_[i];
+  for (int i = 0; i < n_nodes; ++i) node_begin_[i + 1] += node_begin_[i];
   tremie::make_room(node_entry_, static_cast<std::size_t>(n_cells_) * 27);
   std::vector<int> next(node_begin_.begin(), node_begin_.end() - 1);
   for (int c = 0; c < n_cells_; ++c)

@@ -20,8 +20,6 @@ using Lanes = Eigen::Array<Scalar, batch_size, 1>;
 /// Components of a nodal vector field: in single precision padded to four, the last one 0.
 template <class Scalar>
 inline constexpr int node_stride = std::is_same_v<Scalar, float> ? 4 : 3;
-template <class Scalar>
-using NodeValue = Eigen::Matrix<Scalar, node_stride<Scalar>, 1>;
 
 namespace detail {
 

@@ -13,8 +13,6 @@
 // thousand cells S is factorised as a band. The band's n b^2 operations grow like n^(7/3); beyond, S is
 // solved by conjugate gradients of its own (pressure_iteration.hpp).
 
-#include <omp.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
@@ -40,6 +38,8 @@ class PressurePreconditioner {
     if (by_band_) return false;
     rows_ = {};
     iteration_ = {};
+    tremie::give_back(number_);
+    y_.resize(0), p_.resize(0);
     return true;
   }
   const PressureRows& rows() const { return rows_; }

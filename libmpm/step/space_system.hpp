@@ -310,7 +310,9 @@ inline void SpaceSystem::multiply(const YieldProblem<ThreeD>& problem, const Eig
   });
   if (!problem.bound.empty()) {
     add_bound_products(problem.bound, problem.grid.cell_nodes, x, out);
-    out = out.cwiseProduct(free_);
+    for_each_block(out.size(), [&](Eigen::Index i, Eigen::Index size) {
+      out.segment(i, size) = out.segment(i, size).cwiseProduct(free_.segment(i, size));
+    });
   }
   fold_mirrors<3, 4>(problem.grid, out);
 }

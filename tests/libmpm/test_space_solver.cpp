@@ -18,13 +18,13 @@ StepSettings by_iteration(double tolerance) {
 }
 
 /// A block of concrete on the floor between two planes of symmetry, free to slump.
-Body<ThreeD> block(double K) {
+Body<ThreeD> block(double K, const Vec<3>& size = Vec<3>(0.06, 0.08, 0.09)) {
   Body<ThreeD> body;
   body.mix = concrete(54.0, 35.8, K);
   body.gravity[2] = -9.81;
   for (int d = 0; d < 2; ++d) body.grid.axes[d] = {.h = 0.02, .low = FaceKind::free_slip};
   body.grid.axes[2] = {.h = 0.015, .low = FaceKind::no_slip};
-  fill_box(body, Vec<3>(Vec<3>::Zero()), Vec<3>(0.06, 0.08, 0.09), 2);
+  fill_box(body, Vec<3>(Vec<3>::Zero()), size, 2);
   return body;
 }
 
@@ -65,20 +65,32 @@ TEST(SpaceSolver, TakesSmallBodiesToo) {
   EXPECT_FALSE(detail::by_iteration(few, StepSettings{}));
 }
 
-// The same bits with one thread and with two, the pressures with a factor and by iteration.
+/// Large enough for four strips of cells.
+const Vec<3> some_strips(0.24, 0.32, 0.12);
+
+// The same bits with one thread and with two, beside a rigid wall, the pressures with a factor and by
+// iteration.
 TEST(SpaceSolver, BitsDoNotDependOnTheThreads) {
+  const RigidWall<3> wall = [](const Vec<3>& x, double) -> std::optional<WallView<3>> {
+    if (x[1] < 0.28) return {};
+    return WallView<3>{0.32 - x[1], Vec<3>(0.0, -1.0, 0.0), Vec<3>::Zero()};
+  };
   for (const double most_band_operations : {1e9, 0.0}) {
-    Body<ThreeD> one = block(1e6), two = block(1e6);
+    Body<ThreeD> one = block(1e6, some_strips), two = block(1e6, some_strips);
     StepSettings settings = by_iteration(1e-3);
     settings.admm.most_band_operations = most_band_operations;
     settings.even_out.on = true;
+    settings.wall_gap = 0.005;
     for (int i = 0; i < 2; ++i) {
       omp_set_num_threads(1);
-      implicit_step(one, ExactBingham{}, settings);
+      implicit_step(one, ExactBingham{}, settings, wall);
       omp_set_num_threads(2);
-      implicit_step(two, ExactBingham{}, settings);
+      implicit_step(two, ExactBingham{}, settings, wall);
     }
     omp_set_num_threads(1);
+    CellStrips strips;
+    strips.lay_out(one.grid, batch_size);
+    EXPECT_GE(strips.size(), 4);
     for (std::size_t p = 0; p < one.points.size(); ++p) {
       EXPECT_EQ(one.points.x[p], two.points.x[p]);
       EXPECT_EQ(one.points.v[p], two.points.v[p]);
@@ -173,11 +185,12 @@ TEST(SpaceSolver, PressureEntriesMultiplyLikeADenseMatrix) {
 // away.
 TEST(SpaceSolver, GradientsAndTheirAdjoint) {
   omp_set_num_threads(1);
-  Body<ThreeD> body = block(1e6);
+  Body<ThreeD> body = block(1e6, some_strips);
   activate(body.grid, body.points);
   CellBatches batches;
   batches.lay_out(body.grid);
   const CellStrips& strips = batches.strips();
+  ASSERT_GE(strips.size(), 4);
   StripRoom forces;
   strips.make_room(forces);
   const int n = body.grid.n_nodes();
