@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "libmpm/grid/active_grid.hpp"
@@ -39,6 +40,16 @@ class StripRoom {
   };
   std::vector<Line> room_;
 };
+
+/// Adds a vector of four numbers to a node's in such a room.
+template <class Four, class Scalar>
+void add_to_node(const Four& value, Scalar* at) {
+  static_assert(sizeof(Four) == 4 * sizeof(Scalar));
+  Four sum;
+  std::memcpy(&sum, at, sizeof sum);
+  sum += value;
+  std::memcpy(at, &sum, sizeof sum);
+}
 
 class CellStrips {
  public:

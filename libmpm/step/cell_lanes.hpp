@@ -7,6 +7,8 @@
 #include <cstring>
 #include <type_traits>
 
+#include "libmpm/grid/cell_strips.hpp"
+
 #ifdef __AVX512VL__
 #include <immintrin.h>
 #endif
@@ -62,17 +64,11 @@ inline Sixteen of_lanes(const Lanes<float>& a) {
 }
 inline void to_lanes(const Sixteen& s, Lanes<float>& a) { std::memcpy(a.data(), &s, sizeof s); }
 
-inline void add_four(const Four& value, float* at) {
-  Four sum;
-  std::memcpy(&sum, at, sizeof sum);
-  sum += value;
-  std::memcpy(at, &sum, sizeof sum);
-}
 /// Lanes j, 4 + j, 8 + j and 12 + j.
 inline void add_four_lanes(const Sixteen& s, const int* node, int j, float* room) {
   Four value[4];
   std::memcpy(value, &s, sizeof s);
-  for (int i = 0; i < 4; ++i) add_four(value[i], room + 4 * static_cast<std::ptrdiff_t>(node[4 * i + j]));
+  for (int i = 0; i < 4; ++i) add_to_node(value[i], room + 4 * static_cast<std::ptrdiff_t>(node[4 * i + j]));
 }
 
 using FourD [[gnu::vector_size(32)]] = double;
@@ -110,17 +106,11 @@ inline void load_eight(const double* v, const int* node, double* x, double* y, d
   to_lanes(__builtin_shufflevector(y_ab, y_cd, 0, 1, 8, 9, 4, 5, 12, 13), y);
   to_lanes(__builtin_shufflevector(xz_ab, xz_cd, 2, 3, 10, 11, 6, 7, 14, 15), z);
 }
-inline void add_four(const FourD& value, double* at) {
-  FourD sum;
-  std::memcpy(&sum, at, sizeof sum);
-  sum += value;
-  std::memcpy(at, &sum, sizeof sum);
-}
 /// Lanes j and 4 + j.
 inline void add_two_lanes(const EightD& s, const int* node, int j, double* room) {
   FourD value[2];
   std::memcpy(value, &s, sizeof s);
-  for (int i = 0; i < 2; ++i) add_four(value[i], room + 4 * static_cast<std::ptrdiff_t>(node[4 * i + j]));
+  for (int i = 0; i < 2; ++i) add_to_node(value[i], room + 4 * static_cast<std::ptrdiff_t>(node[4 * i + j]));
 }
 inline void add_eight(const double* x, const double* y, const double* z, const int* node, double* room) {
   const EightD none = {}, a = of_lanes(x), b = of_lanes(y), c = of_lanes(z);

@@ -181,7 +181,7 @@ inline void add_momenta(const ActiveGrid<3>& grid, const Points<3>& points, Noda
     for (int c = strips.first_cell(strip); c < strips.last_cell(strip); ++c) {
       const CellQuads momenta = cell_momenta(grid, points, c);
       for (std::size_t k = 0; k < 27; ++k)
-        add_quad(momenta[k], to + 4 * std::ptrdiff_t{grid.cell_nodes[c][k]});
+        add_to_node(momenta[k], to + 4 * std::ptrdiff_t{grid.cell_nodes[c][k]});
     }
   };
 #pragma omp parallel

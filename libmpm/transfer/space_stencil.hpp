@@ -4,7 +4,6 @@
 // operations of 27 products, and four components side by side.
 
 #include <array>
-#include <cstring>
 
 #include "libmpm/grid/active_grid.hpp"
 
@@ -15,13 +14,6 @@ using Quad [[gnu::vector_size(32)]] = double;
 
 inline Quad to_quad(const Vec<3>& v, double last = 0.0) { return Quad{v[0], v[1], v[2], last}; }
 inline Vec<3> to_vec(const Quad& q) { return Vec<3>(q[0], q[1], q[2]); }
-
-inline void add_quad(const Quad& q, double* at) {
-  Quad sum;
-  std::memcpy(&sum, at, sizeof sum);
-  sum += q;
-  std::memcpy(at, &sum, sizeof sum);
-}
 
 using CellQuads = std::array<Quad, 27>;
 
