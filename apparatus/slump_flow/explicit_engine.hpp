@@ -19,6 +19,7 @@ inline ExplicitSettings explicit_settings(const Scene& scene) {
   settings.cell_pressure = scene.model.pressure == PressureKind::cell;
   settings.fixed_dt = scene.model.time_step;
   settings.single_precision = scene.model.precision == PrecisionKind::single_sums;
+  settings.keep_affine = false;
   settings.keep_shear_rates = true;
   settings.friction_coefficient = common.friction_coefficient;
   settings.wall_gap = common.wall_gap;
@@ -36,13 +37,13 @@ Shape<Space::dim> shape_of(const Model& model) {
   return shape;
 }
 
-/// Bytes that one more point costs: sorted with its shear rate and its number, and in a reading, which has no
+/// Bytes that one more point costs: sorted with its shear rate and its number, and in a reading; neither has
 /// affine velocities.
 template <int D>
 std::int64_t explicit_bytes_per_point(bool thixotropic) {
+  constexpr std::int64_t affine = D * D * sizeof(double), number = sizeof(std::int32_t);
   const std::int64_t rate = thixotropic ? 0 : sizeof(double);
-  return 2 * (bytes_per_point<D>(thixotropic) + rate) -
-         static_cast<std::int64_t>(D * D * sizeof(double) - sizeof(std::int32_t));
+  return 2 * (bytes_per_point<D>(thixotropic) + rate - affine) + number;
 }
 
 /// The frame of a reading, which gives it its arrays: there is no room for both in a large body. Its shear
@@ -113,7 +114,7 @@ Outcome run_explicit_in(const Scene& scene, const Law& law, const Observer& obse
   if (observer.on_frame) observer.on_frame(engine::frame_of(body));
   EnergyWatch energy(energy_of<Space>(body.points, body.mix.K));
   auto state = start_explicit(body, law, settings, shape_of<Space>(scene.model));
-  write_back(state, body, Bring::all_but_affine);  // what a run that fails at once is read from
+  write_back(state, body);  // what a run that fails at once is read from
   engine::RestWatch watch;
   LimitWatch limits;
   bool stopped = false;
@@ -130,14 +131,14 @@ Outcome run_explicit_in(const Scene& scene, const Law& law, const Observer& obse
       outcome.cost.steps += 1;
     } while (!step.failed && body.time < until - 0.5 * state.next_dt);
     if (engine::gave_up(step, outcome.status, outcome.checks, body.time)) break;
-    write_back(state, body, Bring::all_but_affine);
+    write_back(state, body);
     energy.see(energy_of<Space>(body.points, body.mix.K), bool{wall});
     outcome.cost.cells_active =
         std::max(outcome.cost.cells_active, count_active_cells<D>(body.grid.axes, body.points));
     stopped = record(scene, body, step, observer, watch, outcome);
     if (observer.on_frame && body.time >= next_frame) {
       observer.on_frame(frame_from(body));
-      write_back(state, body, Bring::all_but_affine);
+      write_back(state, body);
       next_frame += scene.frame_interval;
     }
     if (outcome.status == Status::interrupted) break;

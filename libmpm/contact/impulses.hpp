@@ -11,13 +11,24 @@
 
 namespace tremie::detail {
 
+/// Components of a push that flat walls take from a control, one bit each.
+using HeldBy = std::uint8_t;
+
+/// Ones, but for the components that are held.
+inline constexpr std::array<NodeLanes, 8> left_by = [] {
+  std::array<NodeLanes, 8> left{};
+  for (std::size_t held = 0; held < left.size(); ++held)
+    left[held] = NodeLanes{held & 1 ? 0.0 : 1.0, held & 2 ? 0.0 : 1.0, held & 4 ? 0.0 : 1.0, 1.0};
+  return left;
+}();
+
 /// A point that may touch the wall in this step.
 template <int D>
 struct WallPoint {
   int n = 0;  ///< controls that it reaches
   std::array<NodeLanes*, power(3, D)> control;
-  std::array<NodeLanes, power(3, D)> give;  ///< velocity for a unit impulse; none where a flat wall holds it
   std::array<double, power(3, D)> N;
+  std::array<HeldBy, power(3, D)> held;
   NodeLanes normal = {};
   double target = 0.0;   ///< least normal velocity [m/s]
   double inertia = 0.0;  ///< 1/kg: of the controls against an impulse along the normal
@@ -52,7 +63,7 @@ void look_around_wall(const RigidWall<Space::dim>& wall, double time, ExplicitSt
 struct Side {
   std::array<int, 3> block, within;  ///< their parts of where a control is on the grid
   std::array<double, 3> w;           ///< values of the shape functions
-  std::array<NodeLanes, 3> left;     ///< share of a push that flat walls leave, by component
+  std::array<HeldBy, 3> held;
 };
 
 template <class Space>
@@ -67,14 +78,18 @@ Side side_of(const ExplicitState<Space>& state, const Tile<Space::dim>& tile,
     side.block[o] = local / tile_cells * stride<D>(2, d);
     side.within[o] = local % tile_cells * stride<D>(tile_cells, d);
     side.w[o] = weights.w[d][o][l];
-    side.left[o] = NodeLanes{} + 1.0;
     const bool low = a.wall_low() && control == state.shape.low_wall();
     const bool high = a.wall_high() && control == a.n_cells + 1;
-    if (low || high) side.left[o][d] = 0.0;
-    if ((low && a.low == FaceKind::no_slip) || (high && a.high == FaceKind::no_slip))
-      side.left[o] = NodeLanes{};
+    const bool sticks = (low && a.low == FaceKind::no_slip) || (high && a.high == FaceKind::no_slip);
+    side.held[o] = static_cast<HeldBy>(sticks ? 7 : low || high ? 1 << d : 0);
   }
   return side;
+}
+
+/// The velocity that a unit impulse along the normal gives the k-th control of a point.
+template <int D>
+NodeLanes given_by_push(const WallPoint<D>& p, std::size_t k) {
+  return p.N[k] * (*p.control[k])[D] * (p.normal * left_by[p.held[k]]);
 }
 
 /// The controls of lane l, and what a push along the normal does to them.
@@ -83,26 +98,26 @@ void enter_controls(ExplicitState<Space>& state, const Tile<Space::dim>& tile,
                     const Weights<Space::dim>& weights, std::size_t l, WallPoint<Space::dim>& p) {
   constexpr int D = Space::dim;
   Side side[D];
-  const Share<D>& share = share_of(state.grid, static_cast<int>(&tile - state.grid.tiles.data()));
   for (int d = 0; d < D; ++d) side[d] = side_of(state, tile, weights, l, d);
   NodeLanes inertia = {};
-  for (int k = 0; k < power(3, D); ++k) {
-    const Index<D> o = local_offset<D>(k);
-    int block = 0, within = 0;
-    double N = 1.0;
-    NodeLanes push = p.normal;
-    for (int d = 0; d < D; ++d) {
-      const auto at = static_cast<std::size_t>(o[d]);
-      block += side[d].block[at], within += side[d].within[at];
-      N *= side[d].w[at], push *= side[d].left[at];
+  const auto enter = [&](int block, int within, double N, int held) {
+    if (N == 0.0) return;
+    const auto b = static_cast<std::size_t>(tile.block[static_cast<std::size_t>(block)]);
+    const auto k = static_cast<std::size_t>(p.n++);
+    p.control[k] = &state.grid.v[b][static_cast<std::size_t>(within)];
+    p.N[k] = N, p.held[k] = static_cast<HeldBy>(held);
+    inertia += N * given_by_push(p, k) * (p.normal * left_by[p.held[k]]);
+  };
+  const Side &first = side[0], &second = side[1], &last = side[D - 1];
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) {
+      const int block = first.block[i] + second.block[j], within = first.within[i] + second.within[j],
+                held = first.held[i] | second.held[j];
+      const double N = first.w[i] * second.w[j];
+      for (std::size_t k = 0; k < 3 && D == 3; ++k)
+        enter(block + last.block[k], within + last.within[k], N * last.w[k], held | last.held[k]);
+      if (D == 2) enter(block, within, N, held);
     }
-    if (N == 0.0) continue;
-    NodeLanes& v = first_nodes(state.grid, share, tile.block[static_cast<std::size_t>(block)])[within];
-    const auto at = static_cast<std::size_t>(p.n++);
-    p.control[at] = &v, p.N[at] = N;
-    p.give[at] = N * v[D] * push;
-    inertia += N * p.give[at] * push;
-  }
   for (int d = 0; d < D; ++d) p.inertia += inertia[d];
 }
 
@@ -145,13 +160,14 @@ std::vector<WallPoint<Space::dim>> find_wall_points(const RigidWall<Space::dim>&
 template <int D>
 void push_off(WallPoint<D>& p) {
   NodeLanes v = {};
-  for (int k = 0; k < p.n; ++k) v += p.N[k] * *p.control[k];
+  const auto n = static_cast<std::size_t>(p.n);
+  for (std::size_t k = 0; k < n; ++k) v += p.N[k] * *p.control[k];
   double u = 0.0;
   for (int d = 0; d < D; ++d) u += p.normal[d] * v[d];
   const double total = std::max(0.0, p.given + (p.target - u) / p.inertia), more = total - p.given;
   p.given = total;
   if (more == 0.0) return;
-  for (int k = 0; k < p.n; ++k) *p.control[k] += more * p.give[k];
+  for (std::size_t k = 0; k < n; ++k) *p.control[k] += more * given_by_push(p, k);
 }
 
 /// Holds the concrete back at the wall at `time`, the end of a step of length dt.
@@ -171,7 +187,6 @@ void push_off_wall(const RigidWall<Space::dim>& wall, double time, double dt, do
   for (int sweep = 0; sweep < wall_sweeps; ++sweep)
     for (auto& part : touching)
       for (WallPoint<D>& p : part) push_off(p);
-  hand_on_velocities(state.grid);
 }
 
 }  // namespace tremie::detail

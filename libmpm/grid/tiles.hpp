@@ -10,12 +10,12 @@
 // for any number of threads. Points reach about half of the rows that their tile sees (a row: the controls
 // along the last direction); each tile knows which, and the others are neither cleared nor read nor summed.
 //
-// Each thread has a share of the tiles, and velocities of its own on all blocks that they see: blocks at the
-// border of two shares are summed up in both, to the same bits, so that all that threads need of each other
-// is the sums of the tiles at their borders. Those have two buffers, filled in turn: one share may pass over
-// its points while its neighbour still reads what they gave last.
+// A pass goes over the blocks, for the velocities of their controls, and over the tiles. A block needs what
+// its 2^D tiles gave in the pass before, and a tile what is in its 2^D blocks: nobody waits for more than
+// that (passes.hpp).
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <memory>
@@ -89,16 +89,13 @@ struct Tile {
   Index<D> at{};                         ///< its cells are 4 at ... 4 at + 3
   int first_group = 0, last_group = 0;   ///< its points, in groups of eight: [first, last)
   int mixed_groups = 0;                  ///< of these, groups of points of several cells
-  std::array<int, power(2, D)> block{};  ///< blocks at + offset, in its share; the last direction fastest
-  std::array<int, 2> buffer{};           ///< what its points give in every other pass, in turn
-  int share = -1;                        ///< that it is in
+  std::array<int, power(2, D)> block{};  ///< blocks at + offset; the last direction fastest
 };
 
 template <int D>
 struct NodeBlock {
   Index<D> at{};
   std::array<int, power(2, D)> tile{};  ///< tiles at - offset; -1: none
-  int share = -1, in_share = -1;        ///< the first share that sees it, and where it is there
   std::uint64_t on_walls = 0;           ///< its controls on flat walls, one bit each
 };
 
@@ -110,17 +107,6 @@ struct alignas(64) NodeCube : std::array<Node, n + (std::is_same_v<Node, SingleN
 template <int D>
 using BlockNodes = std::array<NodeLanes, power(tile_cells, D)>;
 
-/// What one thread passes over. Aligned, so that no two write to one line of a cache.
-template <int D>
-struct alignas(64) Share {
-  std::vector<int> tiles = {};              ///< in rising order
-  std::vector<int> blocks = {};             ///< that these tiles see
-  std::vector<BlockNodes<D>> v = {};        ///< of each: velocities, in the rows that a tile reaches
-  std::vector<BlockNodes<D>> v_start = {};  ///< before the step's forces, for FLIP alone
-  double busy = 0.0;                        ///< until it was done, summed over the rounds so far [s]
-  int rounds = 0;
-};
-
 template <int D>
 struct TileGrid {
   static constexpr int tile_nodes = power(tile_span, D);
@@ -130,18 +116,20 @@ struct TileGrid {
   std::array<Axis, D> axes;
   std::vector<Tile<D>> tiles;
   std::vector<NodeBlock<D>> blocks;
-  std::vector<Share<D>> shares;
-  std::unique_ptr<Crew> crew;  ///< a thread for each share
-  std::vector<double> pace;    ///< of each thread, measured: who does what hangs on it, no result
-  int turn = 0;                ///< which of a tile's buffers was filled last
-  std::vector<Buffer> sums;    ///< a buffer: momentum and mass that the points give
-  std::vector<Buffer> forces;  ///< a buffer: impulse of the stresses, for FLIP alone
-  bool single = false;         ///< sums are kept in single precision, in these:
+  std::unique_ptr<Crew> crew;
+  SharedWork block_work;                ///< of its threads
+  std::array<SharedWork, 2> tile_work;  ///< in up to two passes in a row
+  DoneMarks blocks_done, tiles_done;
+  DoneMarks::Pass passes = 0;          ///< so far, since the grid was laid
+  std::vector<BlockNodes<D>> v;        ///< a block: velocities, in the rows that a tile reaches
+  std::vector<BlockNodes<D>> v_start;  ///< a block: before the step's forces, for FLIP alone
+  std::vector<Buffer> sums;            ///< a tile: momentum and mass that the points give
+  std::vector<Buffer> forces;          ///< a tile: impulse of the stresses, for FLIP alone
+  bool single = false;                 ///< sums are kept in single precision, in these:
   std::vector<SingleBuffer> single_sums;
-  std::vector<TileRows> rows;  ///< a buffer: what the points reached; all else in it is zero
+  std::vector<TileRows> rows;  ///< a tile: what its points reached; all else in its buffer is zero
 
   int n_tiles() const { return static_cast<int>(tiles.size()); }
-  int filled_buffer(int tile) const { return tiles[static_cast<std::size_t>(tile)].buffer[turn]; }
 };
 
 /// The buffers of sums, of either precision.
@@ -246,12 +234,6 @@ void read_blocks(const Tile<D>& tile, TileRows rows, const std::vector<BlockNode
   }
 }
 
-/// Which rows of its blocks a share sums up.
-enum class RowsOf {
-  own_tiles,  ///< those that its tiles reach: what their points read
-  all_tiles   ///< those that any tile reaches, for what sees all controls
-};
-
 namespace detail {
 
 /// Four controls of a row, and sums of them.
@@ -283,33 +265,26 @@ struct FourSingleNodes {
 
 }  // namespace detail
 
-/// Visits rows of block b with the sums over the tiles' buffers: visit(row, totals of its controls). Tile by
+/// Visits rows of a block with the sums over its tiles' buffers: visit(row, totals of its controls). Tile by
 /// tile and not row by row: whether a tile reaches the next row is anyone's guess, the processor's too.
 template <int D, class Buffer, class Visit>
-void sum_tiles(const TileGrid<D>& grid, int share, RowsOf rows_of, int b, const std::vector<Buffer>& buffers,
+void sum_tiles(const TileGrid<D>& grid, const NodeBlock<D>& block, const std::vector<Buffer>& buffers,
                Visit visit) {
   using Four = std::conditional_t<std::is_same_v<Buffer, typename TileGrid<D>::SingleBuffer>,
                                   detail::FourSingleNodes, detail::FourNodes>;
-  const NodeBlock<D>& block = grid.blocks[static_cast<std::size_t>(b)];
-  unsigned wanted = 0;
-  std::array<unsigned, power(2, D)> reached{};
-  for (int k = 0; k < power(2, D); ++k) {
-    const int tile = block.tile[k];
-    if (tile < 0) continue;
-    reached[k] = rows_of_block<D>(grid.rows[static_cast<std::size_t>(grid.filled_buffer(tile))], k);
-    if (rows_of == RowsOf::all_tiles || grid.tiles[static_cast<std::size_t>(tile)].share == share)
-      wanted |= reached[k];
-  }
-  if (wanted == 0) return;
+  unsigned reached = 0;
   std::array<Four, power(tile_cells, D - 1)> sum{};
   for (int k = 0; k < power(2, D); ++k) {
-    if ((reached[k] & wanted) == 0) continue;
-    const Buffer& buffer = buffers[static_cast<std::size_t>(grid.filled_buffer(block.tile[k]))];
-    for_each_row(reached[k] & wanted, [&](int row) {
-      sum[static_cast<std::size_t>(row)].add(&buffer[static_cast<std::size_t>(row_in_cube<D>(k, row))]);
+    if (block.tile[k] < 0) continue;
+    const auto tile = static_cast<std::size_t>(block.tile[k]);
+    const unsigned rows = rows_of_block<D>(grid.rows[tile], k);
+    reached |= rows;
+    for_each_row(rows, [&](int row) {
+      sum[static_cast<std::size_t>(row)].add(
+          &buffers[tile][static_cast<std::size_t>(row_in_cube<D>(k, row))]);
     });
   }
-  for_each_row(wanted, [&](int row) { visit(row, sum[static_cast<std::size_t>(row)].total()); });
+  for_each_row(reached, [&](int row) { visit(row, sum[static_cast<std::size_t>(row)].total()); });
 }
 
 }  // namespace tremie

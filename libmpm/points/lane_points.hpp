@@ -10,8 +10,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "libmpm/grid/lay_tiles.hpp"
 #include "libmpm/grid/room.hpp"
-#include "libmpm/grid/shares.hpp"
 #include "libmpm/law/lanes.hpp"
 #include "libmpm/points/points.hpp"
 
@@ -21,11 +21,12 @@ namespace tremie {
 /// id is -1.
 template <int D>
 struct LanePoints {
-  std::array<std::vector<Octet>, D> x, v;   ///< [m], [m/s]
-  std::array<std::vector<Octet>, D * D> C;  ///< affine velocity, row by row [1/s]; empty with FLIP
-  std::vector<Octet> mass, V0, ln_J;        ///< [kg], [m^3], ln(V/V0)
-  std::vector<Octet> lambda;                ///< empty without thixotropy
-  std::vector<Octet> gamma_dot;             ///< [1/s]; empty where neither thixotropy nor a frame needs them
+  std::array<std::vector<Octet>, D> x, v;  ///< [m], [m/s]
+  std::array<std::vector<Octet>, D * D>
+      C;                              ///< affine velocity, row by row [1/s]; empty where nobody reads it
+  std::vector<Octet> mass, V0, ln_J;  ///< [kg], [m^3], ln(V/V0)
+  std::vector<Octet> lambda;          ///< empty without thixotropy
+  std::vector<Octet> gamma_dot;       ///< [1/s]; empty where neither thixotropy nor a frame needs them
   std::vector<std::array<std::int32_t, octet_size>> id;  ///< place in the Points that it came from
   std::size_t n = 0;                                     ///< number of real points
 
@@ -43,8 +44,8 @@ std::array<Octet, D> places_of(const LanePoints<D>& points, std::size_t group) {
 /// Number of real points in a group; they come first.
 template <int D>
 int filled(const LanePoints<D>& points, std::size_t group) {
-  int n = 0;
-  while (n < octet_size && points.id[group][static_cast<std::size_t>(n)] >= 0) ++n;
+  int n = octet_size;
+  while (n > 0 && points.id[group][static_cast<std::size_t>(n - 1)] < 0) --n;
   return n;
 }
 
@@ -77,19 +78,11 @@ void for_each_quantity(LanePoints<D>& lanes, Points<D>& points, Visit visit) {
 
 }  // namespace detail
 
-enum class Bring {
-  all,
-  all_but_affine  ///< no affine velocities: nearly half of a point, and few readings need them
-};
-
 /// Writes the state of the points to where they came from.
 template <int D>
-void write_back(LanePoints<D>& lanes, const std::array<Axis, D>& axes, Points<D>& points,
-                Bring bring = Bring::all) {
-  const bool affine = bring == Bring::all;
-  points.C.assign(affine ? lanes.n : 0, Mat<D, D>::Zero());  // with FLIP they stay so
+void write_back(LanePoints<D>& lanes, const std::array<Axis, D>& axes, Points<D>& points) {
   detail::for_each_quantity<D>(lanes, points, [&](std::span<std::vector<Octet>> from, auto& to) {
-    if (from.front().empty() || (!affine && from.data() == lanes.C.data())) return;
+    if (from.front().empty()) return;
     to.resize(lanes.n);
     for (std::size_t g = 0; g < lanes.groups(); ++g)
       for (int l = 0; l < octet_size; ++l) {

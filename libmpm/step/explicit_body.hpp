@@ -22,6 +22,7 @@ struct ExplicitSettings {
   Transfer transfer;
   bool cell_pressure = true;       ///< one divergence and one pressure row a cell, against locking
   bool single_precision = false;   ///< shape functions, sums and the law; stress first, no FLIP
+  bool keep_affine = true;         ///< affine velocities in the points: no step reads them there
   bool keep_shear_rates = false;   ///< in the points, where thixotropy does not need them
   std::optional<double> fixed_dt;  ///< [s]; empty: `safety` times the stability limit
   double safety = 0.8;

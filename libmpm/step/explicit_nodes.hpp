@@ -56,31 +56,25 @@ std::uint64_t nodes_on_walls(const std::array<Axis, D>& axes, const Shape<D>& sh
   return on_walls;
 }
 
-/// Makes the velocities of a share's controls from the sums over the tiles: `update(v, totals, b, k)` those
-/// of the four controls v of block b from k on. Flat walls come after it.
+/// Makes the velocities of block b's controls from the sums over the tiles: `update(totals, at)` those of the
+/// four controls from number `at` of the block on. Flat walls come after it.
 template <class Space, class Buffer, class Update>
-void update_nodes(const Body<Space>& body, const ExplicitState<Space>& state, double friction_coefficient,
-                  const std::vector<Buffer>& buffers, Update update, RowsOf rows_of,
-                  Share<Space::dim>& share) {
+void update_block(const Body<Space>& body, double friction_coefficient, const std::vector<Buffer>& buffers,
+                  std::size_t b, ExplicitState<Space>& state, Update update) {
   constexpr int D = Space::dim;
-  const TileGrid<D>& grid = state.grid;
-  const auto number = static_cast<int>(&share - grid.shares.data());
-  for (std::size_t b = 0; b < share.blocks.size(); ++b) {
-    const NodeBlock<D>& block = grid.blocks[static_cast<std::size_t>(share.blocks[b])];
-    sum_tiles<D>(grid, number, rows_of, share.blocks[b], buffers,
-                 [&](int row, const std::array<NodeLanes, tile_cells>& total) {
-                   const int first = row * tile_cells;
-                   NodeLanes* const v = &share.v[b][static_cast<std::size_t>(first)];
-                   update(v, total, b, static_cast<std::size_t>(first));
-                   for (std::uint64_t on_walls = block.on_walls >> first & 0xf; on_walls != 0;
-                        on_walls &= on_walls - 1) {
-                     const int i = __builtin_ctzll(on_walls);
-                     if (v[i][D] > 0.0)
-                       apply_walls<D>(grid.axes, state.shape, body.walls, friction_coefficient,
-                                      control_of<D>(block.at, first + i), v[i]);
-                   }
-                 });
-  }
+  TileGrid<D>& grid = state.grid;
+  const NodeBlock<D>& block = grid.blocks[b];
+  sum_tiles<D>(grid, block, buffers, [&](int row, const std::array<NodeLanes, tile_cells>& total) {
+    const int first = row * tile_cells;
+    NodeLanes* const v = &grid.v[b][static_cast<std::size_t>(first)];
+    update(total, static_cast<std::size_t>(first));
+    for (std::uint64_t on_walls = block.on_walls >> first & 0xf; on_walls != 0; on_walls &= on_walls - 1) {
+      const int i = __builtin_ctzll(on_walls);
+      if (v[i][D] > 0.0)
+        apply_walls<D>(grid.axes, state.shape, body.walls, friction_coefficient,
+                       control_of<D>(block.at, first + i), v[i]);
+    }
+  });
 }
 
 /// 1/mass of four controls, 0 where there is none.
@@ -107,44 +101,42 @@ NodeLanes with_mass(const NodeLanes& v, const NodeLanes& inverse_mass) {
   return r;
 }
 
-/// Velocities from the momenta (with the impulses of the stresses already in them), and gravity.
+/// Velocities of block b from the momenta (with the impulses of the stresses already in them), and gravity.
 template <class Space>
-void velocities_from_sums(const Body<Space>& body, const ExplicitState<Space>& state, double friction,
-                          const Vec<Space::dim>& gravity_impulse, RowsOf rows_of, Share<Space::dim>& share) {
+void velocities_from_sums(const Body<Space>& body, double friction, const Vec<Space::dim>& gravity_impulse,
+                          std::size_t b, ExplicitState<Space>& state) {
   constexpr int D = Space::dim;
   const NodeLanes pull = as_lanes<D>(gravity_impulse);
-  const auto divide = [&](NodeLanes* v, const std::array<NodeLanes, tile_cells>& total, std::size_t,
-                          std::size_t) {
+  const auto divide = [&](const std::array<NodeLanes, tile_cells>& total, std::size_t at) {
     const NodeLanes inverse = inverse_masses<D>(total);
-    for (int i = 0; i < tile_cells; ++i) {
+    for (std::size_t i = 0; i < tile_cells; ++i) {
       const NodeLanes of_mass = NodeLanes{} + inverse[i];
-      const NodeLanes moving = total[static_cast<std::size_t>(i)] * of_mass + pull;
-      v[i] = with_mass<D>(of_mass > 0.0 ? moving : NodeLanes{}, of_mass);
+      const NodeLanes moving = total[i] * of_mass + pull;
+      state.grid.v[b][at + i] = with_mass<D>(of_mass > 0.0 ? moving : NodeLanes{}, of_mass);
     }
   };
   if (state.grid.single)
-    update_nodes(body, state, friction, state.grid.single_sums, divide, rows_of, share);
+    update_block(body, friction, state.grid.single_sums, b, state, divide);
   else
-    update_nodes(body, state, friction, state.grid.sums, divide, rows_of, share);
+    update_block(body, friction, state.grid.sums, b, state, divide);
 }
 
-/// Adds impulses of the stresses and gravity to velocities that are there already.
+/// Adds impulses of the stresses and gravity to velocities of block b that are there already.
 template <class Space, class Buffer>
-void add_impulses(const Body<Space>& body, const ExplicitState<Space>& state, double friction,
-                  const std::vector<Buffer>& impulses, bool flip, const Vec<Space::dim>& gravity_impulse,
-                  RowsOf rows_of, Share<Space::dim>& share) {
+void add_impulses(const Body<Space>& body, double friction, const std::vector<Buffer>& impulses, bool flip,
+                  const Vec<Space::dim>& gravity_impulse, std::size_t b, ExplicitState<Space>& state) {
   constexpr int D = Space::dim;
   const NodeLanes pull = as_lanes<D>(gravity_impulse);
-  const auto add = [&](NodeLanes* v, const std::array<NodeLanes, tile_cells>& total, std::size_t b,
-                       std::size_t k) {
-    for (int i = 0; i < tile_cells; ++i) {
-      const NodeLanes of_mass = NodeLanes{} + v[i][D];
-      if (flip) share.v_start[b][k + static_cast<std::size_t>(i)] = v[i];
-      const NodeLanes faster = v[i] + (total[static_cast<std::size_t>(i)] * of_mass + pull);
-      v[i] = with_mass<D>(of_mass > 0.0 ? faster : v[i], of_mass);
+  const auto add = [&](const std::array<NodeLanes, tile_cells>& total, std::size_t at) {
+    for (std::size_t i = 0; i < tile_cells; ++i) {
+      NodeLanes& v = state.grid.v[b][at + i];
+      const NodeLanes of_mass = NodeLanes{} + v[D];
+      if (flip) state.grid.v_start[b][at + i] = v;
+      const NodeLanes faster = v + (total[i] * of_mass + pull);
+      v = with_mass<D>(of_mass > 0.0 ? faster : v, of_mass);
     }
   };
-  update_nodes(body, state, friction, impulses, add, rows_of, share);
+  update_block(body, friction, impulses, b, state, add);
 }
 
 }  // namespace tremie::detail

@@ -8,8 +8,8 @@ namespace tremie {
 
 /// Brings the state of the points to body.points.
 template <class Space>
-void write_back(ExplicitState<Space>& state, Body<Space>& body, Bring bring = Bring::all) {
-  write_back<Space::dim>(state.points, state.grid.axes, body.points, bring);
+void write_back(ExplicitState<Space>& state, Body<Space>& body) {
+  write_back<Space::dim>(state.points, state.grid.axes, body.points);
 }
 
 namespace detail {

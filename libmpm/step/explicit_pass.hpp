@@ -4,6 +4,7 @@
 // scheme asks for. Between the sums over controls, which go point by point, everything is done for eight
 // points at once.
 
+#include "libmpm/grid/passes.hpp"
 #include "libmpm/space/gradients.hpp"
 #include "libmpm/step/explicit_gather.hpp"
 #include "libmpm/step/pressure_cells.hpp"
@@ -137,10 +138,10 @@ template <int D>
   sums.speed2 = max(sums.speed2, speed2);
 }
 
-/// New velocities and places of group g.
+/// New velocities and places of group g. The moments of `fields` become its affine velocities, C[b][a].
 template <int D>
 void move_group(const std::array<Axis, D>& axes, const Transfer& transfer, double dt,
-                const Weights<D>& weights, const Fields<D>& fields, LanePoints<D>& points, std::size_t g,
+                const Weights<D>& weights, Fields<D>& fields, LanePoints<D>& points, std::size_t g,
                 LaneSums& sums) {
   for (int d = 0; d < D; ++d) {
     Octet& v = points.v[d][g];
@@ -150,15 +151,19 @@ void move_group(const std::array<Axis, D>& axes, const Transfer& transfer, doubl
   if (transfer.flip) return;
   const std::array<Octet, D> inverse = inverse_inertia<D>(axes, weights.inertia.data());
   for (int b = 0; b < D; ++b)
-    for (int a = 0; a < D; ++a) points.C[a * D + b][g] = fields.moment[b][a] * inverse[b];
+    for (int a = 0; a < D; ++a) fields.moment[b][a] *= inverse[b];
+  if (points.C[0].empty()) return;
+  for (int b = 0; b < D; ++b)
+    for (int a = 0; a < D; ++a) points.C[a * D + b][g] = fields.moment[b][a];
 }
 
 /// Momentum, mass and impulses of group g to the controls; `forces` is `sums` unless FLIP must tell them
-/// apart.
+/// apart. affine[b][a]: its affine velocities, but with FLIP.
 template <Pass pass, class Space>
 void scatter_points(bool flip, bool apart, double impulse_dt, const Weights<Space::dim>& weights,
-                    const LaneStress<Space::dim, Octet>& stress, int n, const LanePoints<Space::dim>& points,
-                    std::size_t g, Cube<Space::dim>& sums, Cube<Space::dim>& forces) {
+                    const LaneStress<Space::dim, Octet>& stress, const Octet (&affine)[Space::dim][4], int n,
+                    const LanePoints<Space::dim>& points, std::size_t g, Cube<Space::dim>& sums,
+                    Cube<Space::dim>& forces) {
   constexpr int D = Space::dim;
   constexpr bool hooped = pass.stress && std::is_same_v<Space, Axisymmetric>;
   constexpr Given momenta{.slopes = false}, impulses{.values = hooped, .moments = false};
@@ -171,8 +176,7 @@ void scatter_points(bool flip, bool apart, double impulse_dt, const Weights<Spac
   if (pass.move) momentum.value[D] = mass;
   for (int a = 0; a < D; ++a) {
     if (pass.move) momentum.value[a] = mass * points.v[a][g];
-    for (int b = 0; b < D && pass.move; ++b)
-      momentum.moment[b][a] = flip ? Octet{} : mass * points.C[a * D + b][g];
+    for (int b = 0; b < D && pass.move; ++b) momentum.moment[b][a] = flip ? Octet{} : mass * affine[b][a];
     for (int b = 0; b < D && pass.stress; ++b) forced.slope[b][a] = -impulse_dt * stress.sigma[a][b];
   }
   if (hooped) forced.value[0] += -impulse_dt * stress.hoop / points.x[0][g];
@@ -220,7 +224,7 @@ struct TilePass {
   LanePoints<D>& points;
   const Cube &v, &v_start;  ///< velocities, and those before the step's forces for FLIP
   Cube &sums, &forces;      ///< what points add to; the same unless FLIP must tell forces from momentum
-  TileRows& rows;           ///< that they reach
+  TileRows rows;            ///< that they have reached
   const HeldCells<D>* held;
 
   bool cells;                                   ///< pressures go by the cell, and there are any in this pass
@@ -258,6 +262,15 @@ void push_cells(TilePass<pass, Space, Law, Node>& in, std::size_t g, int n, cons
   in.pressed.push(cell, n, in.input.impulse_dt * pressure);
 }
 
+/// Affine velocities of group g as they are kept, where move_group leaves them.
+template <int D>
+Fields<D> kept_affine(const LanePoints<D>& points, std::size_t g) {
+  Fields<D> fields = {};
+  for (int b = 0; b < D && !points.C[0].empty(); ++b)
+    for (int a = 0; a < D; ++a) fields.moment[b][a] = points.C[a * D + b][g];
+  return fields;
+}
+
 /// Eight points.
 template <Pass pass, class Space, class Law>
 void visit_group(TilePass<pass, Space, Law, NodeLanes>& in, std::size_t g) {
@@ -274,7 +287,7 @@ void visit_group(TilePass<pass, Space, Law, NodeLanes>& in, std::size_t g) {
   if (pass.gather)
     gather_for<pass, D>(in.v, in.v_start, weights, n, flip, fields);
   else
-    fields = {};
+    fields = kept_affine(in.points, g);
   in.reduced.mixed += weights.together ? 0 : 1;
   Resistance resistance;
   LaneStress<D, Octet> stress;
@@ -294,8 +307,8 @@ void visit_group(TilePass<pass, Space, Law, NodeLanes>& in, std::size_t g) {
   }
   if (in.cells) push_cells(in, g, n, resistance.pressure, cell);
   in.rows |= rows_reached<D>(weights, n);
-  scatter_points<pass, Space>(flip, &in.forces != &in.sums, in.input.impulse_dt, weights, stress, n,
-                              in.points, g, in.sums, in.forces);
+  scatter_points<pass, Space>(flip, &in.forces != &in.sums, in.input.impulse_dt, weights, stress,
+                              fields.moment, n, in.points, g, in.sums, in.forces);
 }
 
 /// All groups of a tile.
@@ -317,25 +330,21 @@ void read_pressure_cells(TilePass<pass, Space, Law, Node>& in, std::vector<Group
 /// One tile.
 template <Pass pass, class Node, class Space, class Law>
 PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& settings,
-                        const PassInput& input, int t, const Share<Space::dim>& share,
-                        ExplicitState<Space>& state) {
+                        const PassInput& input, std::size_t t, ExplicitState<Space>& state) {
   constexpr int D = Space::dim;
   TileGrid<D>& grid = state.grid;
   const Tile<D>& tile = grid.tiles[t];
-  const auto buffer = static_cast<std::size_t>(tile.buffer[1 - grid.turn]);
   const bool flip = settings.transfer.flip;
-  auto& sums = sums_of<Node>(grid)[buffer];
+  auto& sums = sums_of<Node>(grid)[t];
   auto* forces = &sums;
   if constexpr (std::is_same_v<Node, NodeLanes>)
-    if (flip && pass.move && pass.stress) forces = &grid.forces[buffer];
+    if (flip && pass.move && pass.stress) forces = &grid.forces[t];
   NodeCube<Node, TileGrid<D>::tile_nodes> v, v_start;
-  const TileRows reached = grid.rows[grid.filled_buffer(t)];
-  if (pass.gather) read_blocks<D>(tile, reached, share.v, v);
-  if (pass.gather && pass.move && flip) read_blocks<D>(tile, reached, share.v_start, v_start);
-  clear_rows(grid.rows[buffer], sums);
-  if (forces != &sums) clear_rows(grid.rows[buffer], *forces);
-  grid.rows[buffer] = 0;
-  const HeldCells<D>* held = pass.stress ? state.holding.of(t) : nullptr;
+  if (pass.gather) read_blocks<D>(tile, grid.rows[t], grid.v, v);
+  if (pass.gather && pass.move && flip) read_blocks<D>(tile, grid.rows[t], grid.v_start, v_start);
+  clear_rows(grid.rows[t], sums);
+  if (forces != &sums) clear_rows(grid.rows[t], *forces);
+  const HeldCells<D>* held = pass.stress ? state.holding.of(static_cast<int>(t)) : nullptr;
   const bool cell_pressure = pass.stress && settings.cell_pressure;
   constexpr bool pressed_anew = pass.gather && pass.move;  // by the cells that points have moved to
   const auto no_cells = [&](bool wanted) {
@@ -355,7 +364,7 @@ PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& 
                                       .v_start = v_start,
                                       .sums = sums,
                                       .forces = *forces,
-                                      .rows = grid.rows[buffer],
+                                      .rows = 0,
                                       .held = held,
                                       .cells = cell_pressure,
                                       .before = before,
@@ -367,43 +376,43 @@ PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& 
   if (in.cells && pass.gather) read_pressure_cells(in, entered);
   visit_groups(in);
   if (in.cells) in.pressed.scatter_impulses(*forces);
+  grid.rows[t] = in.rows;
   return reduced.reduced();
 }
 
 /// One tile, in the precision that is set: single goes with the stress first.
 template <Pass pass, class Space, class Law>
 PassSums pass_as_set(const Mix& mix, const Law& law, const ExplicitSettings& settings, const PassInput& input,
-                     int t, const Share<Space::dim>& share, ExplicitState<Space>& state) {
+                     std::size_t t, ExplicitState<Space>& state) {
   if constexpr (!pass.stress || !pass.move)
     if (settings.single_precision)
-      return pass_over_tile<pass, SingleNode, Space>(mix, law, settings, input, t, share, state);
-  return pass_over_tile<pass, NodeLanes, Space>(mix, law, settings, input, t, share, state);
+      return pass_over_tile<pass, SingleNode, Space>(mix, law, settings, input, t, state);
+  return pass_over_tile<pass, NodeLanes, Space>(mix, law, settings, input, t, state);
 }
 
-/// All tiles; `before(share)` comes first in each share, for what needs nothing of the others but the sums of
-/// the last pass.
-template <Pass pass, class Space, class Law, class Before>
-PassSums pass_over_points(const Mix& mix, const Law& law, const ExplicitSettings& settings,
-                          const PassInput& input, ExplicitState<Space>& state, Before before) {
-  constexpr int D = Space::dim;
-  std::vector<PassSums> reduced(state.grid.tiles.size());
-  for_each_share(state.grid, [&](Share<D>& share) {
-    before(share);
-    for (const int t : share.tiles)
-      reduced[t] = pass_as_set<pass, Space>(mix, law, settings, input, t, share, state);
-  });
-  state.grid.turn = 1 - state.grid.turn;
-  PassSums all;
-  for (const PassSums& one : reduced) all.add(one);
-  if (state.mixed_groups < 0) state.mixed_groups = all.mixed;
-  state.mixed_since += std::max<std::int64_t>(0, all.mixed - state.mixed_groups);
-  return all;
-}
-
+/// A pass over the points, tile by tile in any order.
 template <Pass pass, class Space, class Law>
-PassSums pass_over_points(const Mix& mix, const Law& law, const ExplicitSettings& settings,
-                          const PassInput& input, ExplicitState<Space>& state) {
-  return pass_over_points<pass, Space>(mix, law, settings, input, state, [](Share<Space::dim>&) {});
-}
+struct PointsPass {
+  const Mix& mix;
+  const Law& law;
+  const ExplicitSettings& settings;
+  PassInput input;
+  ExplicitState<Space>& state;
+  std::vector<PassSums> of_tile = std::vector<PassSums>(state.grid.tiles.size());
+
+  void operator()(int tile) {
+    const auto t = static_cast<std::size_t>(tile);
+    of_tile[t] = pass_as_set<pass, Space>(mix, law, settings, input, t, state);
+  }
+
+  /// When all tiles are done.
+  PassSums sums() const {
+    PassSums all;
+    for (const PassSums& one : of_tile) all.add(one);
+    if (state.mixed_groups < 0) state.mixed_groups = all.mixed;
+    state.mixed_since += std::max<std::int64_t>(0, all.mixed - state.mixed_groups);
+    return all;
+  }
+};
 
 }  // namespace tremie::detail

@@ -49,7 +49,7 @@ LaneStress<Space::dim, Singles> stress_of_pair(TilePass<pass, Space, Law, Single
                                    in.cells ? Singles{} : to_single(pressure[0], pressure[1]));
 }
 
-/// Moves a pair with what it read, and keeps its affine velocities.
+/// Moves a pair with what it read; the moments become its affine velocities.
 template <Pass pass, class Space, class Law>
 void move_pair(TilePass<pass, Space, Law, SingleNode>& in, const GroupPair& pair,
                const SingleWeights<Space::dim>& weights, SingleFields<Space::dim>& read) {
@@ -63,7 +63,7 @@ void move_pair(TilePass<pass, Space, Law, SingleNode>& in, const GroupPair& pair
     Octet v[D];
     for (int d = 0; d < D; ++d) in.points.v[d][g] = v[d] = to_double(read.value[d], half);
     move_places<D>(axes, in.input.dt, v, in.points, g, in.reduced);
-    for (int b = 0; b < D; ++b)
+    for (int b = 0; b < D && !in.points.C[0].empty(); ++b)
       for (int a = 0; a < D; ++a) in.points.C[a * D + b][g] = to_double(read.along[b][a], half);
   }
 }

@@ -10,6 +10,27 @@
 
 namespace tremie {
 
+namespace detail {
+
+/// A pass over the points for run_passes: `of_block(block)` makes the velocities that it reads.
+template <Pass pass, class Space, class Law, class OfBlock>
+auto controls_to_points(bool controls_done, OfBlock of_block, PointsPass<pass, Space, Law>& of_tile) {
+  return GridPass{controls_done, [of_block](int block) { of_block(static_cast<std::size_t>(block)); },
+                  [&of_tile](int tile) { of_tile(tile); }};
+}
+
+/// The first pass over the points, which reads nothing of the grid.
+template <Pass pass, class Space, class Law>
+void first_pass(const Body<Space>& body, const Law& law, const ExplicitSettings& settings,
+                ExplicitState<Space>& state) {
+  PointsPass<pass, Space, Law> of_tile{body.mix, law, settings, {.impulse_dt = state.next_dt}, state};
+  run_passes(state.grid, controls_to_points(
+                             true, [](std::size_t) {}, of_tile));
+  of_tile.sums();
+}
+
+}  // namespace detail
+
 /// Sorts the body's points into tiles and brings their mass, momentum and first stresses to the grid.
 /// body.points is empty from here to the next write_back.
 template <class Space, class Law>
@@ -23,34 +44,15 @@ ExplicitState<Space> start_explicit(Body<Space>& body, const Law& law, const Exp
   take_points<Space::dim>(body.points, !settings.transfer.flip, settings.keep_shear_rates, state.points);
   detail::sort_points(settings, state);
   detail::choose_next_step(body, law, settings, state);
-  const detail::PassInput input{.impulse_dt = state.next_dt};
   look_into_wall_cells(state);
   if (settings.stress == StressUpdate::last)
-    detail::pass_over_points<detail::first_sums, Space>(body.mix, law, settings, input, state);
+    detail::first_pass<detail::first_sums>(body, law, settings, state);
   else
-    detail::pass_over_points<detail::first_momenta, Space>(body.mix, law, settings, input, state);
+    detail::first_pass<detail::first_momenta>(body, law, settings, state);
+  if (!settings.keep_affine)
+    for (std::vector<Octet>& C : state.points.C) give_back(C);
   return state;
 }
-
-namespace detail {
-
-/// The controls' part of a step, then a pass over the points. Each thread goes from its controls to its
-/// points at once, unless `between`, if it is wanted, must see all controls first.
-template <Pass pass, class Space, class Law, class Controls, class Between>
-PassSums controls_then_points(const Body<Space>& body, const Law& law, const ExplicitSettings& settings,
-                              const PassInput& input, ExplicitState<Space>& state, Controls controls,
-                              bool wanted, Between between) {
-  if (wanted) {
-    for_each_share(state.grid, controls);
-    between();
-  }
-  look_into_wall_cells(state);
-  return pass_over_points<pass, Space>(body.mix, law, settings, input, state, [&](Share<Space::dim>& share) {
-    if (!wanted) controls(share);
-  });
-}
-
-}  // namespace detail
 
 /// Updates the stress last (USL): the velocities at the end of the step deform and move the points. Points to
 /// grid for the step to come happens in the same pass, with the impulses that the new stresses give in it.
@@ -60,20 +62,21 @@ detail::PassSums stress_last(Body<Space>& body, const Law& law, const ExplicitSe
   const Vec<Space::dim> pull = dt * body.gravity, none = Vec<Space::dim>::Zero();
   const double friction = settings.friction_coefficient;
   // Momentum balance on the grid; the stresses' impulses are in the momenta, but for FLIP.
-  const bool sort = detail::should_sort(state);
-  const RowsOf rows_of = wall || sort ? RowsOf::all_tiles : RowsOf::own_tiles;
-  const auto velocities = [&](Share<Space::dim>& share) {
+  const auto velocities = [&](std::size_t block) {
     const bool flip = settings.transfer.flip;
-    detail::velocities_from_sums(body, state, flip ? 0.0 : friction, flip ? none : pull, rows_of, share);
-    if (flip) detail::add_impulses(body, state, friction, state.grid.forces, flip, pull, rows_of, share);
+    detail::velocities_from_sums(body, flip ? 0.0 : friction, flip ? none : pull, block, state);
+    if (flip) detail::add_impulses(body, friction, state.grid.forces, flip, pull, block, state);
   };
-  const auto wall_and_sorting = [&] {
-    detail::push_off_wall(wall, body.time + dt, dt, settings.wall_gap, state);
-    if (sort) detail::sort_points(settings, state);
-  };
+  const bool sort = detail::should_sort(state), all_at_once = wall || sort;
+  if (all_at_once) for_each_block(state.grid, velocities);
+  detail::push_off_wall(wall, body.time + dt, dt, settings.wall_gap, state);
+  if (sort) detail::sort_points(settings, state);
+  look_into_wall_cells(state);
   // Grid to points, stress, motion, points to grid.
-  return detail::controls_then_points<detail::whole_pass>(body, law, settings, {dt, state.next_dt}, state,
-                                                          velocities, wall || sort, wall_and_sorting);
+  detail::PointsPass<detail::whole_pass, Space, Law> whole{
+      body.mix, law, settings, {dt, state.next_dt}, state};
+  run_passes(state.grid, detail::controls_to_points(all_at_once, velocities, whole));
+  return whole.sums();
 }
 
 /// Updates the stress first (USF), the paper's order: with the points' velocities as the grid has them before
@@ -82,24 +85,36 @@ template <class Space, class Law>
 detail::PassSums stress_first(Body<Space>& body, const Law& law, const ExplicitSettings& settings,
                               const RigidWall<Space::dim>& wall, double dt, ExplicitState<Space>& state) {
   const Vec<Space::dim> pull = dt * body.gravity, none = Vec<Space::dim>::Zero();
-  const bool sort = detail::should_sort(state);
-  const RowsOf rows_of = wall || sort ? RowsOf::all_tiles : RowsOf::own_tiles;
-  const auto velocities = [&](Share<Space::dim>& share) {
-    detail::velocities_from_sums(body, state, 0.0, none, rows_of, share);
+  const auto velocities = [&](std::size_t block) {
+    detail::velocities_from_sums(body, 0.0, none, block, state);
   };
-  detail::PassSums sums = detail::controls_then_points<detail::stress_pass>(
-      body, law, settings, {dt, dt}, state, velocities, sort, [&] { detail::sort_points(settings, state); });
-
-  const auto impulses = [&](Share<Space::dim>& share) {
-    const auto add = [&](const auto& sums_of_tiles) {
-      detail::add_impulses(body, state, settings.friction_coefficient, sums_of_tiles, settings.transfer.flip,
-                           pull, rows_of, share);
+  const auto impulses = [&](std::size_t block) {
+    const auto add = [&](const auto& of_tiles) {
+      detail::add_impulses(body, settings.friction_coefficient, of_tiles, settings.transfer.flip, pull, block,
+                           state);
     };
     state.grid.single ? add(state.grid.single_sums) : add(state.grid.sums);
   };
-  sums.add(detail::controls_then_points<detail::motion_pass>(
-      body, law, settings, {dt, 0.0}, state, impulses, bool{wall},
-      [&] { detail::push_off_wall(wall, body.time + dt, dt, settings.wall_gap, state); }));
+  const bool sort = detail::should_sort(state);
+  if (sort) {
+    for_each_block(state.grid, velocities);
+    detail::sort_points(settings, state);
+  }
+  look_into_wall_cells(state);
+  detail::PointsPass<detail::stress_pass, Space, Law> stress{body.mix, law, settings, {dt, dt}, state};
+  detail::PointsPass<detail::motion_pass, Space, Law> motion{body.mix, law, settings, {dt, 0.0}, state};
+  const auto first = detail::controls_to_points(sort, velocities, stress);
+  const auto second = detail::controls_to_points(bool{wall}, impulses, motion);
+  if (wall) {
+    run_passes(state.grid, first);
+    for_each_block(state.grid, impulses);
+    detail::push_off_wall(wall, body.time + dt, dt, settings.wall_gap, state);
+    run_passes(state.grid, second);
+  } else {
+    run_passes(state.grid, first, second);
+  }
+  detail::PassSums sums = stress.sums();
+  sums.add(motion.sums());
   return sums;
 }
 

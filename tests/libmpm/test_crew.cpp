@@ -1,7 +1,8 @@
-// Threads that stay together from pass to pass.
+// Threads that stay together from pass to pass, and work that they share.
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <chrono>
 #include <numeric>
 
@@ -41,6 +42,66 @@ TEST(Crew, WakesWhoSleeps) {
 
 // A crew that never had a round lets its threads go.
 TEST(Crew, GoesWithoutARound) { Crew crew(4); }
+
+// One thread sleeps at its first piece: the other does all that is left, and none is done twice.
+TEST(SharedWork, OthersDoWhatIsLeft) {
+  SharedWork work;
+  work.set_out({0, 50, 60});
+  Crew crew(2);
+  for (int slow = 0; slow < 2; ++slow) {
+    work.start_anew();
+    std::array<std::atomic<int>, 60> visits{};
+    std::array<int, 2> done{};
+    std::atomic<bool> slow_has_begun = false, other_is_done = false;
+    crew.run([&](int s) {
+      while (s != slow && !slow_has_begun) std::this_thread::yield();
+      work.take(s, [&](int piece) {
+        ++visits[static_cast<std::size_t>(piece)];
+        ++done[static_cast<std::size_t>(s)];
+        slow_has_begun = true;
+        while (s == slow && !other_is_done) std::this_thread::yield();
+      });
+      other_is_done = true;
+    });
+    for (const auto& visit : visits) EXPECT_EQ(visit, 1);
+    EXPECT_EQ(done[static_cast<std::size_t>(slow)], 1);
+    EXPECT_EQ(done[static_cast<std::size_t>(1 - slow)], 59);
+  }
+}
+
+// Runs are done towards each other: 0 1 2 and 6 5 4 3.
+TEST(SharedWork, EverySecondRunGoesFromItsEnd) {
+  SharedWork work;
+  work.set_out({0, 3, 7});
+  std::vector<int> pieces;
+  for (int s = 0; s < 2; ++s) work.own(s, [&](int piece) { pieces.push_back(piece); });
+  EXPECT_EQ(pieces, (std::vector<int>{0, 1, 2, 6, 5, 4, 3}));
+  pieces.clear();
+  work.take(1, [&](int piece) { pieces.push_back(piece); });
+  EXPECT_EQ(pieces, (std::vector<int>{6, 5, 4, 3, 0, 1, 2}));
+}
+
+// Who waits sees what was written before the mark, also when it has gone to sleep over it.
+TEST(DoneMarks, AreWaitedFor) {
+  DoneMarks marks;
+  marks.set_out(2);
+  int written = 0, seen = 0;
+  Crew crew(2);
+  crew.run([&](int s) {
+    if (s == 0) {
+      marks.wait_for(1, 3);
+      seen = written;
+    } else {
+      std::this_thread::sleep_for(std::chrono::milliseconds(30));
+      marks.mark(1, 2);
+      std::this_thread::sleep_for(std::chrono::milliseconds(30));
+      written = 7;
+      marks.mark(1, 3);
+    }
+  });
+  EXPECT_EQ(seen, 7);
+  marks.wait_for(1, 1);  // long done
+}
 
 }  // namespace
 }  // namespace tremie

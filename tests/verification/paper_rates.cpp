@@ -135,7 +135,7 @@ void gradients(ExplicitState<Space>& state, std::vector<Mat<D, D>>& L) {
   for (int t = 0; t < state.grid.n_tiles(); ++t) {
     const Tile<D>& tile = state.grid.tiles[static_cast<std::size_t>(t)];
     TileGrid<D>::Buffer v;
-    read_blocks<D>(tile, all_rows<D>, share_of(state.grid, t).v, v);
+    read_blocks<D>(tile, all_rows<D>, state.grid.v, v);
     for (int g = tile.first_group; g < tile.last_group; ++g) {
       const auto group = static_cast<std::size_t>(g);
       std::array<Octet, D> x;
