@@ -2,9 +2,9 @@
 
 // Threads that stay together from pass to pass, and work that they share.
 //
-// An explicit step of a few thousand points takes a tenth of a millisecond. Starting and ending two parallel
-// regions of OpenMP in it costs a twentieth of that; a crew that waits at a counter between two passes costs
-// a fifth as much.
+// An explicit step of a few thousand points takes a tenth of a millisecond. Starting and ending a parallel
+// region of OpenMP in it costs a twentieth of that; a crew that waits at a counter for the next round costs a
+// fifth as much.
 
 #include <atomic>
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace tremie {
 
 namespace detail {
 
-/// Looks as often as takes some tenths of a millisecond, then sleeps: other programs want to run too.
+/// How often a waiting thread looks, some tenths of a millisecond, before it lets other programs run.
 inline constexpr int looks = 10000;
 
 inline void look_again() {
@@ -137,25 +137,24 @@ class SharedWork {
   std::size_t n_ = 0;
 };
 
-/// Which pass was the last that was done with each of n things. One line of a cache for each: what one thread
-/// looks at again and again another must not write beside.
+/// Of each of n things the number of the last pass that is done with it. One line of a cache for each: what
+/// one thread looks at again and again another must not write beside.
 class DoneMarks {
  public:
-  using Pass = std::uint32_t;
-
   void set_out(std::size_t n) { marks_ = std::make_unique<Mark[]>(n); }
-  void mark(int i, Pass pass) {
-    std::atomic<Pass>& mark = marks_[static_cast<std::size_t>(i)].pass;
-    mark.store(pass, std::memory_order_release);
-    mark.notify_all();
+  void mark(int i, std::int64_t pass) {
+    marks_[static_cast<std::size_t>(i)].pass.store(pass, std::memory_order_release);
   }
-  void wait_for(int i, Pass pass) const {
-    detail::wait_while(marks_[static_cast<std::size_t>(i)].pass, [pass](Pass seen) { return seen < pass; });
+  /// Who waits longer than a pass takes lets others run, who may be what it waits for.
+  void wait_for(int i, std::int64_t pass) const {
+    const std::atomic<std::int64_t>& done = marks_[static_cast<std::size_t>(i)].pass;
+    for (int looked = 0; done.load(std::memory_order_acquire) < pass; ++looked)
+      looked < detail::looks ? detail::look_again() : std::this_thread::yield();
   }
 
  private:
   struct alignas(64) Mark {
-    std::atomic<Pass> pass = 0;
+    std::atomic<std::int64_t> pass = 0;
   };
   std::unique_ptr<Mark[]> marks_;
 };

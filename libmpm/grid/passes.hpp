@@ -4,9 +4,10 @@
 //
 // A block may be done when its tiles are done with the pass before: they have given what it sums up, and no
 // longer read its velocities. A tile may be done when its blocks are: they have what it reads, and no longer
-// read what it gave. Each thread does its own blocks, and begins where only its own tiles are; tiles, which
-// take ten times as long, are shared out as they come.
+// read what it gave. Each thread does its own blocks; tiles, which take ten times as long, are shared out as
+// they come.
 
+#include <cassert>
 #include <tuple>
 
 #include "libmpm/grid/tiles.hpp"
@@ -16,7 +17,7 @@ namespace tremie {
 /// What happens in a pass: of_block(block) and of_tile(tile).
 template <class OfBlock, class OfTile>
 struct GridPass {
-  bool blocks_done;  ///< already
+  bool blocks_done;  ///< already; only the first of passes in a row can find it so
   OfBlock of_block;
   OfTile of_tile;
 };
@@ -28,7 +29,8 @@ namespace detail {
 /// Thread s's part of the `number`-th pass in a row.
 template <int D, class Pass>
 void do_part(TileGrid<D>& grid, int s, std::size_t number, const Pass& pass) {
-  const DoneMarks::Pass now = grid.passes + static_cast<DoneMarks::Pass>(number) + 1;
+  assert(number == 0 || !pass.blocks_done);
+  const std::int64_t now = grid.passes + static_cast<std::int64_t>(number) + 1;
   if (!pass.blocks_done)
     grid.block_work.own(s, [&](int b) {
       if (number > 0)

@@ -120,7 +120,7 @@ struct TileGrid {
   SharedWork block_work;                ///< of its threads
   std::array<SharedWork, 2> tile_work;  ///< in up to two passes in a row
   DoneMarks blocks_done, tiles_done;
-  DoneMarks::Pass passes = 0;          ///< so far, since the grid was laid
+  std::int64_t passes = 0;             ///< so far, since the grid was laid
   std::vector<BlockNodes<D>> v;        ///< a block: velocities, in the rows that a tile reaches
   std::vector<BlockNodes<D>> v_start;  ///< a block: before the step's forces, for FLIP alone
   std::vector<Buffer> sums;            ///< a tile: momentum and mass that the points give

@@ -78,7 +78,7 @@ void for_each_quantity(LanePoints<D>& lanes, Points<D>& points, Visit visit) {
 
 }  // namespace detail
 
-/// Writes the state of the points to where they came from.
+/// Writes the state of the points to where they came from; what is not kept of them stays empty there.
 template <int D>
 void write_back(LanePoints<D>& lanes, const std::array<Axis, D>& axes, Points<D>& points) {
   detail::for_each_quantity<D>(lanes, points, [&](std::span<std::vector<Octet>> from, auto& to) {

@@ -19,14 +19,14 @@ auto controls_to_points(bool controls_done, OfBlock of_block, PointsPass<pass, S
                   [&of_tile](int tile) { of_tile(tile); }};
 }
 
-/// The first pass over the points, which reads nothing of the grid.
+/// A pass over the points, with the velocities that the controls have.
 template <Pass pass, class Space, class Law>
-void first_pass(const Body<Space>& body, const Law& law, const ExplicitSettings& settings,
-                ExplicitState<Space>& state) {
-  PointsPass<pass, Space, Law> of_tile{body.mix, law, settings, {.impulse_dt = state.next_dt}, state};
-  run_passes(state.grid, controls_to_points(
-                             true, [](std::size_t) {}, of_tile));
-  of_tile.sums();
+PassSums pass_over_points(const Mix& mix, const Law& law, const ExplicitSettings& settings,
+                          const PassInput& input, ExplicitState<Space>& state) {
+  const auto no_change = [](std::size_t) {};
+  PointsPass<pass, Space, Law> of_tile{mix, law, settings, input, state};
+  run_passes(state.grid, controls_to_points(true, no_change, of_tile));
+  return of_tile.sums();
 }
 
 }  // namespace detail
@@ -45,10 +45,11 @@ ExplicitState<Space> start_explicit(Body<Space>& body, const Law& law, const Exp
   detail::sort_points(settings, state);
   detail::choose_next_step(body, law, settings, state);
   look_into_wall_cells(state);
+  const detail::PassInput input{.impulse_dt = state.next_dt};
   if (settings.stress == StressUpdate::last)
-    detail::first_pass<detail::first_sums>(body, law, settings, state);
+    detail::pass_over_points<detail::first_sums>(body.mix, law, settings, input, state);
   else
-    detail::first_pass<detail::first_momenta>(body, law, settings, state);
+    detail::pass_over_points<detail::first_momenta>(body.mix, law, settings, input, state);
   if (!settings.keep_affine)
     for (std::vector<Octet>& C : state.points.C) give_back(C);
   return state;

@@ -63,7 +63,7 @@ void pass_of(benchmark::State& run) {
   omp_set_num_threads(1);
   Set<Space> set(thixotropic, false, StressUpdate::last, false);
   const detail::PassInput input{1e-9, 1e-9};
-  for (auto _ : run) detail::pass_over_points<pass, Space>(set.body.mix, law, set.settings, input, set.state);
+  for (auto _ : run) detail::pass_over_points<pass>(set.body.mix, law, set.settings, input, set.state);
   set.count(run);
 }
 

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <numeric>
+#include <thread>
 
 #include "libmpm/grid/crew.hpp"
 

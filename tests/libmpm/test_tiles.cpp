@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
+#include <thread>
 
 #include "libmpm/grid/lay_tiles.hpp"
 #include "libmpm/grid/passes.hpp"
@@ -161,18 +163,40 @@ class PassesWatched {
   std::atomic<bool> wrong_ = false;
 };
 
-TEST(Tiles, PassesWaitForWhatTheyNeedAndNoMore) {
+void expect_in_order(TileGrid<3>& grid) {
+  PassesWatched watched(grid);
+  run_passes(grid, watched.pass(1, false), watched.pass(2, false));
+  watched.expect_all_done(2);
+  run_passes(grid, watched.pass(3, false));
+  watched.expect_all_done(3);
+  for_each_block(grid, [&](int b) { watched.block_done(b, 4); });
+  run_passes(grid, watched.pass(4, true), watched.pass(5, false));
+  watched.expect_all_done(5);
+}
+
+TEST(Tiles, PassesWaitForWhatTheyNeed) {
   for (const int n : {0, 1, 2, 7, 40})
     for (const int threads : {1, 2, 3, 16}) {
       TileGrid<3> grid = row_of_tiles<3>(n, threads);
-      PassesWatched watched(grid);
-      run_passes(grid, watched.pass(1, false), watched.pass(2, false));
-      watched.expect_all_done(2);
-      run_passes(grid, watched.pass(3, false));
-      watched.expect_all_done(3);
-      for_each_block(grid, [&](int b) { watched.block_done(b, 4); });
-      run_passes(grid, watched.pass(4, true), watched.pass(5, false));
-      watched.expect_all_done(5);
+      expect_in_order(grid);
+    }
+}
+
+// Sheets of tiles that close on themselves in two directions: their last blocks are their first.
+TEST(Tiles, PassesWaitForWhatTheyNeedOnPeriodicAxes) {
+  for (const int n : {1, 2, 5})
+    for (const int threads : {1, 2, 3, 16}) {
+      TileGrid<3> grid;
+      for (Axis& axis : grid.axes) axis = {.periodic = true, .n_cells = n * tile_cells};
+      grid.axes[2] = {.n_cells = 64};
+      std::vector<Tile<3>> tiles;
+      for (int t = 0; t < n * n; ++t) {
+        tiles.push_back({.first_group = 3 * t, .last_group = 3 * t + 3});
+        tiles.back().at = {t / n, t % n, 0};
+      }
+      lay_tiles<3>(grid, tiles, false, threads);
+      EXPECT_EQ(std::ssize(grid.blocks), 2 * n * n);
+      expect_in_order(grid);
     }
 }
 

@@ -179,7 +179,8 @@ void print_rates(const Asked& asked) {
   const auto [cell, rest, seconds, flip, mix, alpha, gate] = asked;
   const Scene scene = paper_scene(asked);
   Body<Space> body = filled_cone<Space>(scene);
-  const ExplicitSettings settings = explicit_settings(scene);
+  ExplicitSettings settings = explicit_settings(scene);
+  settings.keep_affine = true;
   RigidWall<D> wall;
   lifted_wall(scene, settings.wall_gap + 0.6 * cell, wall);
   const Papanastasiou law{scene.model.regularisation};
