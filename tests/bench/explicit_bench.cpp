@@ -46,6 +46,7 @@ struct Set {
     settings.stress = stress;
     settings.single_precision = single;
     settings.cell_pressure = cell_pressure;
+    settings.keep_affine = false;
     settings.fixed_dt = 1e-5;
     Shape<Space::dim> shape;
     if (gimp) shape = {ShapeFunctions::gimp, {}}, shape.half.fill(0.25);
