@@ -8,11 +8,15 @@
 // The place is the centre of mass of the points: at the cell's own centre the row would push controls that
 // the points hardly reach, in a cell that they have just entered, by any multiple of the control's mass.
 // (With the row at the mean place s of the points, a control whose spline is s^2/2 has at least the mass of
-// s^2/2 of them, and slope s.) GIMP's steps with the stress first read the divergence from velocities that
-// the points have brought to the grid, which know nothing of such a push: there the place is the cell's
-// centre, whose row is the same in every cell. But in a cell at a wall that holds it is as high as the points
-// on average: where they fill the upper half alone, what they carry away is what the cell loses, and with the
-// rate at the centre it would stay hollow.
+// s^2/2 of them, and slope s.) Of two points at two faces of a cell, though, none reaches the control across,
+// which the row between them would push. So points that leave out a corner have the mean of their own rows:
+// its slope squared is nowhere more than twice their share of the control's mass.
+//
+// GIMP's steps with the stress first read the divergence from velocities that the points have brought to the
+// grid, which know nothing of such a push: there the place is the cell's centre, whose row is the same in
+// every cell. But in a cell at a wall that holds it is as high as the points on average: where they fill the
+// upper half alone, what they carry away is what the cell loses, and with the rate at the centre it would
+// stay hollow.
 
 #include "libmpm/space/gradients.hpp"
 #include "libmpm/step/explicit_body.hpp"
@@ -38,7 +42,7 @@ class PressureCells {
         held_(held) {
     if (!wanted) return;
     entered_.fill(false), impulse_.fill(0.0);
-    if (follows_) moment_.fill(NodeLanes{});
+    if (follows_) moment_.fill(NodeLanes{}), points_.fill(0);
     for (int d = 0; d < D; ++d) {
       origin_[d] = axes[d].origin, per_cell_[d] = 1.0 / axes[d].h, first_[d] = tile[d] * tile_cells;
       along_[d][d] = static_cast<Real>(per_cell_[d]);
@@ -67,7 +71,11 @@ class PressureCells {
     for (int d = 0; d < D; ++d) column[d] = column[D] * x[d];
     NodeLanes moment[octet_size];
     to_rows(column, moment);
-    for (std::size_t l = 0; l < octet_size; ++l) moment_[static_cast<std::size_t>(cells[l])] += moment[l];
+    for (std::size_t l = 0; l < octet_size; ++l) {
+      const auto c = static_cast<std::size_t>(cells[l]);
+      moment_[c] += moment[l];
+      if (moment[l][D] > 0.0 && points_[c] < few + 1) first_points_[c][points_[c]++] = moment[l];
+    }
   }
 
   /// Reads the divergence of all cells, when all points have entered.
@@ -97,12 +105,12 @@ class PressureCells {
         });
         continue;
       }
-      with_row(cell, [&](int base, const auto& weights, double x_0) {
+      with_rows(cell, [&](double share, int base, const auto& weights, double x_0) {
         constexpr int width = std::remove_cvref_t<decltype(weights)>::n_controls;
         NodeLanes value = {}, slope[D] = {};
         const NodeLanes moment[D] = {};
-        if (std::is_same_v<Space, Axisymmetric>) value[0] = impulse / x_0;
-        for (int d = 0; d < D; ++d) slope[d][d] = impulse;
+        if (std::is_same_v<Space, Axisymmetric>) value[0] = share * impulse / x_0;
+        for (int d = 0; d < D; ++d) slope[d][d] = share * impulse;
         scatter<D, width>(&sums[base], weights, value, slope, moment);
       });
     }
@@ -125,17 +133,18 @@ class PressureCells {
       for (int d = 1; d < D; ++d) sum += both[d];
       return static_cast<double>(sum);
     }
-    double divergence = 0.0;
-    with_row(cell, [&](int base, const auto& weights, double x_0) {
+    double mean = 0.0;
+    with_rows(cell, [&](double share, int base, const auto& weights, double x_0) {
       constexpr int width = std::remove_cvref_t<decltype(weights)>::n_controls;
       const auto at = gather<D, width, slopes_only>(&v[base], weights);
-      double L[D][D], q[Space::n_strain];
+      double L[D][D], q[Space::n_strain], divergence;
       for (int a = 0; a < D; ++a)
         for (int b = 0; b < D; ++b) L[a][b] = at.slope[b][a];
       const double v_0 = at.value[0];
       strain_rate_of<Space, double>(L, v_0, x_0, q, divergence);
+      mean += share * divergence;
     });
-    return divergence;
+    return mean;
   }
 
   static constexpr Index<D> index_of(std::size_t cell) {
@@ -156,15 +165,17 @@ class PressureCells {
     return first;
   }();
 
+  /// Place in a cell of what has this moment: mass times place, and mass.
+  NodeLanes place_in(std::size_t cell, const NodeLanes& moment) const {
+    const Index<D> at = index_of(cell);
+    NodeLanes begin = first_;
+    for (int d = 0; d < D; ++d) begin[d] += at[d];
+    return (moment * (1.0 / moment[D]) - origin_) * per_cell_ - begin;
+  }
+
   /// Where the row of a cell is, in the cell.
   NodeLanes place_of(std::size_t cell) const {
-    if (follows_) {
-      const Index<D> at = index_of(cell);
-      NodeLanes begin = first_;
-      for (int d = 0; d < D; ++d) begin[d] += at[d];
-      const NodeLanes x = moment_[cell] * (1.0 / moment_[cell][D]);
-      return (x - origin_) * per_cell_ - begin;
-    }
+    if (follows_) return place_in(cell, moment_[cell]);
     NodeLanes place = NodeLanes{} + 0.5;
     for (int d = 0; d < D && held_; ++d) place[d] = static_cast<double>((*held_)[cell].place[d]);
     return place;
@@ -204,12 +215,50 @@ class PressureCells {
       use(base + (D == 2 ? e : e / 2 * tile_span + e % 2) * tile_span, edges.of[e]);
   }
 
-  /// use(base, weights, first coordinate) at the row's place: three controls a direction, or the cell's two
+  /// Whether the few points of a cell together weigh less at one of its corners, by the product of their
+  /// distances from the faces across, than half of what they would all at the mean of their places.
+  bool leaves_out_a_corner(std::size_t cell) const {
+    const std::size_t count = points_[cell];
+    if (count == 1 || count > few) return false;
+    const NodeLanes mean = place_of(cell);
+    NodeLanes place[few];
+    for (std::size_t p = 0; p < count; ++p) place[p] = place_in(cell, first_points_[cell][p]);
+    for (int k = 0; k < power(2, D); ++k) {
+      const Index<D> at = corner<D>(k);
+      const auto weight = [&at](const NodeLanes& s) {
+        double w = 1.0;
+        for (int d = 0; d < D; ++d) w *= at[d] == 1 ? s[d] : 1.0 - s[d];
+        return w;
+      };
+      double together = 0.0;
+      for (std::size_t p = 0; p < count; ++p) together += first_points_[cell][p][D] * weight(place[p]);
+      if (together < 0.5 * moment_[cell][D] * weight(mean)) return true;
+    }
+    return false;
+  }
+
+  /// use(share, base, weights, first coordinate) at the row's place, or at the points'.
+  template <class Use>
+  void with_rows(std::size_t cell, Use use) const {
+    const auto at_place = [&](const NodeLanes& place, double share) {
+      with_row(cell, place,
+               [&](int base, const auto& weights, double x_0) { use(share, base, weights, x_0); });
+    };
+    if (!follows_ || shape_.kind != ShapeFunctions::b_spline || !leaves_out_a_corner(cell)) {
+      at_place(place_of(cell), 1.0);
+      return;
+    }
+    for (std::size_t p = 0; p < points_[cell]; ++p) {
+      const NodeLanes& point = first_points_[cell][p];
+      at_place(place_in(cell, point), point[D] / moment_[cell][D]);
+    }
+  }
+
+  /// use(base, weights, first coordinate) at a place in a cell: three controls a direction, or the cell's two
   /// corners.
   template <class Use>
-  void with_row(std::size_t cell, Use use) const {
+  void with_row(std::size_t cell, const NodeLanes& place, Use use) const {
     const Index<D> at = index_of(cell);
-    const NodeLanes place = place_of(cell);
     const double x_0 = origin_[0] + (first_[0] + at[0] + place[0]) * axes_[0].h;
     if (shape_.kind == ShapeFunctions::gimp) {
       PointWeights<D, 2> weights{};
@@ -244,7 +293,11 @@ class PressureCells {
   std::array<bool, n> entered_;
   std::array<std::uint16_t, n + 1> list_;  ///< the cells that were entered, and room for one that was before
   std::array<double, n> divergence_, impulse_;
-  std::array<NodeLanes, n> moment_;  ///< where rows follow the points: mass times place, and mass
+  // Where rows follow the points:
+  static constexpr std::size_t few = 7;  ///< less than a cell is seeded with in space
+  std::array<NodeLanes, n> moment_;      ///< mass times place, and mass
+  std::array<std::uint8_t, n> points_;   ///< in a cell; one more than a few stands for all that are more
+  std::array<std::array<NodeLanes, few + 1>, n> first_points_;  ///< their moments
 };
 
 }  // namespace tremie::detail

@@ -372,6 +372,45 @@ TEST(ExplicitAlone, OnePointRingsFasterThanABody) {
   expect_limit(ringing_of_one_point<ThreeD>, 0.001, 0.125);
 }
 
+/// Largest of |ln J| over its start, of a few points of a cell that are pressed together at the start, free
+/// to fly apart: half of the largest step of a point alone, in as many steps as sound takes to cross ten
+/// cells.
+double ringing_of_few_points(const std::vector<Vec<3>>& places) {
+  constexpr double h = 0.02, ln_J = -1e-5;
+  Body<ThreeD> body;
+  body.mix = concrete(0.0, 1e-9, 1e6);
+  for (Axis& axis : body.grid.axes) axis = {.h = h};
+  const double V = std::pow(0.5 * h, 3);
+  for (const Vec<3>& place : places) add_point<3>(body.points, place * h, 2400.0 * V, V, ln_J);
+  ExplicitSettings settings;
+  const double of_one_point = 2.0 / std::sqrt(12.0 * body.mix.K / 2400.0) * h;
+  settings.fixed_dt = 0.5 * of_one_point;
+  auto state = start_explicit(body, law, settings, {});
+  double largest = 0.0;
+  for (int i = 0; i < 40; ++i) {
+    explicit_step(body, law, settings, state);
+    write_back(state, body);
+    for (const double now : body.points.ln_J) largest = std::max(largest, std::abs(now / ln_J));
+  }
+  return largest;
+}
+
+// Points at two or three faces of a cell all but leave out the controls across. One row between them would
+// push those all the same, and blow them up at any step.
+TEST(ExplicitAlone, AFewPointsAcrossACellRingNoMoreThanOne) {
+  omp_set_num_threads(1);
+  EXPECT_LE(ringing_of_few_points({{0.5, 0.5, 0.5}}), 2.0);
+  EXPECT_LE(ringing_of_few_points({{0.01, 0.9, 0.5}, {0.9, 0.01, 0.5}}), 2.0);
+  EXPECT_LE(ringing_of_few_points({{0.01, 0.9, 0.9}, {0.9, 0.01, 0.9}, {0.9, 0.9, 0.01}}), 2.0);
+  EXPECT_LE(ringing_of_few_points({{0.01, 0.9, 0.5},
+                                   {0.9, 0.01, 0.5},
+                                   {0.02, 0.8, 0.3},
+                                   {0.8, 0.02, 0.3},
+                                   {0.03, 0.7, 0.7},
+                                   {0.7, 0.03, 0.7}}),
+            2.0);
+}
+
 // Longer than a limit is said, and shorter is not; a step that is chosen keeps them.
 TEST(ExplicitLimits, AreToldAndKept) {
   omp_set_num_threads(1);
