@@ -71,9 +71,10 @@ class PressureCells {
     for (int d = 0; d < D; ++d) column[d] = column[D] * x[d];
     NodeLanes moment[octet_size];
     to_rows(column, moment);
+    for (std::size_t l = 0; l < octet_size; ++l) moment_[static_cast<std::size_t>(cells[l])] += moment[l];
+    if (shape_.kind != ShapeFunctions::b_spline) return;
     for (std::size_t l = 0; l < octet_size; ++l) {
       const auto c = static_cast<std::size_t>(cells[l]);
-      moment_[c] += moment[l];
       if (moment[l][D] > 0.0 && points_[c] < few + 1) first_points_[c][points_[c]++] = moment[l];
     }
   }
