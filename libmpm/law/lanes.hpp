@@ -166,22 +166,40 @@ inline Octet polynomial(const Octet& x, const double (&c)[14]) {
 }
 }  // namespace detail
 
-/// Whole number next to x, |x| < 2^51.
-inline Octet nearest(const Octet& x) { return (x + detail::round_to_whole) - detail::round_to_whole; }
-
+/// Whole number next to x, |x| < 2^51; the even one of two.
+inline Octet nearest(const Octet& x) {
+#ifdef __AVX512F__
+  return _mm512_maskz_roundscale_pd(0xff, x, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
+#else
+  return (x + detail::round_to_whole) - detail::round_to_whole;
+#endif
+}
 /// The same for |x| < 2^22.
 inline Singles nearest(const Singles& x) {
+#ifdef __AVX512F__
+  return _mm512_maskz_roundscale_ps(0xffff, x, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
+#else
   return (x + detail::round_single_to_whole) - detail::round_single_to_whole;
-}
-inline Singles floor(const Singles& x) {
-  const Singles near = nearest(x);
-  return near > x ? near - 1 : near;
+#endif
 }
 
 /// Largest whole number that is not above x, |x| < 2^51.
 inline Octet floor(const Octet& x) {
+#ifdef __AVX512F__
+  return _mm512_maskz_roundscale_pd(0xff, x, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
+#else
   const Octet near = nearest(x);
   return near > x ? near - 1.0 : near;
+#endif
+}
+/// The same for |x| < 2^22.
+inline Singles floor(const Singles& x) {
+#ifdef __AVX512F__
+  return _mm512_maskz_roundscale_ps(0xffff, x, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
+#else
+  const Singles near = nearest(x);
+  return near > x ? near - 1 : near;
+#endif
 }
 
 /// e^x for |x| <= 700 to 2e-16 relative; beyond, e^-700 or e^700.

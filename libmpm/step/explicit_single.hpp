@@ -15,17 +15,17 @@ struct GroupPair {
   std::size_t real() const { return static_cast<std::size_t>(n[0] + n[1]); }
 };
 
-/// Updates the state of a pair, and gives its stress. The pressures are there twice: in the stress too where
-/// they do not go by the cell.
+/// Updates the state of a pair, and gives its stress; x_0: its first coordinates. The pressures are there
+/// twice: in the stress too where they do not go by the cell.
 template <Pass pass, class Space, class Law>
 LaneStress<Space::dim, Singles> stress_of_pair(TilePass<pass, Space, Law, SingleNode>& in,
-                                               const GroupPair& pair, const SingleFields<Space::dim>& read,
+                                               const GroupPair& pair, const Singles& x_0,
+                                               const SingleFields<Space::dim>& read,
                                                const GroupCells (&cell)[2], Octet (&pressure)[2]) {
   constexpr int D = Space::dim;
   auto& points = in.points;
   const auto [a, b] = pair.g;
-  const auto rate =
-      strain_rate<Space, Singles>(read.along, read.value[0], to_single(points.x[0][a], points.x[0][b]));
+  const auto rate = strain_rate<Space, Singles>(read.along, read.value[0], x_0);
   Octet gamma_dot[2], tau_y[2];
   for (int half = 0; half < 2; ++half) {
     gamma_dot[half] = to_double(rate.gamma_dot, half), tau_y[half] = pressure[half] = Octet{};
@@ -81,67 +81,89 @@ SingleFields<D> kept_motion(const LanePoints<D>& points, const GroupPair& pair) 
   return motion;
 }
 
-/// Momentum, mass and impulses of a pair to the controls.
-template <Pass pass, class Space>
-Reached scatter_pair(double impulse_dt, const SingleWeights<Space::dim>& weights,
-                     const LaneStress<Space::dim, Singles>& stress, const SingleFields<Space::dim>& motion,
-                     const GroupPair& pair, const LanePoints<Space::dim>& points, SingleNode* sums) {
-  constexpr int D = Space::dim;
-  constexpr bool hooped = pass.stress && std::is_same_v<Space, Axisymmetric>;
-  constexpr Given given{.values = pass.move || hooped, .slopes = pass.stress, .moments = pass.move};
-  const auto dt = static_cast<float>(impulse_dt);
-  SingleSpread<D> spread;
-  if (given.values)
-    for (Singles& value : spread.value) value = Singles{};
-  if (pass.move) {
-    const Singles mass = spread.value[D] = to_single(points.mass[pair.g[0]], points.mass[pair.g[1]]);
-    for (int i = 0; i < D; ++i) {
-      spread.value[i] = mass * motion.value[i];
-      for (int j = 0; j < D; ++j) {
-        spread.moment[j][i] = mass * motion.along[j][i];
-        spread.value[i] += spread.moment[j][i] * weights.middle[j];
-      }
+/// Mass and momentum of a pair to the controls.
+template <int D>
+Reached scatter_motion(const SingleWeights<D>& weights, const SingleFields<D>& motion, const GroupPair& pair,
+                       const LanePoints<D>& points, SingleNode* sums) {
+  SingleMomenta<D> momenta;
+  const Singles mass = momenta.value[D] = to_single(points.mass[pair.g[0]], points.mass[pair.g[1]]);
+  for (int i = 0; i < D; ++i) {
+    momenta.value[i] = mass * motion.value[i];
+    for (int j = 0; j < D; ++j) {
+      momenta.moment[j][i] = mass * motion.along[j][i];
+      momenta.value[i] += momenta.moment[j][i] * weights.middle[j];
     }
   }
-  for (int i = 0; i < D && pass.stress; ++i)
-    for (int j = 0; j < D; ++j) spread.slope[j][i] = -dt * stress.sigma[i][j];
-  if (hooped) spread.value[0] -= dt * stress.hoop / to_single(points.x[0][pair.g[0]], points.x[0][pair.g[1]]);
-  return scatter_single<D, given>(weights, spread, pair.real(), sums);
+  return scatter_momenta<D>(weights, momenta, pair.real(), sums);
 }
 
+/// Impulses of a pair's stresses to the controls; x_0: its first coordinates.
+template <class Space>
+Reached scatter_stress(double impulse_dt, const SingleWeights<Space::dim>& weights,
+                       const LaneStress<Space::dim, Singles>& stress, const GroupPair& pair,
+                       const Singles& x_0, SingleNode* sums) {
+  constexpr int D = Space::dim;
+  constexpr bool hooped = std::is_same_v<Space, Axisymmetric>;
+  const auto dt = static_cast<float>(impulse_dt);
+  SingleImpulses<D> impulses;
+  for (int i = 0; i < D; ++i) {
+    for (int j = 0; j < D; ++j) impulses.slope[j][i] = -dt * stress.sigma[i][j];
+    if constexpr (hooped) impulses.value[i] = i == 0 ? -dt * stress.hoop / x_0 : Singles{};
+  }
+  return scatter_impulses<D, hooped>(weights, impulses, pair.real(), sums);
+}
+
+template <Wanted wanted, int D>
+void weigh_pair(const StencilFrame<D>& frame, const LanePoints<D>& points, const GroupPair& pair,
+                SingleWeights<D>& weights) {
+  weigh_single<D, wanted>(frame, {places_of<D>(points, pair.g[0]), places_of<D>(points, pair.g[1])}, weights);
+}
+
+/// A pass with stress over a pair.
+template <Pass pass, class Space, class Law>
+Reached press_pair(TilePass<pass, Space, Law, SingleNode>& in, const GroupPair& pair) {
+  constexpr int D = Space::dim;
+  static_assert(pass.gather && !pass.move);
+  SingleWeights<D> weights;
+  weigh_pair<slopes_only>(in.frame, in.points, pair, weights);
+  SingleFields<D> read;
+  gather_slopes<D, std::is_same_v<Space, Axisymmetric>>(in.v.data(), weights, pair.real(), read);
+  const GroupCells cell[2] = {cells_of_group(in, pair.g[0]), cells_of_group(in, pair.g[1])};
+  const Singles x_0 = to_single(in.points.x[0][pair.g[0]], in.points.x[0][pair.g[1]]);
+  Octet pressure[2];
+  const auto stress = stress_of_pair(in, pair, x_0, read, cell, pressure);
+  for (int half = 0; half < 2 && pair.n[half] > 0 && in.cells; ++half)
+    in.pressed.push(cell[half], pair.n[half], in.input.impulse_dt * pressure[half]);
+  return scatter_stress<Space>(in.input.impulse_dt, weights, stress, pair, x_0, in.sums.data());
+}
+
+/// A pass with motion over a pair.
+template <Pass pass, class Space, class Law>
+Reached move_on_pair(TilePass<pass, Space, Law, SingleNode>& in, const GroupPair& pair) {
+  constexpr int D = Space::dim;
+  static_assert(pass.move && !pass.stress);
+  SingleWeights<D> weights;
+  SingleFields<D> motion;
+  if constexpr (pass.gather) {
+    weigh_pair<moments_only>(in.frame, in.points, pair, weights);
+    gather_moments<D>(in.v.data(), weights, pair.real(), motion);
+    move_pair(in, pair, weights, motion);
+  } else {
+    motion = kept_motion<D>(in.points, pair);
+  }
+  weigh_pair<moments_only>(in.frame, in.points, pair, weights);
+  return scatter_motion<D>(weights, motion, pair, in.points, in.sums.data());
+}
+
+/// With the stress first a pass has either stress or motion.
 template <Pass pass, class Space, class Law>
 void visit_pair(TilePass<pass, Space, Law, SingleNode>& in, const GroupPair& pair) {
-  constexpr int D = Space::dim;
-  SingleWeights<D> weights;
-  const auto place = [&] {
-    constexpr Wanted wanted{.slopes = pass.stress, .moments = pass.move};
-    weigh_single<D, wanted>(
-        in.frame, {places_of<D>(in.points, pair.g[0]), places_of<D>(in.points, pair.g[1])}, weights);
-  };
-  place();
-  LaneStress<D, Singles> stress;
-  Octet pressure[2];
-  GroupCells cell[2];
-  SingleFields<D> read;
-  if (pass.stress) {
-    for (int half = 0; half < 2; ++half) cell[half] = cells_of_group(in, pair.g[half]);
-    if (pass.gather)
-      gather_slopes<D, std::is_same_v<Space, Axisymmetric>>(in.v.data(), weights, pair.real(), read);
+  const Reached reached = [&] {
+    if constexpr (pass.stress)
+      return press_pair(in, pair);
     else
-      read = {};
-    stress = stress_of_pair(in, pair, read, cell, pressure);
-  }
-  if (pass.move && pass.gather) {
-    gather_moments<D>(in.v.data(), weights, pair.real(), read);
-    move_pair(in, pair, weights, read);
-    place();
-  } else if (pass.move) {
-    read = kept_motion<D>(in.points, pair);
-  }
-  for (int half = 0; half < 2 && pair.n[half] > 0 && in.cells; ++half)
-    push_cells(in, pair.g[half], pair.n[half], pressure[half], cell[half]);
-  const Reached reached =
-      scatter_pair<pass, Space>(in.input.impulse_dt, weights, stress, read, pair, in.points, in.sums.data());
+      return move_on_pair(in, pair);
+  }();
   in.rows |= reached.rows;
   in.reduced.mixed += reached.runs;
 }

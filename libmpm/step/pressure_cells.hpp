@@ -18,6 +18,8 @@
 // upper half alone, what they carry away is what the cell loses, and with the rate at the centre it would
 // stay hollow.
 
+#include <bit>
+
 #include "libmpm/space/gradients.hpp"
 #include "libmpm/step/explicit_body.hpp"
 #include "libmpm/transfer/lane_sums.hpp"
@@ -41,7 +43,7 @@ class PressureCells {
         follows_(shape.kind == ShapeFunctions::b_spline || stress == StressUpdate::last),
         held_(held) {
     if (!wanted) return;
-    entered_.fill(false), impulse_.fill(0.0);
+    entered_.fill(0), impulse_.fill(0.0);
     if (follows_) moment_.fill(NodeLanes{}), points_.fill(0);
     for (int d = 0; d < D; ++d) {
       origin_[d] = axes[d].origin, per_cell_[d] = 1.0 / axes[d].h, first_[d] = tile[d] * tile_cells;
@@ -57,14 +59,7 @@ class PressureCells {
     find_pressure_cells<D>(axes_, shape_, tile_, x, cells);
     // What fills up a group need not have stayed with its points: it must not enter a cell of its own.
     for (std::size_t l = 1; l < octet_size; ++l) cells[l] = points.id[g][l] < 0 ? cells[0] : cells[l];
-    std::size_t count = count_;
-    for (const int cell : cells) {  // without a branch: whether a cell is new is anyone's guess
-      const auto c = static_cast<std::size_t>(cell);
-      list_[count] = static_cast<std::uint16_t>(cell);
-      count += entered_[c] ? 0U : 1U;
-      entered_[c] = true;
-    }
-    count_ = count;
+    for (const int cell : cells) entered_[static_cast<std::size_t>(cell)] = 1;
     if (!follows_) return;
     Octet column[4] = {};
     column[D] = points.mass[g];
@@ -81,7 +76,7 @@ class PressureCells {
 
   /// Reads the divergence of all cells, when all points have entered.
   void read(const Cube& v) {
-    for (std::size_t i = 0; i < count_; ++i) divergence_[list_[i]] = read_divergence(v, list_[i]);
+    for_each_cell([&](std::size_t cell) { divergence_[cell] = read_divergence(v, cell); });
   }
 
   /// Of the cells of eight points.
@@ -97,14 +92,13 @@ class PressureCells {
 
   /// Gives the controls the impulses of all cells, when all points have pushed.
   void scatter_impulses(Cube& sums) {
-    for (std::size_t i = 0; i < count_; ++i) {
-      const std::size_t cell = list_[i];
+    for_each_cell([&](std::size_t cell) {
       const double impulse = impulse_[cell];
       if (at_corners()) {
         with_corners(cell, [&](int at, const auto& slopes) {
           store_two(load_two(&sums[at]) + static_cast<Real>(impulse) * slopes, &sums[at]);
         });
-        continue;
+        return;
       }
       with_rows(cell, [&](double share, int base, const auto& weights, double x_0) {
         constexpr int width = std::remove_cvref_t<decltype(weights)>::n_controls;
@@ -114,7 +108,7 @@ class PressureCells {
         for (int d = 0; d < D; ++d) slope[d][d] = share * impulse;
         scatter<D, width>(&sums[base], weights, value, slope, moment);
       });
-    }
+    });
   }
 
  private:
@@ -123,6 +117,18 @@ class PressureCells {
   struct Edges {
     decltype(load_two(static_cast<const Node*>(nullptr))) of[n_edges];
   };
+
+  /// use(cell) of all that have been entered, in their order: eight at once are asked.
+  template <class Use>
+  void for_each_cell(Use use) const {
+    static_assert(std::endian::native == std::endian::little);
+    for (std::size_t first = 0; first < entered_.size(); first += 8) {
+      std::uint64_t eight;
+      std::memcpy(&eight, &entered_[first], sizeof eight);
+      for (; eight != 0; eight &= eight - 1)
+        use(first + static_cast<std::size_t>(__builtin_ctzll(eight)) / 8);
+    }
+  }
 
   double read_divergence(const Cube& v, std::size_t cell) const {
     if (at_corners()) {
@@ -288,11 +294,9 @@ class PressureCells {
   bool follows_;  ///< the rows' places are those of the points
   const HeldCells<D>* held_;
   NodeLanes origin_ = {}, per_cell_ = {}, first_ = {};
-  Node across_[D] = {}, along_[D] = {};  ///< ones but in direction d; 1/h in it
-  Edges centre_;                         ///< of a row at its cell's centre
-  std::size_t count_ = 0;
-  std::array<bool, n> entered_;
-  std::array<std::uint16_t, n + 1> list_;  ///< the cells that were entered, and room for one that was before
+  Node across_[D] = {}, along_[D] = {};                ///< ones but in direction d; 1/h in it
+  Edges centre_;                                       ///< of a row at its cell's centre
+  std::array<std::uint8_t, (n + 7) / 8 * 8> entered_;  ///< 1 where a cell has points
   std::array<double, n> divergence_, impulse_;
   // Where rows follow the points:
   static constexpr std::size_t few = 7;  ///< less than a cell is seeded with in space

@@ -112,12 +112,11 @@ template <class Real, class Lanes>
     half = wall ? none - Lanes{} : half, inverse = wall ? one_over_none - Lanes{} : inverse;
   }
   // How much of the extent lies below and above the corner, and how far from it the rest is.
-  const Lanes zero = {}, whole = half + half;
-  const Lanes below = min(max(half - u, zero), whole), above = min(max(half + u, zero), whole);
+  const Lanes reached = min(max(u, -half), half), below = half - reached, above = half + reached, zero = {};
   const Lanes share_0 = below * inverse, share_2 = above * inverse;
   dw[0] = -axis.ih * share_0, dw[2] = axis.ih * share_2;
-  w[0] = 0.5 * below * share_0 + max(-u - half, zero);
-  w[2] = 0.5 * above * share_2 + max(u - half, zero);
+  w[0] = 0.5 * below * share_0 + max(reached - u, zero);
+  w[2] = 0.5 * above * share_2 + max(u - reached, zero);
   w[1] = 1.0 - w[0] - w[2], dw[1] = -dw[0] - dw[2];
   arm[1] = -axis.h * u, arm[0] = arm[1] - axis.h, arm[2] = arm[1] + axis.h;
 }
@@ -131,7 +130,8 @@ void find_pressure_cells(const std::array<Axis, D>& axes, const Shape<D>& shape,
   Octet cell = {};
   const Octet low = all_lanes(shape.kind == ShapeFunctions::gimp ? -2.0 : -1.0), high = all_lanes(tile_cells);
   for (int d = 0; d < D; ++d) {
-    const Octet X = (x[d] - axes[d].origin) * (1.0 / axes[d].h) - tile[d] * tile_cells;
+    const double per_cell = 1.0 / axes[d].h;
+    const Octet X = x[d] * per_cell - (axes[d].origin * per_cell + tile[d] * tile_cells);
     cell = cell * tile_pressure_cells + (min(max(floor(X), low), high) + 2.0);
   }
   to_whole(cell, cells);

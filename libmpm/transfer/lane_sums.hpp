@@ -22,7 +22,9 @@ struct GatheredLanes {
   Octet moment[wanted.moments && R > 0 ? R : 1];
 };
 
-/// Component c at eight points whose stencils all begin at `node`; otherwise as gather() for one point.
+/// Component c at eight points whose stencils all begin at `node`; otherwise as gather() for one point. The
+/// weights of a direction add up to 1, and their slopes and first moments to 0: the differences of the outer
+/// controls from the middle one are all that they see.
 template <int D, Wanted wanted, int d = 0>
 [[gnu::always_inline]] inline GatheredLanes<D - d, wanted> gather_together(const NodeLanes* node, int c,
                                                                            const Weights<D>& p) {
@@ -31,18 +33,23 @@ template <int D, Wanted wanted, int d = 0>
     sum.value = all_lanes((*node)[c]);
   } else {
     constexpr int rest = D - d - 1;
-    for (int k = 0; k < 3; ++k) {
-      const auto part = gather_together<D, wanted, d + 1>(node + k * stride<D>(tile_span, d), c, p);
-      const auto add = [k](Octet& to, const Octet& w, const Octet& x) { to = k == 0 ? w * x : to + w * x; };
-      add(sum.value, p.w[d][k], part.value);
-      if constexpr (wanted.slopes) {
-        add(sum.slope[0], p.dw[d][k], part.value);
-        for (int e = 0; e < rest; ++e) add(sum.slope[e + 1], p.w[d][k], part.slope[e]);
-      }
-      if constexpr (wanted.moments) {
-        add(sum.moment[0], p.wa[d][k], part.value);
-        for (int e = 0; e < rest; ++e) add(sum.moment[e + 1], p.w[d][k], part.moment[e]);
-      }
+    const auto part = [&](int k) {
+      return gather_together<D, wanted, d + 1>(node + k * stride<D>(tile_span, d), c, p);
+    };
+    const auto first = part(0), middle = part(1), last = part(2);
+    const auto mean = [&p](const Octet& low, const Octet& mid, const Octet& high) {
+      return mid + p.w[d][0] * (low - mid) + p.w[d][2] * (high - mid);
+    };
+    const Octet down = first.value - middle.value, up = last.value - middle.value;
+    sum.value = middle.value + p.w[d][0] * down + p.w[d][2] * up;
+    if constexpr (wanted.slopes) {
+      sum.slope[0] = p.dw[d][0] * down + p.dw[d][2] * up;
+      for (int e = 0; e < rest; ++e) sum.slope[e + 1] = mean(first.slope[e], middle.slope[e], last.slope[e]);
+    }
+    if constexpr (wanted.moments) {
+      sum.moment[0] = p.wa[d][0] * down + p.wa[d][2] * up;
+      for (int e = 0; e < rest; ++e)
+        sum.moment[e + 1] = mean(first.moment[e], middle.moment[e], last.moment[e]);
     }
   }
   return sum;

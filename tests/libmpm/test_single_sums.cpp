@@ -125,68 +125,104 @@ TEST_P(SingleSums, InertiaAsDoubleHasIt) {
                   points.of(l).inertia[static_cast<std::size_t>(d)][l % octet_size], rounding * h * h);
 }
 
-/// What the first n points add in double precision; `spread` gives moments about the middle control.
-TileGrid<D>::Buffer expected_sums(const SixteenPoints& points, const SingleSpread<D>& spread, std::size_t n,
-                                  TileRows& rows) {
+Singles random_singles(std::mt19937& random, double size) {
+  return to_single(random_lanes(random, -size, size), random_lanes(random, -size, size));
+}
+
+/// What the first n points add in double precision; `one`: what point l gives.
+template <class One>
+TileGrid<D>::Buffer expected_sums(const SixteenPoints& points, std::size_t n, TileRows& rows, One one) {
   TileGrid<D>::Buffer sums{};
   rows = 0;
   for (std::size_t l = 0; l < n; ++l) {
     NodeLanes value = {}, slope[D] = {}, moment[D] = {};
-    for (int c = 0; c < 4; ++c) value[c] = static_cast<double>(spread.value[c][l]);
-    for (int d = 0; d < D; ++d)
-      for (int c = 0; c < D; ++c) {
-        slope[d][c] = static_cast<double>(spread.slope[d][c][l]);
-        moment[d][c] = static_cast<double>(spread.moment[d][c][l]);
-        value[c] -= moment[d][c] * static_cast<double>(points.single.middle[d][l]);
-      }
+    one(l, value, slope, moment);
     scatter<D, 3>(&sums[static_cast<std::size_t>(points.base(l))], points.one(l), value, slope, moment);
     rows |= stencil_rows<D>(points.base(l));
   }
   return sums;
 }
 
-TEST_P(SingleSums, ScatterAsDoubleDoes) {
+constexpr std::size_t numbers_of_points[] = {16, 11, 1};
+
+/// All controls but the ones behind the rows of stencils, which are added nothing that counts.
+void expect_sums(const TileGrid<D>::SingleBuffer& got, const TileGrid<D>::Buffer& expected) {
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    for (int c = 0; c < 4; ++c)
+      EXPECT_NEAR(static_cast<double>(got[i][c]), expected[i][c], 16.0 * rounding) << i << ' ' << c;
+}
+
+TEST_P(SingleSums, MomentaAsDoubleHasThem) {
   const SixteenPoints points(GetParam().kind, GetParam().low, GetParam().high);
   std::mt19937 random(4);
-  const auto lanes = [&](double size) {
-    return to_single(random_lanes(random, -size, size), random_lanes(random, -size, size));
+  SingleMomenta<D> momenta;
+  for (Singles& value : momenta.value) value = random_singles(random, 1.0);
+  for (auto& moment : momenta.moment)
+    for (Singles& component : moment) component = random_singles(random, 1.0 / h);
+  // In double precision moments are about the point.
+  const auto one = [&](std::size_t l, NodeLanes& value, NodeLanes*, NodeLanes* moment) {
+    for (int c = 0; c < 4; ++c) value[c] = static_cast<double>(momenta.value[c][l]);
+    for (int d = 0; d < D; ++d)
+      for (int c = 0; c < D; ++c) {
+        moment[d][c] = static_cast<double>(momenta.moment[d][c][l]);
+        value[c] -= moment[d][c] * static_cast<double>(points.single.middle[d][l]);
+      }
   };
-  SingleSpread<D> spread;
-  for (Singles& value : spread.value) value = lanes(1.0);
-  for (int d = 0; d < D; ++d)
-    for (int c = 0; c < D; ++c) spread.slope[d][c] = lanes(h), spread.moment[d][c] = lanes(1.0 / h);
-  for (const std::size_t n : {std::size_t{16}, std::size_t{11}, std::size_t{1}}) {
+  for (const std::size_t n : numbers_of_points) {
     TileRows rows;
-    const auto expected = expected_sums(points, spread, n, rows);
+    const auto expected = expected_sums(points, n, rows, one);
     TileGrid<D>::SingleBuffer got{};
-    const Reached reached = scatter_single<D, Given{}>(points.single, spread, n, got.data());
+    const Reached reached = scatter_momenta<D>(points.single, momenta, n, got.data());
     EXPECT_EQ(reached.rows, rows);
     EXPECT_GE(reached.runs, 1);
-    for (std::size_t i = 0; i < expected.size(); ++i)
-      for (int c = 0; c < 4; ++c)
-        EXPECT_NEAR(static_cast<double>(got[i][c]), expected[i][c], 16.0 * rounding);
+    expect_sums(got, expected);
   }
 }
 
-// What a pass without motion and one without stress give is what both give, in two parts.
-TEST(SingleSums, PartsAddUp) {
-  const SixteenPoints points(ShapeFunctions::gimp, 0.0, 0.4);
+TEST_P(SingleSums, ImpulsesAsDoubleHasThem) {
+  const SixteenPoints points(GetParam().kind, GetParam().low, GetParam().high);
   std::mt19937 random(5);
-  SingleSpread<D> spread;
-  for (Singles& value : spread.value)
-    value = to_single(random_lanes(random, 0, 1), random_lanes(random, 0, 1));
-  for (int d = 0; d < D; ++d)
-    for (int c = 0; c < D; ++c)
-      spread.slope[d][c] = spread.moment[d][c] =
-          to_single(random_lanes(random, -0.1, 0.1), random_lanes(random, -0.1, 0.1));
-  TileGrid<D>::SingleBuffer both{}, parts{};
-  scatter_single<D, Given{}>(points.single, spread, singles_size, both.data());
-  scatter_single<D, Given{.values = false, .moments = false}>(points.single, spread, singles_size,
-                                                              parts.data());
-  scatter_single<D, Given{.slopes = false}>(points.single, spread, singles_size, parts.data());
-  for (std::size_t i = 0; i < both.size(); ++i)
-    for (int c = 0; c < 4; ++c)
-      EXPECT_NEAR(static_cast<double>(both[i][c]), static_cast<double>(parts[i][c]), 16.0 * rounding);
+  SingleImpulses<D> impulses;
+  for (Singles& value : impulses.value) value = random_singles(random, 1.0);
+  for (auto& slope : impulses.slope)
+    for (Singles& component : slope) component = random_singles(random, h);
+  for (const bool values : {false, true}) {
+    const auto one = [&](std::size_t l, NodeLanes& value, NodeLanes* slope, NodeLanes*) {
+      for (int c = 0; c < D && values; ++c) value[c] = static_cast<double>(impulses.value[c][l]);
+      for (int d = 0; d < D; ++d)
+        for (int c = 0; c < D; ++c) slope[d][c] = static_cast<double>(impulses.slope[d][c][l]);
+    };
+    for (const std::size_t n : numbers_of_points) {
+      TileRows rows;
+      const auto expected = expected_sums(points, n, rows, one);
+      TileGrid<D>::SingleBuffer got{};
+      const Reached reached = values ? scatter_impulses<D, true>(points.single, impulses, n, got.data())
+                                     : scatter_impulses<D, false>(points.single, impulses, n, got.data());
+      EXPECT_EQ(reached.rows, rows);
+      EXPECT_GE(reached.runs, 1);
+      expect_sums(got, expected);
+    }
+  }
+}
+
+// Stresses move no momentum but from one control to another: of a run of points with one stencil to what the
+// sums are rounded by, each in units of the largest of them.
+TEST(SingleSums, ImpulsesOfStressesAddUpToNothing) {
+  const SixteenPoints points(ShapeFunctions::gimp, 0.21, 0.24);
+  std::mt19937 random(6);
+  SingleImpulses<D> impulses;
+  for (auto& slope : impulses.slope)
+    for (Singles& component : slope) component = random_singles(random, h);
+  TileGrid<D>::SingleBuffer sums{};
+  scatter_impulses<D, false>(points.single, impulses, singles_size, sums.data());
+  NodeLanes total = {};
+  double largest = 0.0;
+  for (const SingleNode& node : sums) {
+    total += in_double(node);
+    for (int c = 0; c < D; ++c) largest = std::max(largest, std::abs(static_cast<double>(node[c])));
+  }
+  EXPECT_GT(largest, 0.1);
+  for (int c = 0; c < D; ++c) EXPECT_NEAR(total[c], 0.0, 27 * 1.2e-7 * largest);
 }
 
 }  // namespace

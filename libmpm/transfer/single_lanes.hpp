@@ -1,0 +1,152 @@
+#pragma once
+
+// Sixteen numbers in single precision as four controls of a row, four entries each, and how the entries of
+// sixteen points, one lane a point, come there and back.
+
+#include "libmpm/grid/tiles.hpp"
+#include "libmpm/law/lanes.hpp"
+#ifdef __AVX512F__
+#include <immintrin.h>
+#endif
+
+namespace tremie::detail {
+
+/// Four controls of a row, from any one on.
+inline Singles load_controls(const SingleNode* from) {
+  Singles four;
+  std::memcpy(&four, from, sizeof four);
+  return four;
+}
+inline void add_controls(const Singles& four, SingleNode* to) {
+  const Singles sum = load_controls(to) + four;
+  std::memcpy(to, &sum, sizeof sum);
+}
+
+/// One entry of four a point, where transpose_blocks brings them.
+struct alignas(64) Entries : std::array<SingleNode, singles_size> {};
+
+/// The number as it is rounded: no multiply-add is made of the product that it is and a sum. Additions have
+/// units of their own on some processors.
+inline Singles rounded(Singles a) {
+#ifdef __AVX512F__
+  asm("" : "+v"(a));
+#endif
+  return a;
+}
+
+/// The same control's entries four times; the entries 0 to 3 four times each.
+inline Singles four_times(const SingleNode& a) {
+#ifdef __AVX512F__  // one load; a shuffle would take an arithmetic unit
+  return _mm512_maskz_broadcast_f32x4(0xffff, a);
+#else
+  const SingleNode four[4] = {a, a, a, a};
+  Singles times;
+  std::memcpy(&times, four, sizeof times);
+  return times;
+#endif
+}
+inline Singles each_four_times(const SingleNode& a) {
+#ifdef __AVX512F__
+  const Singles b = four_times(a);
+  return __builtin_shufflevector(b, b, 0, 0, 0, 0, 5, 5, 5, 5, 10, 10, 10, 10, 15, 15, 15, 15);
+#else
+  const SingleNode none = {}, four[4] = {none + a[0], none + a[1], none + a[2], none + a[3]};
+  Singles times;
+  std::memcpy(&times, four, sizeof times);
+  return times;
+#endif
+}
+
+/// Blocks of four and within them: points 4a + b of column c go to entry c of block a of vector b.
+inline void transpose_blocks(const Singles (&column)[4], Singles (&row)[4]) {
+#ifdef __AVX512F__
+  const Singles low_01 =
+      __builtin_shufflevector(column[0], column[1], 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29);
+  const Singles high_01 = __builtin_shufflevector(column[0], column[1], 2, 18, 3, 19, 6, 22, 7, 23, 10, 26,
+                                                  11, 27, 14, 30, 15, 31);
+  const Singles low_23 =
+      __builtin_shufflevector(column[2], column[3], 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29);
+  const Singles high_23 = __builtin_shufflevector(column[2], column[3], 2, 18, 3, 19, 6, 22, 7, 23, 10, 26,
+                                                  11, 27, 14, 30, 15, 31);
+  row[0] = __builtin_shufflevector(low_01, low_23, 0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29);
+  row[1] =
+      __builtin_shufflevector(low_01, low_23, 2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31);
+  row[2] =
+      __builtin_shufflevector(high_01, high_23, 0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29);
+  row[3] =
+      __builtin_shufflevector(high_01, high_23, 2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31);
+#else  // the compiler takes shuffles that the processor has not lane by lane, and minutes for it
+  float from[4][singles_size], to[4][singles_size];
+  std::memcpy(from, column, sizeof from);
+  for (std::size_t c = 0; c < 4; ++c)
+    for (std::size_t l = 0; l < singles_size; ++l) to[l % 4][l / 4 * 4 + c] = from[c][l];
+  std::memcpy(row, to, sizeof to);
+#endif
+}
+
+/// Where transpose_blocks brings point l, in entries of four.
+constexpr std::size_t place_of(std::size_t l) { return l % 4 * 4 + l / 4; }
+
+/// Entry b of each block of four, in all of the block.
+inline Singles repeat_in_blocks(const Singles& a, std::size_t b) {
+#ifdef __AVX512F__
+  switch (b) {
+    case 0:
+      return __builtin_shufflevector(a, a, 0, 0, 0, 0, 4, 4, 4, 4, 8, 8, 8, 8, 12, 12, 12, 12);
+    case 1:
+      return __builtin_shufflevector(a, a, 1, 1, 1, 1, 5, 5, 5, 5, 9, 9, 9, 9, 13, 13, 13, 13);
+    case 2:
+      return __builtin_shufflevector(a, a, 2, 2, 2, 2, 6, 6, 6, 6, 10, 10, 10, 10, 14, 14, 14, 14);
+    default:
+      return __builtin_shufflevector(a, a, 3, 3, 3, 3, 7, 7, 7, 7, 11, 11, 11, 11, 15, 15, 15, 15);
+  }
+#else
+  float from[singles_size], to[singles_size];
+  std::memcpy(from, &a, sizeof from);
+  for (std::size_t l = 0; l < singles_size; ++l) to[l] = from[l / 4 * 4 + b];
+  Singles repeated;
+  std::memcpy(&repeated, to, sizeof repeated);
+  return repeated;
+#endif
+}
+
+/// Blocks of four of four vectors, the same ones side by side; the fourth ones are left out.
+struct Blocks {
+  Singles first, second, third;
+};
+inline Blocks first_three_blocks(const Singles (&of)[4]) {
+#ifdef __AVX512F__
+  const Singles low_01 =
+      __builtin_shufflevector(of[0], of[1], 0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23);
+  const Singles low_23 =
+      __builtin_shufflevector(of[2], of[3], 0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23);
+  const Singles high_01 =
+      __builtin_shufflevector(of[0], of[1], 8, 9, 10, 11, 12, 13, 14, 15, 24, 25, 26, 27, 28, 29, 30, 31);
+  const Singles high_23 =
+      __builtin_shufflevector(of[2], of[3], 8, 9, 10, 11, 12, 13, 14, 15, 24, 25, 26, 27, 28, 29, 30, 31);
+  return {
+      __builtin_shufflevector(low_01, low_23, 0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27),
+      __builtin_shufflevector(low_01, low_23, 4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31),
+      __builtin_shufflevector(high_01, high_23, 0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27)};
+#else
+  float from[4][singles_size], to[3][singles_size];
+  std::memcpy(from, of, sizeof from);
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t l = 0; l < singles_size; ++l) to[k][l] = from[l / 4][4 * k + l % 4];
+  Blocks blocks;
+  std::memcpy(&blocks, to, sizeof blocks);
+  return blocks;
+#endif
+}
+
+/// A column a component, 0 where there is none, as one entry of four a point.
+template <std::size_t n>
+[[gnu::always_inline]] inline Entries entries_of(const Singles (&of)[n]) {
+  Entries entry;
+  const auto column = [&](std::size_t c) { return c < n ? of[c < n ? c : 0] : Singles{}; };
+  const Singles four[4] = {column(0), column(1), column(2), column(3)};
+  transpose_blocks(four, reinterpret_cast<Singles(&)[4]>(*entry.data()));
+  return entry;
+}
+
+}  // namespace tremie::detail
