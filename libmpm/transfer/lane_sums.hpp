@@ -124,34 +124,53 @@ struct Given {
 
 /// slope[d] times the gradient plus moment[d] times the arm, at the controls k of direction d.
 template <int D, Given given>
-[[gnu::always_inline]] inline void add_along(const Weights<D>& weights, const Spread<D>& spread, int d, int k,
-                                             const Octet* weight, Octet (&to)[4]) {
+[[gnu::always_inline]] inline void along_direction(const Weights<D>& weights, const Spread<D>& spread, int d,
+                                                   int k, Octet (&along)[D]) {
   for (int c = 0; c < D; ++c) {
-    Octet along = {};
-    if constexpr (given.slopes) along = weights.dw[d][k] * spread.slope[d][c];
-    if constexpr (given.moments) along += weights.wa[d][k] * spread.moment[d][c];
-    to[c] += weight ? *weight * along : along;
+    along[c] = Octet{};
+    if constexpr (given.slopes) along[c] = weights.dw[d][k] * spread.slope[d][c];
+    if constexpr (given.moments) along[c] += weights.wa[d][k] * spread.moment[d][c];
   }
 }
 
-/// What each row of controls gets before the weights of the last direction, one vector of four a point.
+/// One vector of four a point, even points first: where four_a_point brings them.
+using FourAPoint = std::array<Octet, octet_size / 2>;
+inline NodeLanes of_point(const FourAPoint& four, std::size_t l) {
+  return reinterpret_cast<const NodeLanes*>(four.data())[l % 2 * (octet_size / 2) + l / 2];
+}
+inline void four_a_point(const Octet (&column)[4], FourAPoint& four) {
+  for (std::size_t odd = 0; odd < 2; ++odd) {
+    const Octet front = odd ? __builtin_shufflevector(column[0], column[1], 1, 9, 3, 11, 5, 13, 7, 15)
+                            : __builtin_shufflevector(column[0], column[1], 0, 8, 2, 10, 4, 12, 6, 14);
+    const Octet back = odd ? __builtin_shufflevector(column[2], column[3], 1, 9, 3, 11, 5, 13, 7, 15)
+                           : __builtin_shufflevector(column[2], column[3], 0, 8, 2, 10, 4, 12, 6, 14);
+    four[2 * odd] = __builtin_shufflevector(front, back, 0, 1, 8, 9, 2, 3, 10, 11);
+    four[2 * odd + 1] = __builtin_shufflevector(front, back, 4, 5, 12, 13, 6, 7, 14, 15);
+  }
+}
+
+/// What each row of controls gets before the weights of the last direction.
 template <int D, Given given>
 void carry_to_rows(const Weights<D>& weights, const Spread<D>& spread,
-                   NodeLanes (&carried)[power(3, D - 1)][octet_size]) {
+                   FourAPoint (&carried)[power(3, D - 1)]) {
+  Octet second[3][D];
+  for (int j = 0; j < 3 && D == 3; ++j) along_direction<D, given>(weights, spread, 1, j, second[j]);
 #pragma GCC unroll 3
   for (int i = 0; i < 3; ++i) {
-    Octet first[4] = {};
-    for (int c = 0; c < 4 && given.values; ++c) first[c] = weights.w[0][i] * spread.value[c];
-    add_along<D, given>(weights, spread, 0, i, nullptr, first);
+    const Octet& w = weights.w[0][i];
+    Octet first[4] = {}, along[D];
+    along_direction<D, given>(weights, spread, 0, i, along);
+    for (int c = 0; c < 4 && given.values; ++c) first[c] = w * spread.value[c];
+    for (int c = 0; c < D; ++c) first[c] += along[c];
     if constexpr (D == 2) {
-      to_rows(first, carried[i]);
+      four_a_point(first, carried[i]);
     } else {
 #pragma GCC unroll 3
       for (int j = 0; j < 3; ++j) {
-        Octet second[4];
-        for (int c = 0; c < 4; ++c) second[c] = weights.w[1][j] * first[c];
-        add_along<D, given>(weights, spread, 1, j, &weights.w[0][i], second);
-        to_rows(second, carried[3 * i + j]);
+        Octet row[4];
+        for (int c = 0; c < 4; ++c) row[c] = weights.w[1][j] * first[c];
+        for (int c = 0; c < D; ++c) row[c] += w * second[j][c];
+        four_a_point(row, carried[3 * i + j]);
       }
     }
   }
@@ -161,7 +180,7 @@ void carry_to_rows(const Weights<D>& weights, const Spread<D>& spread,
 template <int D>
 struct CarriedRows {
   RowWeights<D> weight;
-  NodeLanes value[power(3, D - 1)][octet_size], along[3][octet_size];
+  FourAPoint value[power(3, D - 1)], along[3];
 };
 
 /// Distance of row r of a stencil from its first control in a tile's cube.
@@ -186,11 +205,11 @@ template <int D>
   const auto& w = weights.w[D - 1];
   for (std::size_t l = first; l < last; ++l) {
     const Octet w_pair = pair(w[odd][l], w[odd + 1][l]), w_other = all_lanes(w[other][l]);
-    const Octet along_pair = side_by_side(rows.along[odd][l], rows.along[odd + 1][l]);
-    const Octet along_other = twice(rows.along[other][l]);
+    const Octet along_pair = side_by_side(of_point(rows.along[odd], l), of_point(rows.along[odd + 1], l));
+    const Octet along_other = twice(of_point(rows.along[other], l));
 #pragma GCC unroll 9
     for (int r = 0; r < n; ++r) {
-      const Octet value = twice(rows.value[r][l]), weight = all_lanes(rows.weight[r][l]);
+      const Octet value = twice(of_point(rows.value[r], l)), weight = all_lanes(rows.weight[r][l]);
       two[r] = two[r] + w_pair * value + weight * along_pair;
       one[r] = one[r] + w_other * value + weight * along_other;
     }
@@ -222,9 +241,10 @@ void scatter_group(const Weights<D>& weights, const Spread<D>& spread, int n, No
   multiply_rows<D>(weights, rows.weight);
   carry_to_rows<D, given>(weights, spread, rows.value);
   for (int k = 0; k < 3; ++k) {
-    Octet column[4] = {};
-    add_along<D, given>(weights, spread, D - 1, k, nullptr, column);
-    to_rows(column, rows.along[k]);
+    Octet column[4] = {}, along[D];
+    along_direction<D, given>(weights, spread, D - 1, k, along);
+    std::copy_n(along, D, column);
+    four_a_point(column, rows.along[k]);
   }
   if (weights.together)
     add_run<D>(weights, rows, 0, octet_size, sums);
