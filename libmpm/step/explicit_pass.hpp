@@ -240,8 +240,10 @@ GroupCells cells_of_group(const TilePass<pass, Space, Law, Node>& in, std::size_
   constexpr int D = Space::dim;
   if (in.entered) return in.entered[g - static_cast<std::size_t>(in.tile.first_group)];
   GroupCells cell{};
+  using Real = std::remove_cvref_t<decltype(Node{}[0])>;
   if (in.cells || in.held)
-    find_pressure_cells<D>(in.state.grid.axes, in.state.shape, in.tile.at, places_of<D>(in.points, g), cell);
+    find_pressure_cells<D, Real>(in.state.grid.axes, in.state.shape, in.tile.at, places_of<D>(in.points, g),
+                                 cell);
   return cell;
 }
 
@@ -255,8 +257,8 @@ Octet divergence_of_group(const TilePass<pass, Space, Law, Node>& in, const Octe
 }
 
 /// Gives the pressures of group g to its cells, in which it is entered if it was not or has moved since.
-template <Pass pass, class Space, class Law, class Node>
-void push_cells(TilePass<pass, Space, Law, Node>& in, std::size_t g, int n, const Octet& pressure,
+template <Pass pass, class Space, class Law>
+void push_cells(TilePass<pass, Space, Law, NodeLanes>& in, std::size_t g, int n, const Octet& pressure,
                 GroupCells& cell) {
   if (!pass.gather || pass.move) in.pressed.enter(in.points, g, cell);
   in.pressed.push(cell, n, in.input.impulse_dt * pressure);

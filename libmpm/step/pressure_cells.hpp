@@ -56,7 +56,7 @@ class PressureCells {
   /// Enters the points of group g: `cells` are theirs.
   void enter(const LanePoints<D>& points, std::size_t g, std::array<int, octet_size>& cells) {
     const std::array<Octet, D> x = places_of<D>(points, g);
-    find_pressure_cells<D>(axes_, shape_, tile_, x, cells);
+    find_pressure_cells<D, Real>(axes_, shape_, tile_, x, cells);
     // What fills up a group need not have stayed with its points: it must not enter a cell of its own.
     for (std::size_t l = 1; l < octet_size; ++l) cells[l] = points.id[g][l] < 0 ? cells[0] : cells[l];
     for (const int cell : cells) entered_[static_cast<std::size_t>(cell)] = 1;
@@ -118,7 +118,7 @@ class PressureCells {
     decltype(load_two(static_cast<const Node*>(nullptr))) of[n_edges];
   };
 
-  /// use(cell) of all that have been entered, in their order: eight at once are asked.
+  /// use(cell) of all that have been entered, by their numbers: eight at once are asked.
   template <class Use>
   void for_each_cell(Use use) const {
     static_assert(std::endian::native == std::endian::little);

@@ -44,11 +44,15 @@ inline constexpr int tile_pressure_cells = tile_cells + 3;
 /// What a tile's weights need of one axis; cells and corners are counted from the tile's first.
 template <class Real>
 struct StencilAxisOf {
-  Real h, ih, origin, first;                 ///< (x - origin) ih - first is the place in cells
+  Real h, ih, origin, first;                 ///< for place_in_tile
   Real half, inverse;                        ///< GIMP: of a point's extent, and 1/(2 half)
   bool walls;                                ///< whether one of these is in sight:
   Real low = Real(1e30), high = Real(1e30);  ///< cell (GIMP: corner) at a low and at a high wall
 };
+/// Places in cells, from a tile's first on: a point on a wall is at a whole number, to the bit.
+inline Octet place_in_tile(double origin, double per_cell, double first, const Octet& x) {
+  return (x - origin) * per_cell - first;
+}
 using StencilAxis = StencilAxisOf<double>;
 using SingleStencilAxis = StencilAxisOf<float>;
 
@@ -123,15 +127,17 @@ template <class Real, class Lanes>
 
 }  // namespace detail
 
-/// Cells of eight points at x, numbered within a tile.
-template <int D>
+/// Cells of eight points at x, numbered within a tile. Real: in which their stencils are found; a point whose
+/// place is rounded up into the next cell there must be in the same cell here.
+template <int D, class Real>
 void find_pressure_cells(const std::array<Axis, D>& axes, const Shape<D>& shape, const Index<D>& tile,
                          const std::array<Octet, D>& x, std::array<int, octet_size>& cells) {
   Octet cell = {};
-  const Octet low = all_lanes(shape.kind == ShapeFunctions::gimp ? -2.0 : -1.0), high = all_lanes(tile_cells);
+  const bool gimp = shape.kind == ShapeFunctions::gimp;
+  const Octet low = all_lanes(gimp ? -2.0 : -1.0), high = all_lanes(tile_cells);
   for (int d = 0; d < D; ++d) {
-    const double per_cell = 1.0 / axes[d].h;
-    const Octet X = x[d] * per_cell - (axes[d].origin * per_cell + tile[d] * tile_cells);
+    Octet X = place_in_tile(axes[d].origin, 1.0 / axes[d].h, tile[d] * tile_cells, x[d]);
+    if (std::is_same_v<Real, float> && !gimp) X = to_double(to_single(X, X), 0);
     cell = cell * tile_pressure_cells + (min(max(floor(X), low), high) + 2.0);
   }
   to_whole(cell, cells);
@@ -153,7 +159,7 @@ void weigh(const StencilFrame<D>& frame, const std::array<Octet, D>& x, Weights<
 #pragma GCC unroll 3
   for (int d = 0; d < D; ++d) {
     const StencilAxis& axis = frame.axis[d];
-    const Octet X = (x[d] - axis.origin) * axis.ih - axis.first;
+    const Octet X = place_in_tile(axis.origin, axis.ih, axis.first, x[d]);
     Octet w[3], dw[3], arm[3], at;
     if (frame.kind == ShapeFunctions::gimp) {
       at = min(max(nearest(X), low), high);

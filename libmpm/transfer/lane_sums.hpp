@@ -13,6 +13,32 @@
 
 namespace tremie {
 
+namespace detail {
+
+/// Three numbers by their differences from the middle one, which are all that weights see whose sum is known.
+template <class Lanes>
+struct Differences {
+  Lanes down, middle, up;
+};
+template <class Lanes>
+[[gnu::always_inline]] inline Differences<Lanes> differences(const Lanes& first, const Lanes& middle,
+                                                             const Lanes& last) {
+  return {first - middle, middle, last - middle};
+}
+/// Sums with weights that add up to 1, and to 0; `first` and `last`: those of the outer two.
+template <class Weight, class Lanes>
+[[gnu::always_inline]] inline Lanes sum_to_one(const Weight& first, const Weight& last,
+                                               const Differences<Lanes>& of) {
+  return of.middle + first * of.down + last * of.up;
+}
+template <class Weight, class Lanes>
+[[gnu::always_inline]] inline Lanes sum_to_none(const Weight& first, const Weight& last,
+                                                const Differences<Lanes>& of) {
+  return first * of.down + last * of.up;
+}
+
+}  // namespace detail
+
 /// One component of a nodal field at eight points: value, slopes and first moments in the directions from d
 /// on.
 template <int R, Wanted wanted>
@@ -37,17 +63,17 @@ template <int D, Wanted wanted, int d = 0>
       return gather_together<D, wanted, d + 1>(node + k * stride<D>(tile_span, d), c, p);
     };
     const auto first = part(0), middle = part(1), last = part(2);
+    const auto value = detail::differences(first.value, middle.value, last.value);
     const auto mean = [&p](const Octet& low, const Octet& mid, const Octet& high) {
-      return mid + p.w[d][0] * (low - mid) + p.w[d][2] * (high - mid);
+      return detail::sum_to_one(p.w[d][0], p.w[d][2], detail::differences(low, mid, high));
     };
-    const Octet down = first.value - middle.value, up = last.value - middle.value;
-    sum.value = middle.value + p.w[d][0] * down + p.w[d][2] * up;
+    sum.value = detail::sum_to_one(p.w[d][0], p.w[d][2], value);
     if constexpr (wanted.slopes) {
-      sum.slope[0] = p.dw[d][0] * down + p.dw[d][2] * up;
+      sum.slope[0] = detail::sum_to_none(p.dw[d][0], p.dw[d][2], value);
       for (int e = 0; e < rest; ++e) sum.slope[e + 1] = mean(first.slope[e], middle.slope[e], last.slope[e]);
     }
     if constexpr (wanted.moments) {
-      sum.moment[0] = p.wa[d][0] * down + p.wa[d][2] * up;
+      sum.moment[0] = detail::sum_to_none(p.wa[d][0], p.wa[d][2], value);
       for (int e = 0; e < rest; ++e)
         sum.moment[e + 1] = mean(first.moment[e], middle.moment[e], last.moment[e]);
     }
@@ -84,18 +110,26 @@ inline void to_columns(const NodeLanes (&row)[octet_size], Octet (&column)[4]) {
   column[2] = __builtin_shufflevector(low[0], low[1], 2, 3, 6, 7, 10, 11, 14, 15);
   column[3] = __builtin_shufflevector(high[0], high[1], 2, 3, 6, 7, 10, 11, 14, 15);
 }
-inline void to_rows(const Octet (&column)[4], NodeLanes (&row)[octet_size]) {
-  for (int odd = 0; odd < 2; ++odd) {
+
+/// One vector of four a point, even points first: where four_a_point brings them.
+using FourAPoint = std::array<Octet, octet_size / 2>;
+inline NodeLanes of_point(const FourAPoint& four, std::size_t l) {
+  return reinterpret_cast<const NodeLanes*>(four.data())[l % 2 * (octet_size / 2) + l / 2];
+}
+inline void four_a_point(const Octet (&column)[4], FourAPoint& four) {
+  for (std::size_t odd = 0; odd < 2; ++odd) {
     const Octet front = odd ? __builtin_shufflevector(column[0], column[1], 1, 9, 3, 11, 5, 13, 7, 15)
                             : __builtin_shufflevector(column[0], column[1], 0, 8, 2, 10, 4, 12, 6, 14);
     const Octet back = odd ? __builtin_shufflevector(column[2], column[3], 1, 9, 3, 11, 5, 13, 7, 15)
                            : __builtin_shufflevector(column[2], column[3], 0, 8, 2, 10, 4, 12, 6, 14);
-    const Octet low = __builtin_shufflevector(front, back, 0, 1, 8, 9, 2, 3, 10, 11);
-    const Octet high = __builtin_shufflevector(front, back, 4, 5, 12, 13, 6, 7, 14, 15);
-    row[odd] = low_half(low), row[4 + odd] = low_half(high);
-    row[2 + odd] = __builtin_shufflevector(low, low, 4, 5, 6, 7);
-    row[6 + odd] = __builtin_shufflevector(high, high, 4, 5, 6, 7);
+    four[2 * odd] = __builtin_shufflevector(front, back, 0, 1, 8, 9, 2, 3, 10, 11);
+    four[2 * odd + 1] = __builtin_shufflevector(front, back, 4, 5, 12, 13, 6, 7, 14, 15);
   }
+}
+inline void to_rows(const Octet (&column)[4], NodeLanes (&row)[octet_size]) {
+  FourAPoint four;
+  four_a_point(column, four);
+  for (std::size_t l = 0; l < octet_size; ++l) row[l] = of_point(four, l);
 }
 
 /// Products of the weights of all directions but the last: those of the rows of controls that a point sees.
@@ -130,22 +164,6 @@ template <int D, Given given>
     along[c] = Octet{};
     if constexpr (given.slopes) along[c] = weights.dw[d][k] * spread.slope[d][c];
     if constexpr (given.moments) along[c] += weights.wa[d][k] * spread.moment[d][c];
-  }
-}
-
-/// One vector of four a point, even points first: where four_a_point brings them.
-using FourAPoint = std::array<Octet, octet_size / 2>;
-inline NodeLanes of_point(const FourAPoint& four, std::size_t l) {
-  return reinterpret_cast<const NodeLanes*>(four.data())[l % 2 * (octet_size / 2) + l / 2];
-}
-inline void four_a_point(const Octet (&column)[4], FourAPoint& four) {
-  for (std::size_t odd = 0; odd < 2; ++odd) {
-    const Octet front = odd ? __builtin_shufflevector(column[0], column[1], 1, 9, 3, 11, 5, 13, 7, 15)
-                            : __builtin_shufflevector(column[0], column[1], 0, 8, 2, 10, 4, 12, 6, 14);
-    const Octet back = odd ? __builtin_shufflevector(column[2], column[3], 1, 9, 3, 11, 5, 13, 7, 15)
-                           : __builtin_shufflevector(column[2], column[3], 0, 8, 2, 10, 4, 12, 6, 14);
-    four[2 * odd] = __builtin_shufflevector(front, back, 0, 1, 8, 9, 2, 3, 10, 11);
-    four[2 * odd + 1] = __builtin_shufflevector(front, back, 4, 5, 12, 13, 6, 7, 14, 15);
   }
 }
 

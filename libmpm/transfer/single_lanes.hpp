@@ -25,8 +25,8 @@ inline void add_controls(const Singles& four, SingleNode* to) {
 /// One entry of four a point, where transpose_blocks brings them.
 struct alignas(64) Entries : std::array<SingleNode, singles_size> {};
 
-/// The number as it is rounded: no multiply-add is made of the product that it is and a sum. Additions have
-/// units of their own on some processors.
+/// With AVX-512 the number as it is rounded: no multiply-add is made of the product that it is and a sum, for
+/// additions have units of their own on some processors.
 inline Singles rounded(Singles a) {
 #ifdef __AVX512F__
   asm("" : "+v"(a));

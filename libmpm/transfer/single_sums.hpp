@@ -8,15 +8,16 @@
 //
 // The weights of a direction add up to 1, and their slopes and first moments to 0, which leaves two numbers
 // of three: reading takes differences from the middle control, and of impulses the middle row has what the
-// others leave.
+// others leave. (The middle control has half of the weight at least, but for splines next to a wall.)
 
 #include "libmpm/transfer/lane_sums.hpp"
 #include "libmpm/transfer/single_lanes.hpp"
 
 namespace tremie {
 
-/// Of sixteen points' three controls in each direction, and where their stencils begin in the tile's cube.
-/// Slopes [1/m] and arms from the point times weights [m] are those of the first and the last control.
+/// Shape functions of sixteen points at their three controls in each direction, and where their stencils
+/// begin in the tile's cube. Slopes [1/m] and arms from the point times weights [m] are those of the first
+/// and the last control.
 template <int D>
 struct SingleWeights {
   Singles w[D][3], dw[D][2], wa[D][2];
@@ -37,8 +38,9 @@ void weigh_single(const StencilFrame<D>& frame, const std::array<Octet, D> (&x)[
   for (int d = 0; d < D; ++d) {
     const StencilAxis& axis = frame.axis[d];
     const SingleStencilAxis& single = frame.single[d];
-    const double tile_at = axis.origin * axis.ih + axis.first;
-    const auto in_tile = [&](const Octet& place) { return place * axis.ih - tile_at; };
+    const auto in_tile = [&](const Octet& place) {
+      return place_in_tile(axis.origin, axis.ih, axis.first, place);
+    };
     const Singles X = to_single(in_tile(x[0][d]), in_tile(x[1][d]));
     Singles at, w[3], dw[3], arm[3];
     if (frame.kind == ShapeFunctions::gimp) {
@@ -70,25 +72,6 @@ struct SingleFields {
 
 namespace detail {
 
-/// Sums of three, read as differences from the middle one: with weights that add up to 1, and to 0.
-struct Differences {
-  Singles down, middle, up;
-};
-[[gnu::always_inline]] inline Differences differences(const Singles& first, const Singles& middle,
-                                                      const Singles& last) {
-  return {first - middle, middle, last - middle};
-}
-template <class Weight>
-[[gnu::always_inline]] inline Singles sum_to_one(const Weight& first, const Weight& last,
-                                                 const Differences& of) {
-  return of.middle + first * of.down + last * of.up;
-}
-template <class Weight>
-[[gnu::always_inline]] inline Singles sum_to_none(const Weight& first, const Weight& last,
-                                                  const Differences& of) {
-  return first * of.down + last * of.up;
-}
-
 /// Sums over the rows of point l: sum[0] with the weights of all directions but the last, sum[1 + d] with
 /// `side` in place of the weights of direction d.
 template <int D>
@@ -107,7 +90,7 @@ template <int D>
       turned[i] = sum_to_none(side[1][0][l], side[1][1][l], along);
     }
   }
-  const Differences across = differences(row[0], row[1], row[2]);
+  const auto across = differences(row[0], row[1], row[2]);
   const auto first = p.w[0][0][l], last = p.w[0][2][l];
   sum[0] = sum_to_one(first, last, across);
   sum[1] = sum_to_none(side[0][0][l], side[0][1][l], across);
@@ -134,7 +117,7 @@ template <int D, bool values>
     const Singles first = repeat(p.w[D - 1][0]), last = repeat(p.w[D - 1][2]);
     for (int q = 0; q < D; ++q) {
       const Blocks block = first_three_blocks(rows[q]);
-      const Differences along = differences(block.first, block.second, block.third);
+      const auto along = differences(block.first, block.second, block.third);
       if (q > 0 || values) entry[q][b] = sum_to_one(first, last, along);
       if (q == 0) entry[D][b] = sum_to_none(repeat(side[D - 1][0]), repeat(side[D - 1][1]), along);
     }
@@ -179,9 +162,29 @@ struct SingleImpulses {
   Singles value[D], slope[D][D];
 };
 
+namespace detail {
+
+/// Visits the first n of sixteen points by runs of one stencil: add(l) each point, end(node) each run, whose
+/// stencil begins at that control.
+template <int D, class Add, class End>
+[[gnu::always_inline]] inline Reached for_each_run(const SingleWeights<D>& p, std::size_t n, SingleNode* sums,
+                                                   Add add, End end) {
+  Reached reached;
+  for (std::size_t l = 0; l < n; ++reached.runs) {
+    const int base = p.base[l];
+    do add(l);
+    while (++l < n && p.base[l] == base);
+    end(sums + base);
+    reached.rows |= stencil_rows<D>(base);
+  }
+  return reached;
+}
+
+}  // namespace detail
+
 /// Adds momenta and masses of the first n of sixteen points to their controls in the tile's cube,
 /// w_i w_j w_k (value + moment[0] a_i + moment[1] a_j + moment[2] a_k). The control behind a stencil's row is
-/// added nothing.
+/// added nothing. noipa: as add_by_runs() of lane_sums.hpp.
 template <int D>
 [[gnu::noipa]] Reached scatter_momenta(const SingleWeights<D>& p, const SingleMomenta<D>& of, std::size_t n,
                                        SingleNode* sums) {
@@ -192,40 +195,40 @@ template <int D>
   const detail::Entries w = entries_of(p.w[last]), wa = entries_of(arms), value = entries_of(of.value);
   detail::Entries moment[D];
   for (int d = 0; d < D; ++d) moment[d] = entries_of(of.moment[d]);
-  Singles weight[rows];
+  Singles weight[rows], sum[rows] = {};
   for (int r = 0; r < rows; ++r) weight[r] = D == 2 ? p.w[0][r] : p.w[0][r / 3] * p.w[1][r % 3];
-  Reached reached;
-  for (std::size_t l = 0; l < n; ++reached.runs) {
-    const int base = p.base[l];
-    Singles sum[rows] = {};
-    do {
-      const std::size_t at = detail::place_of(l);
-      const Singles w_k = each_four_times(w[at]), turned = w_k * four_times(moment[0][at]);
-      const Singles middle =
-          w_k * four_times(value[at]) + each_four_times(wa[at]) * four_times(moment[last][at]);
-      const Singles row[3] = {middle + p.arm[0][0][l] * turned, middle, middle + p.arm[0][1][l] * turned};
-      if constexpr (D == 2) {
-        for (int i = 0; i < 3; ++i) sum[i] += weight[i][l] * row[i];
-      } else {
-        const Singles across = w_k * four_times(moment[1][at]);
-        const Singles down = detail::rounded(p.arm[1][0][l] * across),
-                      up = detail::rounded(p.arm[1][1][l] * across);
+  const auto add = [&](std::size_t l) {
+    const std::size_t at = detail::place_of(l);
+    const Singles w_k = each_four_times(w[at]), by_i = w_k * four_times(moment[0][at]);
+    const Singles middle =
+        w_k * four_times(value[at]) + each_four_times(wa[at]) * four_times(moment[last][at]);
+    const Singles row[3] = {middle + p.arm[0][0][l] * by_i, middle, middle + p.arm[0][1][l] * by_i};
+    if constexpr (D == 2) {
+      for (int i = 0; i < 3; ++i) sum[i] += weight[i][l] * row[i];
+    } else {
+      const Singles by_j = w_k * four_times(moment[1][at]);
+      const Singles down = detail::rounded(p.arm[1][0][l] * by_j),
+                    up = detail::rounded(p.arm[1][1][l] * by_j);
 #pragma GCC unroll 3
-        for (int i = 0; i < 3; ++i) {
-          sum[3 * i] += weight[3 * i][l] * (row[i] + down);
-          sum[3 * i + 1] += weight[3 * i + 1][l] * row[i];
-          sum[3 * i + 2] += weight[3 * i + 2][l] * (row[i] + up);
-        }
+      for (int i = 0; i < 3; ++i) {
+        sum[3 * i] += weight[3 * i][l] * (row[i] + down);
+        sum[3 * i + 1] += weight[3 * i + 1][l] * row[i];
+        sum[3 * i + 2] += weight[3 * i + 2][l] * (row[i] + up);
       }
-    } while (++l < n && p.base[l] == base);
+    }
+  };
+  const auto end = [&](SingleNode* node) {
 #pragma GCC unroll 9
-    for (int r = 0; r < rows; ++r) detail::add_controls(sum[r], sums + base + row_offset<D>(r));
-    reached.rows |= stencil_rows<D>(base);
-  }
-  return reached;
+    for (int r = 0; r < rows; ++r) {
+      detail::add_controls(sum[r], node + row_offset<D>(r));
+      sum[r] = Singles{};
+    }
+  };
+  return detail::for_each_run<D>(p, n, sums, add, end);
 }
 
-/// The same with impulses. `values`: there are such.
+/// The same with impulses: slope[0] dw_i w_j w_k + slope[1] w_i dw_j w_k + slope[2] w_i w_j dw_k, and
+/// value w_i w_j w_k if there are `values`.
 template <int D, bool values>
 [[gnu::noipa]] Reached scatter_impulses(const SingleWeights<D>& p, const SingleImpulses<D>& of, std::size_t n,
                                         SingleNode* sums) {
@@ -236,47 +239,49 @@ template <int D, bool values>
   detail::Entries value, slope[D];
   if constexpr (values) value = entries_of(of.value);
   for (int d = 0; d < D; ++d) slope[d] = entries_of(of.slope[d]);
-  Reached reached;
-  for (std::size_t l = 0; l < n; ++reached.runs) {
-    const int base = p.base[l];
-    // Rows at the corners, and sums of all rows that have one place in a direction.
-    Singles corner[2][2] = {}, of_first[2] = {}, of_second[2] = {}, all = {};
-    do {
-      const std::size_t at = detail::place_of(l);
-      const Singles w_k = each_four_times(w[at]);
-      Singles row = each_four_times(dw[at]) * four_times(slope[last][at]);
-      if constexpr (values) row += w_k * four_times(value[at]);
-      const Singles turned = w_k * four_times(slope[0][at]);
-      all += row;
+  // Outer rows: those at the corners, and sums of all with one i, with one j, and of all.
+  Singles corner[2][2] = {}, with_i[2] = {}, with_j[2] = {}, all = {};
+  const auto add = [&](std::size_t l) {
+    const std::size_t at = detail::place_of(l);
+    const Singles w_k = each_four_times(w[at]), by_i = w_k * four_times(slope[0][at]);
+    Singles row = each_four_times(dw[at]) * four_times(slope[last][at]);
+    if constexpr (values) row += w_k * four_times(value[at]);
+    all += row;
+    Singles of_i[2];
 #pragma GCC unroll 2
-      for (int i = 0; i < 2; ++i) {
-        const auto w_i = p.w[0][2 * i][l], dw_i = p.dw[0][i][l];
-        const Singles rows = detail::rounded(dw_i * turned + w_i * row);
-        of_first[i] += rows;
-        if constexpr (D == 3) {
-          const Singles across = w_k * four_times(slope[1][at]), some = w_i * across;
-          of_second[i] = of_second[i] + p.w[1][2 * i][l] * row + p.dw[1][i][l] * across;
+    for (int i = 0; i < 2; ++i) {
+      of_i[i] = detail::rounded(p.dw[0][i][l] * by_i + p.w[0][2 * i][l] * row);
+      with_i[i] += of_i[i];
+    }
+    if constexpr (D == 3) {
+      const Singles by_j = w_k * four_times(slope[1][at]);
 #pragma GCC unroll 2
-          for (int j = 0; j < 2; ++j)
-            corner[i][j] = corner[i][j] + p.w[1][2 * j][l] * rows + p.dw[1][j][l] * some;
-        }
+      for (int j = 0; j < 2; ++j) {
+        const auto w_j = p.w[1][2 * j][l], dw_j = p.dw[1][j][l];
+        with_j[j] = with_j[j] + w_j * row + dw_j * by_j;
+#pragma GCC unroll 2
+        for (int i = 0; i < 2; ++i)
+          corner[i][j] = corner[i][j] + w_j * of_i[i] + dw_j * (p.w[0][2 * i][l] * by_j);
       }
-    } while (++l < n && p.base[l] == base);
-    const auto add = [&](int r, const Singles& sum) {
-      detail::add_controls(sum, sums + base + row_offset<D>(r));
+    }
+  };
+  const auto end = [&](SingleNode* node) {
+    const auto give = [node](int r, const Singles& sum) {
+      detail::add_controls(sum, node + row_offset<D>(r));
     };
     if constexpr (D == 2) {
-      add(0, of_first[0]), add(1, all - of_first[0] - of_first[1]), add(2, of_first[1]);
+      give(0, with_i[0]), give(1, all - with_i[0] - with_i[1]), give(2, with_i[1]);
     } else {
-      const Singles low = of_second[0] - corner[0][0] - corner[1][0],
-                    high = of_second[1] - corner[0][1] - corner[1][1];
-      add(0, corner[0][0]), add(1, of_first[0] - corner[0][0] - corner[0][1]), add(2, corner[0][1]);
-      add(3, low), add(4, all - of_first[0] - of_first[1] - low - high), add(5, high);
-      add(6, corner[1][0]), add(7, of_first[1] - corner[1][0] - corner[1][1]), add(8, corner[1][1]);
+      const Singles low = with_j[0] - corner[0][0] - corner[1][0],
+                    high = with_j[1] - corner[0][1] - corner[1][1];
+      give(0, corner[0][0]), give(1, with_i[0] - corner[0][0] - corner[0][1]), give(2, corner[0][1]);
+      give(3, low), give(4, all - with_i[0] - with_i[1] - low - high), give(5, high);
+      give(6, corner[1][0]), give(7, with_i[1] - corner[1][0] - corner[1][1]), give(8, corner[1][1]);
     }
-    reached.rows |= stencil_rows<D>(base);
-  }
-  return reached;
+    for (int i = 0; i < 2; ++i) corner[i][0] = corner[i][1] = with_i[i] = with_j[i] = Singles{};
+    all = Singles{};
+  };
+  return detail::for_each_run<D>(p, n, sums, add, end);
 }
 
 }  // namespace tremie

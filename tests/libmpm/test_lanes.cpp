@@ -4,6 +4,7 @@
 
 #include <random>
 #include <set>
+#include <tuple>
 
 #include "libmpm/law/lane_laws.hpp"
 #include "libmpm/points/lane_points.hpp"
@@ -77,9 +78,18 @@ TEST(LaneFunctions, LookUp) {
   }
 }
 
-TEST(LaneFunctions, Floor) {
-  const Octet x = {-2.0, -1.5, -0.1, 0.0, 0.1, 1.0, 1.9, 1e6 + 0.5}, f = floor(x);
-  for (int l = 0; l < octet_size; ++l) EXPECT_EQ(f[l], std::floor(x[l]));
+// The whole number between two goes to the even one.
+TEST(LaneFunctions, FloorAndNearest) {
+  const Octet x = {-2.0, -1.5, -0.1, 0.0, 0.5, 1.0, 2.5, 1e6 + 0.5}, f = floor(x), n = nearest(x);
+  const Singles y = to_single(x, -x), g = floor(y), m = nearest(y);
+  for (std::size_t l = 0; l < octet_size; ++l) {
+    EXPECT_EQ(f[l], std::floor(x[l]));
+    EXPECT_EQ(n[l], std::nearbyint(x[l]));
+    for (const std::size_t k : {l, l + octet_size}) {
+      EXPECT_EQ(g[k], std::floor(y[k]));
+      EXPECT_EQ(m[k], std::nearbyint(y[k]));
+    }
+  }
 }
 
 TEST(LaneLaws, AsTheScalarLaws) {
@@ -244,21 +254,26 @@ TEST(FactoredSums, GatherAndScatterAreAdjoint) {
   EXPECT_NEAR(left, right, 1e-12);
 }
 
-/// Eight points in neighbouring cells, or all in one, and what a tile's controls carry.
+/// Eight points in neighbouring cells, or all in one, next to a wall or not, and what a tile's controls
+/// carry.
 struct EightPoints {
   static constexpr int D = 3;
   Weights<D> weights;
   TileGrid<D>::Buffer v;
   Spread<D> spread;
 
-  explicit EightPoints(bool together) {
+  EightPoints(bool together, ShapeFunctions kind = ShapeFunctions::b_spline, bool at_wall = false) {
     std::array<Axis, D> axes;
-    for (Axis& a : axes) a = {.h = 0.1};
+    for (Axis& a : axes) a = {.h = 0.1, .low = at_wall ? FaceKind::no_slip : FaceKind::open};
+    Shape<D> shape{kind, {}};
+    shape.half.fill(0.25);
     std::mt19937 random(7);
-    const double high = together ? 0.3 : 0.4;
-    const std::array<Octet, D> x = {random_lanes(random, 0.2, high), random_lanes(random, 0.2, high),
-                                    random_lanes(random, 0.2, high)};
-    weigh<D>(axes, {}, {0, 0, 0}, x, weights);
+    // GIMP's stencils go by the nearest corner.
+    const double low = at_wall ? 0.0 : kind == ShapeFunctions::gimp ? 0.151 : 0.2;
+    const double high = low + (together ? at_wall && kind == ShapeFunctions::gimp ? 0.049 : 0.098 : 0.2);
+    const std::array<Octet, D> x = {random_lanes(random, low, high), random_lanes(random, low, high),
+                                    random_lanes(random, low, high)};
+    weigh<D>(axes, shape, {0, 0, 0}, x, weights);
     std::uniform_real_distribution<double> u(-1.0, 1.0);
     for (NodeLanes& node : v) node = NodeLanes{u(random), u(random), u(random), u(random)};
     for (Octet& value : spread.value) value = random_lanes(random, -1.0, 1.0);
@@ -273,8 +288,12 @@ struct EightPoints {
 // would read and add, to round-off: in one cell and in several.
 TEST(GroupSums, AsPointByPoint) {
   constexpr int D = 3;
-  for (const bool together : {true, false}) {
-    EightPoints eight(together);
+  for (const auto& [together, kind, at_wall] : {std::tuple{true, ShapeFunctions::b_spline, false},
+                                                {false, ShapeFunctions::b_spline, false},
+                                                {true, ShapeFunctions::b_spline, true},
+                                                {true, ShapeFunctions::gimp, false},
+                                                {true, ShapeFunctions::gimp, true}}) {
+    EightPoints eight(together, kind, at_wall);
     EXPECT_EQ(eight.weights.together, together);
     TileGrid<D>::Buffer got{}, expected{};
     scatter_group<D, Given{}>(eight.weights, eight.spread, octet_size, got.data());

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "libmpm/transfer/single_sums.hpp"
@@ -10,10 +11,10 @@
 namespace tremie {
 namespace {
 
-constexpr int D = 3;
 constexpr double h = 0.1;
 /// A dozen roundings of numbers up to one; places in a tile are rounded too, to 2^-22 of a cell.
 constexpr double rounding = 3e-6;
+constexpr std::size_t numbers_of_points[] = {16, 11, 1};
 
 Octet random_lanes(std::mt19937& random, double low, double high) {
   std::uniform_real_distribution<double> u(low, high);
@@ -21,33 +22,64 @@ Octet random_lanes(std::mt19937& random, double low, double high) {
   for (int l = 0; l < octet_size; ++l) x[l] = u(random);
   return x;
 }
+Singles random_singles(std::mt19937& random, double size) {
+  return to_single(random_lanes(random, -size, size), random_lanes(random, -size, size));
+}
+
+/// Not a number wherever nothing is written.
+template <int D>
+SingleWeights<D> unwritten() {
+  SingleWeights<D> weights;
+  const Singles nan = std::numeric_limits<float>::quiet_NaN() - Singles{};
+  for (std::size_t i = 0; i < offsetof(SingleWeights<D>, base) / sizeof nan; ++i)
+    std::memcpy(reinterpret_cast<char*>(&weights) + i * sizeof nan, &nan, sizeof nan);
+  return weights;
+}
+
+struct Case {
+  ShapeFunctions kind;
+  double low, high;  ///< where the points are [m]
+};
+
+template <int D>
+std::array<Axis, D> held_axes(double origin) {
+  std::array<Axis, D> axes;
+  for (Axis& a : axes) a = {.h = h, .origin = origin, .low = FaceKind::no_slip};
+  return axes;
+}
+template <int D>
+Shape<D> shape_of(ShapeFunctions kind) {
+  Shape<D> shape{kind, {}};
+  shape.half.fill(0.25);
+  return shape;
+}
 
 /// Sixteen points in cells next to a wall and away from it, with their weights in both precisions and what a
-/// tile's controls carry.
+/// tile's controls carry. Weights that a pass does not ask for are not numbers.
+template <int D>
 struct SixteenPoints {
   Weights<D> weights[2];
-  SingleWeights<D> single;
-  TileGrid<D>::Buffer v;
-  TileGrid<D>::SingleBuffer single_v;
+  SingleWeights<D> with_slopes = unwritten<D>(), with_moments = unwritten<D>();
+  typename TileGrid<D>::Buffer v;
+  typename TileGrid<D>::SingleBuffer single_v;
 
   /// `n`: points beyond it stand where the first of their eight does.
-  SixteenPoints(ShapeFunctions kind, double low, double high, std::size_t n = singles_size) {
-    std::array<Axis, D> axes;
-    for (Axis& a : axes) a = {.h = h, .low = FaceKind::no_slip};
-    Shape<D> shape{kind, {}};
-    shape.half.fill(0.25);
+  explicit SixteenPoints(const Case& of, std::size_t n = singles_size) {
+    const auto axes = held_axes<D>(0.0);
+    const auto shape = shape_of<D>(of.kind);
     std::mt19937 random(3);
     std::array<Octet, D> x[2];
-    const auto frame = stencil_frame<D>(axes, shape, {0, 0, 0});
     for (int half = 0; half < 2; ++half) {
       for (Octet& lanes : x[half]) {
-        lanes = random_lanes(random, low, high);
+        lanes = random_lanes(random, of.low, of.high);
         for (std::size_t l = 0; l < octet_size; ++l)
           if (static_cast<std::size_t>(half) * octet_size + l >= n) lanes[l] = lanes[0];
       }
-      weigh<D>(axes, shape, {0, 0, 0}, x[half], weights[half]);
+      weigh<D>(axes, shape, {}, x[half], weights[half]);
     }
-    weigh_single<D, slopes_and_moments>(frame, x, single);
+    const auto frame = stencil_frame<D>(axes, shape, {});
+    weigh_single<D, slopes_only>(frame, x, with_slopes);
+    weigh_single<D, moments_only>(frame, x, with_moments);
     std::uniform_real_distribution<double> u(-1.0, 1.0);
     single_v.fill(SingleNode{});
     for (std::size_t i = 0; i < v.size(); ++i) {
@@ -61,31 +93,25 @@ struct SixteenPoints {
   PointWeights<D, 3> one(std::size_t l) const { return of_lane<D>(of(l), static_cast<int>(l % octet_size)); }
 };
 
-struct Case {
-  ShapeFunctions kind;
-  double low, high;  ///< where the points are [m]
-};
-
-class SingleSums : public testing::TestWithParam<Case> {};
-INSTANTIATE_TEST_SUITE_P(Cells, SingleSums,
-                         testing::Values(Case{ShapeFunctions::b_spline, 0.21, 0.29},
-                                         Case{ShapeFunctions::b_spline, 0.0, 0.4},
-                                         Case{ShapeFunctions::gimp, 0.21, 0.24},
-                                         Case{ShapeFunctions::gimp, 0.001, 0.4}));
-
 // A smooth field is read the same wherever a rounding puts a point's stencil; these controls are random, so
 // that points which the two put into different stencils, at most one in a million, must not be among them.
-TEST_P(SingleSums, StencilsBeginAlike) {
-  const SixteenPoints points(GetParam().kind, GetParam().low, GetParam().high);
-  for (std::size_t l = 0; l < singles_size; ++l) EXPECT_EQ(points.single.base[l], points.base(l));
+template <int D>
+void stencils_begin_alike(const Case& c) {
+  const SixteenPoints<D> points(c);
+  for (std::size_t l = 0; l < singles_size; ++l) {
+    EXPECT_EQ(points.with_slopes.base[l], points.base(l));
+    EXPECT_EQ(points.with_moments.base[l], points.base(l));
+  }
 }
 
-TEST_P(SingleSums, GatherAsDoubleDoes) {
-  const SixteenPoints points(GetParam().kind, GetParam().low, GetParam().high);
-  for (const std::size_t n : {std::size_t{16}, std::size_t{11}, std::size_t{1}}) {
-    SingleFields<D> slopes, moments;
-    gather_slopes<D, true>(points.single_v.data(), points.single, n, slopes);
-    gather_moments<D>(points.single_v.data(), points.single, n, moments);
+template <int D>
+void gather_as_double_does(const Case& of) {
+  const SixteenPoints<D> points(of);
+  for (const std::size_t n : numbers_of_points) {
+    SingleFields<D> slopes, moments, slopes_alone;
+    gather_slopes<D, true>(points.single_v.data(), points.with_slopes, n, slopes);
+    gather_slopes<D, false>(points.single_v.data(), points.with_slopes, n, slopes_alone);
+    gather_moments<D>(points.single_v.data(), points.with_moments, n, moments);
     for (std::size_t l = 0; l < n; ++l) {
       const auto read = gather<D, 3, slopes_and_moments>(&points.v[static_cast<std::size_t>(points.base(l))],
                                                          points.one(l));
@@ -94,6 +120,7 @@ TEST_P(SingleSums, GatherAsDoubleDoes) {
         EXPECT_EQ(moments.value[c][l], slopes.value[c][l]);
         for (int d = 0; d < D; ++d) {
           EXPECT_NEAR(static_cast<double>(slopes.along[d][c][l]), read.slope[d][c], rounding / h);
+          EXPECT_EQ(slopes_alone.along[d][c][l], slopes.along[d][c][l]);
           EXPECT_NEAR(static_cast<double>(moments.along[d][c][l]), read.moment[d][c], rounding * h);
         }
       }
@@ -103,11 +130,12 @@ TEST_P(SingleSums, GatherAsDoubleDoes) {
 }
 
 // What fills up eight points moves with the first of them, to the bit.
-TEST_P(SingleSums, WhatFillsUpReadsAsItsFirst) {
+template <int D>
+void what_fills_up_reads_as_its_first(const Case& of) {
   for (const std::size_t n : {std::size_t{3}, std::size_t{11}}) {
-    const SixteenPoints points(GetParam().kind, GetParam().low, GetParam().high, n);
+    const SixteenPoints<D> points(of, n);
     SingleFields<D> moments;
-    gather_moments<D>(points.single_v.data(), points.single, n, moments);
+    gather_moments<D>(points.single_v.data(), points.with_moments, n, moments);
     const std::size_t first = (n - 1) / octet_size * octet_size;
     for (std::size_t l = n; l < first + octet_size; ++l)
       for (int c = 0; c < D; ++c) {
@@ -117,22 +145,20 @@ TEST_P(SingleSums, WhatFillsUpReadsAsItsFirst) {
   }
 }
 
-TEST_P(SingleSums, InertiaAsDoubleHasIt) {
-  const SixteenPoints points(GetParam().kind, GetParam().low, GetParam().high);
+template <int D>
+void inertia_as_double_has_it(const Case& of) {
+  const SixteenPoints<D> points(of);
   for (int d = 0; d < D; ++d)
     for (std::size_t l = 0; l < singles_size; ++l)
-      EXPECT_NEAR(static_cast<double>(points.single.inertia[d][l]),
+      EXPECT_NEAR(static_cast<double>(points.with_moments.inertia[d][l]),
                   points.of(l).inertia[static_cast<std::size_t>(d)][l % octet_size], rounding * h * h);
 }
 
-Singles random_singles(std::mt19937& random, double size) {
-  return to_single(random_lanes(random, -size, size), random_lanes(random, -size, size));
-}
-
 /// What the first n points add in double precision; `one`: what point l gives.
-template <class One>
-TileGrid<D>::Buffer expected_sums(const SixteenPoints& points, std::size_t n, TileRows& rows, One one) {
-  TileGrid<D>::Buffer sums{};
+template <int D, class One>
+typename TileGrid<D>::Buffer expected_sums(const SixteenPoints<D>& points, std::size_t n, TileRows& rows,
+                                           One one) {
+  typename TileGrid<D>::Buffer sums{};
   rows = 0;
   for (std::size_t l = 0; l < n; ++l) {
     NodeLanes value = {}, slope[D] = {}, moment[D] = {};
@@ -143,49 +169,60 @@ TileGrid<D>::Buffer expected_sums(const SixteenPoints& points, std::size_t n, Ti
   return sums;
 }
 
-constexpr std::size_t numbers_of_points[] = {16, 11, 1};
-
-/// All controls but the ones behind the rows of stencils, which are added nothing that counts.
-void expect_sums(const TileGrid<D>::SingleBuffer& got, const TileGrid<D>::Buffer& expected) {
+template <class Single, class Double>
+void expect_sums(const Single& got, const Double& expected) {
   for (std::size_t i = 0; i < expected.size(); ++i)
     for (int c = 0; c < 4; ++c)
       EXPECT_NEAR(static_cast<double>(got[i][c]), expected[i][c], 16.0 * rounding) << i << ' ' << c;
 }
 
-TEST_P(SingleSums, MomentaAsDoubleHasThem) {
-  const SixteenPoints points(GetParam().kind, GetParam().low, GetParam().high);
-  std::mt19937 random(4);
+template <int D>
+SingleMomenta<D> random_momenta(std::mt19937& random) {
   SingleMomenta<D> momenta;
   for (Singles& value : momenta.value) value = random_singles(random, 1.0);
   for (auto& moment : momenta.moment)
     for (Singles& component : moment) component = random_singles(random, 1.0 / h);
+  return momenta;
+}
+template <int D>
+SingleImpulses<D> random_impulses(std::mt19937& random) {
+  SingleImpulses<D> impulses;
+  for (Singles& value : impulses.value) value = random_singles(random, 1.0);
+  for (auto& slope : impulses.slope)
+    for (Singles& component : slope) component = random_singles(random, h);
+  return impulses;
+}
+
+template <int D>
+void momenta_as_double_has_them(const Case& of) {
+  const SixteenPoints<D> points(of);
+  std::mt19937 random(4);
+  const SingleMomenta<D> momenta = random_momenta<D>(random);
   // In double precision moments are about the point.
   const auto one = [&](std::size_t l, NodeLanes& value, NodeLanes*, NodeLanes* moment) {
-    for (int c = 0; c < 4; ++c) value[c] = static_cast<double>(momenta.value[c][l]);
+    for (int c = 0; c <= D; ++c) value[c] = static_cast<double>(momenta.value[c][l]);
     for (int d = 0; d < D; ++d)
       for (int c = 0; c < D; ++c) {
         moment[d][c] = static_cast<double>(momenta.moment[d][c][l]);
-        value[c] -= moment[d][c] * static_cast<double>(points.single.middle[d][l]);
+        value[c] -= moment[d][c] * static_cast<double>(points.with_moments.middle[d][l]);
       }
   };
   for (const std::size_t n : numbers_of_points) {
     TileRows rows;
-    const auto expected = expected_sums(points, n, rows, one);
-    TileGrid<D>::SingleBuffer got{};
-    const Reached reached = scatter_momenta<D>(points.single, momenta, n, got.data());
+    const auto expected = expected_sums<D>(points, n, rows, one);
+    typename TileGrid<D>::SingleBuffer got{};
+    const Reached reached = scatter_momenta<D>(points.with_moments, momenta, n, got.data());
     EXPECT_EQ(reached.rows, rows);
     EXPECT_GE(reached.runs, 1);
     expect_sums(got, expected);
   }
 }
 
-TEST_P(SingleSums, ImpulsesAsDoubleHasThem) {
-  const SixteenPoints points(GetParam().kind, GetParam().low, GetParam().high);
+template <int D>
+void impulses_as_double_has_them(const Case& of) {
+  const SixteenPoints<D> points(of);
   std::mt19937 random(5);
-  SingleImpulses<D> impulses;
-  for (Singles& value : impulses.value) value = random_singles(random, 1.0);
-  for (auto& slope : impulses.slope)
-    for (Singles& component : slope) component = random_singles(random, h);
+  const SingleImpulses<D> impulses = random_impulses<D>(random);
   for (const bool values : {false, true}) {
     const auto one = [&](std::size_t l, NodeLanes& value, NodeLanes* slope, NodeLanes*) {
       for (int c = 0; c < D && values; ++c) value[c] = static_cast<double>(impulses.value[c][l]);
@@ -194,10 +231,11 @@ TEST_P(SingleSums, ImpulsesAsDoubleHasThem) {
     };
     for (const std::size_t n : numbers_of_points) {
       TileRows rows;
-      const auto expected = expected_sums(points, n, rows, one);
-      TileGrid<D>::SingleBuffer got{};
-      const Reached reached = values ? scatter_impulses<D, true>(points.single, impulses, n, got.data())
-                                     : scatter_impulses<D, false>(points.single, impulses, n, got.data());
+      const auto expected = expected_sums<D>(points, n, rows, one);
+      typename TileGrid<D>::SingleBuffer got{};
+      const Reached reached = values
+                                  ? scatter_impulses<D, true>(points.with_slopes, impulses, n, got.data())
+                                  : scatter_impulses<D, false>(points.with_slopes, impulses, n, got.data());
       EXPECT_EQ(reached.rows, rows);
       EXPECT_GE(reached.runs, 1);
       expect_sums(got, expected);
@@ -205,24 +243,116 @@ TEST_P(SingleSums, ImpulsesAsDoubleHasThem) {
   }
 }
 
-// Stresses move no momentum but from one control to another: of a run of points with one stencil to what the
-// sums are rounded by, each in units of the largest of them.
-TEST(SingleSums, ImpulsesOfStressesAddUpToNothing) {
-  const SixteenPoints points(ShapeFunctions::gimp, 0.21, 0.24);
-  std::mt19937 random(6);
-  SingleImpulses<D> impulses;
-  for (auto& slope : impulses.slope)
-    for (Singles& component : slope) component = random_singles(random, h);
-  TileGrid<D>::SingleBuffer sums{};
-  scatter_impulses<D, false>(points.single, impulses, singles_size, sums.data());
+/// Sums over a cube and the largest entry of it.
+template <class Cube>
+std::pair<NodeLanes, double> total_of(const Cube& cube) {
   NodeLanes total = {};
   double largest = 0.0;
-  for (const SingleNode& node : sums) {
+  for (const SingleNode& node : cube) {
     total += in_double(node);
-    for (int c = 0; c < D; ++c) largest = std::max(largest, std::abs(static_cast<double>(node[c])));
+    for (int c = 0; c < 4; ++c) largest = std::max(largest, std::abs(static_cast<double>(node[c])));
   }
-  EXPECT_GT(largest, 0.1);
-  for (int c = 0; c < D; ++c) EXPECT_NEAR(total[c], 0.0, 27 * 1.2e-7 * largest);
+  return {total, largest};
+}
+
+// Stresses move no momentum but from one control to another, and what points give in mass and momentum about
+// themselves all arrives: to a rounding, 6e-8, of each of the 3^D entries of every point.
+template <int D>
+void nothing_is_lost(const Case& of) {
+  const SixteenPoints<D> points(of);
+  std::mt19937 random(6);
+  const SingleImpulses<D> impulses = random_impulses<D>(random);
+  typename TileGrid<D>::SingleBuffer pushed{}, moved{};
+  scatter_impulses<D, false>(points.with_slopes, impulses, singles_size, pushed.data());
+  const double tolerance = power(3, D) * singles_size * 6e-8;
+  const auto [push, hardest] = total_of(pushed);
+  EXPECT_GT(hardest, 0.1);
+  for (int c = 0; c < D; ++c) EXPECT_NEAR(push[c], 0.0, tolerance * hardest);
+
+  const SingleMomenta<D> momenta = random_momenta<D>(random);
+  scatter_momenta<D>(points.with_moments, momenta, singles_size, moved.data());
+  const auto [sum, most] = total_of(moved);
+  for (int c = 0; c <= D; ++c) {
+    double given = 0.0;
+    for (std::size_t l = 0; l < singles_size; ++l) {
+      given += static_cast<double>(momenta.value[c][l]);
+      // The arms of a point's controls from its middle one average to minus the middle one's from the point.
+      for (int d = 0; d < D && c < D; ++d)
+        given -= static_cast<double>(momenta.moment[d][c][l]) *
+                 static_cast<double>(points.with_moments.middle[d][l]);
+    }
+    EXPECT_NEAR(sum[c], given, tolerance * std::max(most, 1.0));
+  }
+}
+
+class SingleSums : public testing::TestWithParam<Case> {};
+INSTANTIATE_TEST_SUITE_P(Cells, SingleSums,
+                         testing::Values(Case{ShapeFunctions::b_spline, 0.21, 0.29},
+                                         Case{ShapeFunctions::b_spline, 0.0, 0.4},
+                                         Case{ShapeFunctions::gimp, 0.21, 0.24},
+                                         Case{ShapeFunctions::gimp, 0.001, 0.4}));
+TEST_P(SingleSums, StencilsBeginAlike) {
+  stencils_begin_alike<2>(GetParam()), stencils_begin_alike<3>(GetParam());
+}
+TEST_P(SingleSums, GatherAsDoubleDoes) {
+  gather_as_double_does<2>(GetParam()), gather_as_double_does<3>(GetParam());
+}
+TEST_P(SingleSums, WhatFillsUpReadsAsItsFirst) {
+  what_fills_up_reads_as_its_first<2>(GetParam()), what_fills_up_reads_as_its_first<3>(GetParam());
+}
+TEST_P(SingleSums, InertiaAsDoubleHasIt) {
+  inertia_as_double_has_it<2>(GetParam()), inertia_as_double_has_it<3>(GetParam());
+}
+TEST_P(SingleSums, MomentaAsDoubleHasThem) {
+  momenta_as_double_has_them<2>(GetParam()), momenta_as_double_has_them<3>(GetParam());
+}
+TEST_P(SingleSums, ImpulsesAsDoubleHasThem) {
+  impulses_as_double_has_them<2>(GetParam()), impulses_as_double_has_them<3>(GetParam());
+}
+TEST_P(SingleSums, NothingIsLost) { nothing_is_lost<2>(GetParam()), nothing_is_lost<3>(GetParam()); }
+
+// A point on a wall, wherever the axis begins, is in the wall's cell for all who ask, and its control on the
+// wall has all the weight; GIMP's hats there are as wide as 1e-16 of a cell.
+TEST(OnAWall, TheWallsControlHasAllTheWeight) {
+  constexpr int D = 2;
+  for (const double origin : {0.0, 0.3, -0.2, 1e3})
+    for (const ShapeFunctions kind : {ShapeFunctions::b_spline, ShapeFunctions::gimp}) {
+      const auto axes = held_axes<D>(origin);
+      const auto shape = shape_of<D>(kind);
+      const std::array<Octet, D> x = {all_lanes(origin), all_lanes(origin)}, both[2] = {x, x};
+      Weights<D> weights;
+      SingleWeights<D> single;
+      weigh<D>(axes, shape, {}, x, weights);
+      weigh_single<D, slopes_and_moments>(stencil_frame<D>(axes, shape, {}), {both[0], both[1]}, single);
+      const std::size_t on_wall = kind == ShapeFunctions::gimp ? 1 : 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double all = k == on_wall ? 1.0 : 0.0;
+        EXPECT_NEAR(weights.w[0][k][0], all, 1e-16) << origin;
+        EXPECT_NEAR(static_cast<double>(single.w[0][k][0]), all, 1e-16) << origin;
+      }
+      EXPECT_EQ(single.base[0], weights.base[0]);
+      std::array<int, octet_size> cell, single_cell;
+      find_pressure_cells<D, double>(axes, shape, {}, x, cell);
+      find_pressure_cells<D, float>(axes, shape, {}, x, single_cell);
+      EXPECT_EQ(cell[0], 2 * tile_pressure_cells + 2);
+      EXPECT_EQ(single_cell[0], cell[0]);
+    }
+}
+
+// A place that single precision rounds up into the next cell puts stencil and pressure cell there together.
+TEST(PressureCellsInSingle, AreTheStencils) {
+  constexpr int D = 2;
+  const auto axes = held_axes<D>(0.0);
+  const auto shape = shape_of<D>(ShapeFunctions::b_spline);
+  const std::array<Octet, D> x = {all_lanes(0.3 - 1e-10), all_lanes(0.25)}, both[2] = {x, x};
+  SingleWeights<D> single;
+  weigh_single<D, slopes_only>(stencil_frame<D>(axes, shape, {}), {both[0], both[1]}, single);
+  std::array<int, octet_size> cell;
+  find_pressure_cells<D, float>(axes, shape, {}, x, cell);
+  EXPECT_EQ(single.base[0], 4 * tile_span + 3);
+  EXPECT_EQ(cell[0], 5 * tile_pressure_cells + 4);
+  find_pressure_cells<D, double>(axes, shape, {}, x, cell);
+  EXPECT_EQ(cell[0], 4 * tile_pressure_cells + 4);
 }
 
 }  // namespace
