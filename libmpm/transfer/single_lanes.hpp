@@ -84,6 +84,20 @@ inline void transpose_blocks(const Singles (&column)[4], Singles (&row)[4]) {
 #endif
 }
 
+/// Number 4a + b in place of number 4b + a.
+inline Singles transposed(const Singles& a) {
+#ifdef __AVX512F__
+  return __builtin_shufflevector(a, a, 0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15);
+#else
+  float from[singles_size], to[singles_size];
+  std::memcpy(from, &a, sizeof from);
+  for (std::size_t l = 0; l < singles_size; ++l) to[l] = from[l % 4 * 4 + l / 4];
+  Singles result;
+  std::memcpy(&result, to, sizeof result);
+  return result;
+#endif
+}
+
 /// Where transpose_blocks brings point l, in entries of four.
 constexpr std::size_t place_of(std::size_t l) { return l % 4 * 4 + l / 4; }
 

@@ -72,22 +72,37 @@ struct SingleFields {
 
 namespace detail {
 
+/// A stencil's rows of controls: those that differ in the second direction alone by their differences.
+template <int D>
+struct Rows {
+  std::conditional_t<D == 2, Singles, Differences<Singles>> at[3];
+
+  [[gnu::always_inline]] void load(const SingleNode* node) {
+#pragma GCC unroll 3
+    for (int i = 0; i < 3; ++i) {
+      const SingleNode* row = node + i * stride<D>(tile_span, 0);
+      if constexpr (D == 2)
+        at[i] = load_controls(row);
+      else
+        at[i] = differences(load_controls(row), load_controls(row + tile_span),
+                            load_controls(row + 2 * tile_span));
+    }
+  }
+};
+
 /// Sums over the rows of point l: sum[0] with the weights of all directions but the last, sum[1 + d] with
 /// `side` in place of the weights of direction d.
 template <int D>
-[[gnu::always_inline]] inline void sum_rows(const SingleNode* node, const SingleWeights<D>& p,
+[[gnu::always_inline]] inline void sum_rows(const Rows<D>& rows, const SingleWeights<D>& p,
                                             const Singles (&side)[D][2], std::size_t l, Singles (&sum)[D]) {
   Singles row[3], turned[3];
 #pragma GCC unroll 3
   for (int i = 0; i < 3; ++i) {
-    const SingleNode* at = node + i * stride<D>(tile_span, 0);
     if constexpr (D == 2) {
-      row[i] = load_controls(at);
+      row[i] = rows.at[i];
     } else {
-      const Differences along =
-          differences(load_controls(at), load_controls(at + tile_span), load_controls(at + 2 * tile_span));
-      row[i] = sum_to_one(p.w[1][0][l], p.w[1][2][l], along);
-      turned[i] = sum_to_none(side[1][0][l], side[1][1][l], along);
+      row[i] = sum_to_one(p.w[1][0][l], p.w[1][2][l], rows.at[i]);
+      turned[i] = sum_to_none(side[1][0][l], side[1][1][l], rows.at[i]);
     }
   }
   const auto across = differences(row[0], row[1], row[2]);
@@ -99,24 +114,30 @@ template <int D>
 
 /// Values at the first n of sixteen points, and what `side` in place of a direction's weights gives: slopes
 /// with dw, moments with wa. The others get what the rows of the first point of their eight are with weights
-/// of their own: the same as it, where they stand. Values may be left out.
+/// of their own: the same as it, where they stand. Values may be left out. Points of one stencil that follow
+/// each other read its rows once.
 template <int D, bool values>
 [[gnu::noinline]] void sum_controls(const SingleNode* v, const SingleWeights<D>& p,
                                     const Singles (&side)[D][2], std::size_t n, SingleFields<D>& fields) {
-  Singles entry[D + 1][4];  // of points 4a + b in block a of vector b
+  Singles entry[D + 1][4];  // of points 4b + a in block a of vector b
+  Rows<D> rows;
+  int base = -1;
   for (std::size_t b = 0; b < 4; ++b) {
-    Singles rows[D][4];
+    Singles of_four[D][4];
 #pragma GCC unroll 4
     for (std::size_t a = 0; a < 4; ++a) {
-      const std::size_t l = 4 * a + b, from = l < n ? l : n > octet_size ? l & octet_size : 0;
+      const std::size_t l = 4 * b + a, from = l < n ? l : n > octet_size ? l & octet_size : 0;
+      if (p.base[from] != base) rows.load(v + (base = p.base[from]));
       Singles sum[D];
-      sum_rows<D>(v + p.base[from], p, side, from, sum);
-      for (int q = 0; q < D; ++q) rows[q][a] = sum[q];
+      sum_rows<D>(rows, p, side, from, sum);
+      for (int q = 0; q < D; ++q) of_four[q][a] = sum[q];
     }
-    const auto repeat = [b](const Singles& of) { return repeat_in_blocks(of, b); };
+    const auto repeat = [b](const Singles& of) {
+      return each_four_times(reinterpret_cast<const SingleNode*>(&of)[b]);
+    };
     const Singles first = repeat(p.w[D - 1][0]), last = repeat(p.w[D - 1][2]);
     for (int q = 0; q < D; ++q) {
-      const Blocks block = first_three_blocks(rows[q]);
+      const Blocks block = first_three_blocks(of_four[q]);
       const auto along = differences(block.first, block.second, block.third);
       if (q > 0 || values) entry[q][b] = sum_to_one(first, last, along);
       if (q == 0) entry[D][b] = sum_to_none(repeat(side[D - 1][0]), repeat(side[D - 1][1]), along);
@@ -125,7 +146,7 @@ template <int D, bool values>
   for (int q = values ? 0 : 1; q <= D; ++q) {
     Singles column[4];
     transpose_blocks(entry[q], column);
-    for (int c = 0; c < 3; ++c) (q == 0 ? fields.value : fields.along[q - 1])[c] = column[c];
+    for (int c = 0; c < 3; ++c) (q == 0 ? fields.value : fields.along[q - 1])[c] = transposed(column[c]);
   }
 }
 
