@@ -240,7 +240,7 @@ GroupCells cells_of_group(const TilePass<pass, Space, Law, Node>& in, std::size_
   constexpr int D = Space::dim;
   if (in.entered) return in.entered[g - static_cast<std::size_t>(in.tile.first_group)];
   GroupCells cell{};
-  using Real = std::remove_cvref_t<decltype(Node{}[0])>;
+  using Real = typename PressureCells<Space, Node>::Real;
   if (in.cells || in.held)
     find_pressure_cells<D, Real>(in.state.grid.axes, in.state.shape, in.tile.at, places_of<D>(in.points, g),
                                  cell);

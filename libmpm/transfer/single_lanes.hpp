@@ -84,43 +84,20 @@ inline void transpose_blocks(const Singles (&column)[4], Singles (&row)[4]) {
 #endif
 }
 
-/// Number 4a + b in place of number 4b + a.
+/// Where transpose_blocks brings point l, in entries of four.
+constexpr std::size_t place_of(std::size_t l) { return l % 4 * 4 + l / 4; }
+
+/// Each lane l with the number of lane place_of(l).
 inline Singles transposed(const Singles& a) {
 #ifdef __AVX512F__
   return __builtin_shufflevector(a, a, 0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15);
 #else
   float from[singles_size], to[singles_size];
   std::memcpy(from, &a, sizeof from);
-  for (std::size_t l = 0; l < singles_size; ++l) to[l] = from[l % 4 * 4 + l / 4];
+  for (std::size_t l = 0; l < singles_size; ++l) to[l] = from[place_of(l)];
   Singles result;
   std::memcpy(&result, to, sizeof result);
   return result;
-#endif
-}
-
-/// Where transpose_blocks brings point l, in entries of four.
-constexpr std::size_t place_of(std::size_t l) { return l % 4 * 4 + l / 4; }
-
-/// Entry b of each block of four, in all of the block.
-inline Singles repeat_in_blocks(const Singles& a, std::size_t b) {
-#ifdef __AVX512F__
-  switch (b) {
-    case 0:
-      return __builtin_shufflevector(a, a, 0, 0, 0, 0, 4, 4, 4, 4, 8, 8, 8, 8, 12, 12, 12, 12);
-    case 1:
-      return __builtin_shufflevector(a, a, 1, 1, 1, 1, 5, 5, 5, 5, 9, 9, 9, 9, 13, 13, 13, 13);
-    case 2:
-      return __builtin_shufflevector(a, a, 2, 2, 2, 2, 6, 6, 6, 6, 10, 10, 10, 10, 14, 14, 14, 14);
-    default:
-      return __builtin_shufflevector(a, a, 3, 3, 3, 3, 7, 7, 7, 7, 11, 11, 11, 11, 15, 15, 15, 15);
-  }
-#else
-  float from[singles_size], to[singles_size];
-  std::memcpy(from, &a, sizeof from);
-  for (std::size_t l = 0; l < singles_size; ++l) to[l] = from[l / 4 * 4 + b];
-  Singles repeated;
-  std::memcpy(&repeated, to, sizeof repeated);
-  return repeated;
 #endif
 }
 
