@@ -232,6 +232,8 @@ struct TilePass {
   const GroupCells* entered;  ///< pressure cells of each group, where `before` has been read
   StencilFrame<D> frame;
   LaneSums& reduced;
+
+  void count(const Reached& reached) { rows |= reached.rows, reduced.mixed += reached.runs; }
 };
 
 /// Pressure cells of group g as it is at the start of the pass, where the pass has a use for them.

@@ -3,6 +3,8 @@
 // The pass over the points with shape functions, sums, the law and stresses in single precision: sixteen
 // points at once, two groups of eight. Places, ln J and flocculation stay in double precision.
 
+#include <span>
+
 #include "libmpm/step/explicit_pass.hpp"
 
 namespace tremie::detail {
@@ -15,18 +17,21 @@ struct GroupPair {
   std::size_t real() const { return static_cast<std::size_t>(n[0] + n[1]); }
 };
 
-/// Updates the state of a pair, and gives its stress; x_0: its first coordinates. The pressures are there
-/// twice: in the stress too where they do not go by the cell.
+/// What a quantity is at the points of a pair.
+inline Singles in_single(const std::vector<Octet>& of, const GroupPair& pair) {
+  return to_single(of[pair.g[0]], of[pair.g[1]]);
+}
+
+/// Updates the state of a pair, gives its pressures to their cells and its stress back. The stress has the
+/// pressure where that does not go by the cell.
 template <Pass pass, class Space, class Law>
-LaneStress<Space::dim, Singles> stress_of_pair(TilePass<pass, Space, Law, SingleNode>& in,
-                                               const GroupPair& pair, const Singles& x_0,
-                                               const SingleFields<Space::dim>& read,
-                                               const GroupCells (&cell)[2], Octet (&pressure)[2]) {
+LaneStress<Space::dim, Singles> press_pair(TilePass<pass, Space, Law, SingleNode>& in, const GroupPair& pair,
+                                           const SingleFields<Space::dim>& read) {
   constexpr int D = Space::dim;
   auto& points = in.points;
-  const auto [a, b] = pair.g;
-  const auto rate = strain_rate<Space, Singles>(read.along, read.value[0], x_0);
-  Octet gamma_dot[2], tau_y[2];
+  const GroupCells cell[2] = {cells_of_group(in, pair.g[0]), cells_of_group(in, pair.g[1])};
+  const auto rate = strain_rate<Space, Singles>(read.along, read.value[0], in_single(points.x[0], pair));
+  Octet gamma_dot[2], tau_y[2], pressure[2];
   for (int half = 0; half < 2; ++half) {
     gamma_dot[half] = to_double(rate.gamma_dot, half), tau_y[half] = pressure[half] = Octet{};
     if (pair.n[half] == 0) continue;
@@ -34,8 +39,7 @@ LaneStress<Space::dim, Singles> stress_of_pair(TilePass<pass, Space, Law, Single
     tau_y[half] = update_yield_stress<D>(in.mix, in.input.dt, gamma_dot[half], points, g, in.reduced);
     points.ln_J[g] += in.input.dt * divergence_of_group(in, to_double(rate.divergence, half), cell[half]);
   }
-  const Singles volume =
-      to_single(points.V0[a], points.V0[b]) * exp(to_single(points.ln_J[a], points.ln_J[b]));
+  const Singles volume = in_single(points.V0, pair) * exp(in_single(points.ln_J, pair));
   for (int half = 0; half < 2 && pair.n[half] > 0; ++half) {
     const Octet of_half = to_double(volume, half);
     in.reduced.volume += of_half, in.reduced.volume_rate += of_half * gamma_dot[half];
@@ -45,8 +49,10 @@ LaneStress<Space::dim, Singles> stress_of_pair(TilePass<pass, Space, Law, Single
   if (in.held) held *= look_up<sizeof(HeldCell<D>)>(&in.held->front().hold, cell[0], cell[1]);
   const Singles viscosity =
       held * viscosity_of(in.mix, in.law, rate.gamma_dot, to_single(tau_y[0], tau_y[1]));
-  return stress_of<Space, Singles>(rate, viscosity,
-                                   in.cells ? Singles{} : to_single(pressure[0], pressure[1]));
+  if (!in.cells) return stress_of<Space, Singles>(rate, viscosity, to_single(pressure[0], pressure[1]));
+  for (int half = 0; half < 2 && pair.n[half] > 0; ++half)
+    in.pressed.push(cell[half], pair.n[half], in.input.impulse_dt * pressure[half]);
+  return stress_of<Space, Singles>(rate, viscosity, Singles{});
 }
 
 /// Moves a pair with what it read; the moments become its affine velocities.
@@ -71,12 +77,10 @@ void move_pair(TilePass<pass, Space, Law, SingleNode>& in, const GroupPair& pair
 /// Velocities and affine velocities of a pair as they are kept.
 template <int D>
 SingleFields<D> kept_motion(const LanePoints<D>& points, const GroupPair& pair) {
-  const std::size_t a = pair.g[0], b = pair.g[1];
   SingleFields<D> motion;
   for (int i = 0; i < D; ++i) {
-    motion.value[i] = to_single(points.v[i][a], points.v[i][b]);
-    for (int j = 0; j < D; ++j)
-      motion.along[j][i] = to_single(points.C[i * D + j][a], points.C[i * D + j][b]);
+    motion.value[i] = in_single(points.v[i], pair);
+    for (int j = 0; j < D; ++j) motion.along[j][i] = in_single(points.C[i * D + j], pair);
   }
   return motion;
 }
@@ -86,7 +90,7 @@ template <int D>
 Reached scatter_motion(const SingleWeights<D>& weights, const SingleFields<D>& motion, const GroupPair& pair,
                        const LanePoints<D>& points, SingleNode* sums) {
   SingleMomenta<D> momenta;
-  const Singles mass = momenta.value[D] = to_single(points.mass[pair.g[0]], points.mass[pair.g[1]]);
+  const Singles mass = momenta.value[D] = in_single(points.mass, pair);
   for (int i = 0; i < D; ++i) {
     momenta.value[i] = mass * motion.value[i];
     for (int j = 0; j < D; ++j) {
@@ -119,65 +123,69 @@ void weigh_pair(const StencilFrame<D>& frame, const LanePoints<D>& points, const
   weigh_single<D, wanted>(frame, {places_of<D>(points, pair.g[0]), places_of<D>(points, pair.g[1])}, weights);
 }
 
-/// A pass with stress over a pair.
+/// Pairs that go through a pass side by side, from part to part: what one of them waits for (a root, a
+/// quotient, an exponential) the others fill.
+inline constexpr std::size_t batch_size = 2;
+using Batch = std::span<const GroupPair>;
+
+/// A pass with stress over a batch.
 template <Pass pass, class Space, class Law>
-Reached press_pair(TilePass<pass, Space, Law, SingleNode>& in, const GroupPair& pair) {
+void press_batch(TilePass<pass, Space, Law, SingleNode>& in, Batch batch) {
   constexpr int D = Space::dim;
   static_assert(pass.gather && !pass.move);
-  SingleWeights<D> weights;
-  weigh_pair<slopes_only>(in.frame, in.points, pair, weights);
-  SingleFields<D> read;
-  gather_slopes<D, std::is_same_v<Space, Axisymmetric>>(in.v.data(), weights, pair.real(), read);
-  const GroupCells cell[2] = {cells_of_group(in, pair.g[0]), cells_of_group(in, pair.g[1])};
-  const Singles x_0 = to_single(in.points.x[0][pair.g[0]], in.points.x[0][pair.g[1]]);
-  Octet pressure[2];
-  const auto stress = stress_of_pair(in, pair, x_0, read, cell, pressure);
-  for (int half = 0; half < 2 && pair.n[half] > 0 && in.cells; ++half)
-    in.pressed.push(cell[half], pair.n[half], in.input.impulse_dt * pressure[half]);
-  return scatter_stress<Space>(in.input.impulse_dt, weights, stress, pair, x_0, in.sums.data());
+  SingleWeights<D> weights[batch_size];
+  SingleFields<D> read[batch_size];
+  LaneStress<D, Singles> stress[batch_size];
+  for (std::size_t i = 0; i < batch.size(); ++i)
+    weigh_pair<slopes_only>(in.frame, in.points, batch[i], weights[i]);
+  for (std::size_t i = 0; i < batch.size(); ++i)
+    gather_slopes<D, std::is_same_v<Space, Axisymmetric>>(in.v.data(), weights[i], batch[i].real(), read[i]);
+  for (std::size_t i = 0; i < batch.size(); ++i) stress[i] = press_pair(in, batch[i], read[i]);
+  for (std::size_t i = 0; i < batch.size(); ++i)
+    in.count(scatter_stress<Space>(in.input.impulse_dt, weights[i], stress[i], batch[i],
+                                   in_single(in.points.x[0], batch[i]), in.sums.data()));
 }
 
-/// A pass with motion over a pair.
+/// A pass with motion over a batch.
 template <Pass pass, class Space, class Law>
-Reached move_on_pair(TilePass<pass, Space, Law, SingleNode>& in, const GroupPair& pair) {
+void move_batch(TilePass<pass, Space, Law, SingleNode>& in, Batch batch) {
   constexpr int D = Space::dim;
   static_assert(pass.move && !pass.stress);
-  SingleWeights<D> weights;
-  SingleFields<D> motion;
+  SingleWeights<D> weights[batch_size];
+  SingleFields<D> motion[batch_size];
+  const auto weigh = [&] {
+    for (std::size_t i = 0; i < batch.size(); ++i)
+      weigh_pair<moments_only>(in.frame, in.points, batch[i], weights[i]);
+  };
   if constexpr (pass.gather) {
-    weigh_pair<moments_only>(in.frame, in.points, pair, weights);
-    gather_moments<D>(in.v.data(), weights, pair.real(), motion);
-    move_pair(in, pair, weights, motion);
+    weigh();
+    for (std::size_t i = 0; i < batch.size(); ++i)
+      gather_moments<D>(in.v.data(), weights[i], batch[i].real(), motion[i]);
+    for (std::size_t i = 0; i < batch.size(); ++i) move_pair(in, batch[i], weights[i], motion[i]);
   } else {
-    motion = kept_motion<D>(in.points, pair);
+    for (std::size_t i = 0; i < batch.size(); ++i) motion[i] = kept_motion<D>(in.points, batch[i]);
   }
-  weigh_pair<moments_only>(in.frame, in.points, pair, weights);
-  return scatter_motion<D>(weights, motion, pair, in.points, in.sums.data());
+  weigh();
+  for (std::size_t i = 0; i < batch.size(); ++i)
+    in.count(scatter_motion<D>(weights[i], motion[i], batch[i], in.points, in.sums.data()));
 }
 
-/// With the stress first a pass has either stress or motion.
-template <Pass pass, class Space, class Law>
-void visit_pair(TilePass<pass, Space, Law, SingleNode>& in, const GroupPair& pair) {
-  const Reached reached = [&] {
-    if constexpr (pass.stress)
-      return press_pair(in, pair);
-    else
-      return move_on_pair(in, pair);
-  }();
-  in.rows |= reached.rows;
-  in.reduced.mixed += reached.runs;
-}
-
-/// All groups of a tile, two by two.
+/// All groups of a tile, two by two. With the stress first a pass has either stress or motion.
 template <Pass pass, class Space, class Law>
 void visit_groups(TilePass<pass, Space, Law, SingleNode>& in) {
   constexpr int D = Space::dim;
-  const auto first = static_cast<std::size_t>(in.tile.first_group),
-             last = static_cast<std::size_t>(in.tile.last_group);
-  for (std::size_t g = first; g < last; g += 2) {
-    GroupPair pair{{g, g}, {filled<D>(in.points, g), 0}};
-    if (g + 1 < last) pair.g[1] = g + 1, pair.n[1] = filled<D>(in.points, g + 1);
-    visit_pair(in, pair);
+  const auto last = static_cast<std::size_t>(in.tile.last_group);
+  for (auto g = static_cast<std::size_t>(in.tile.first_group); g < last;) {
+    std::array<GroupPair, batch_size> pairs;
+    std::size_t n = 0;
+    for (; n < batch_size && g < last; ++n, g += 2) {
+      pairs[n] = {{g, g}, {filled<D>(in.points, g), 0}};
+      if (g + 1 < last) pairs[n].g[1] = g + 1, pairs[n].n[1] = filled<D>(in.points, g + 1);
+    }
+    if constexpr (pass.stress)
+      press_batch(in, Batch(pairs.data(), n));
+    else
+      move_batch(in, Batch(pairs.data(), n));
   }
 }
 

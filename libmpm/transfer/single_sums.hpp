@@ -27,9 +27,19 @@ struct SingleWeights {
   std::array<int, singles_size> base;
 };
 
-/// Weights of the points at x in a tile, eight and eight, as far as they are wanted: as weigh() of
-/// lane_stencils.hpp.
-template <int D, Wanted wanted>
+namespace detail {
+
+template <ShapeFunctions kind, class Lanes>
+[[gnu::always_inline]] inline void weights_of_axis(const SingleStencilAxis& axis, const Lanes& at,
+                                                   const Lanes& X, Lanes (&w)[3], Lanes (&dw)[3],
+                                                   Lanes (&arm)[3]) {
+  if constexpr (kind == ShapeFunctions::gimp)
+    gimp_weights(axis, at, X - at, w, dw, arm);
+  else
+    b_spline_weights(axis, at, X - at, w, dw, arm);
+}
+
+template <ShapeFunctions kind, int D, Wanted wanted>
 void weigh_single(const StencilFrame<D>& frame, const std::array<Octet, D> (&x)[2],
                   SingleWeights<D>& weights) {
   const Singles low = -1 - Singles{}, high = tile_cells - Singles{};
@@ -37,21 +47,15 @@ void weigh_single(const StencilFrame<D>& frame, const std::array<Octet, D> (&x)[
 #pragma GCC unroll 3
   for (int d = 0; d < D; ++d) {
     const StencilAxis& axis = frame.axis[d];
-    const SingleStencilAxis& single = frame.single[d];
     const auto in_tile = [&](const Octet& place) {
       return place_in_tile(axis.origin, axis.ih, axis.first, place);
     };
     const Singles X = to_single(in_tile(x[0][d]), in_tile(x[1][d]));
-    Singles at, w[3], dw[3], arm[3];
-    if (frame.kind == ShapeFunctions::gimp) {
-      at = min(max(nearest(X), low), high);
-      detail::gimp_weights(single, at, X - at, w, dw, arm);
-    } else {
-      at = min(max(floor(X), low), high);
-      detail::b_spline_weights(single, at, X - at, w, dw, arm);
-    }
+    const Singles at = min(max(kind == ShapeFunctions::gimp ? nearest(X) : floor(X), low), high);
+    Singles w[3], dw[3], arm[3];
+    weights_of_axis<kind>(frame.single[d], at, X, w, dw, arm);
     base = base * tile_span + (at + 1);
-    std::copy_n(w, 3, weights.w[d]);
+    for (int k = 0; k < 3; ++k) weights.w[d][k] = w[k];
     if (wanted.slopes) weights.dw[d][0] = dw[0], weights.dw[d][1] = dw[2];
     if (!wanted.moments) continue;
     weights.middle[d] = arm[1];
@@ -61,6 +65,19 @@ void weigh_single(const StencilFrame<D>& frame, const std::array<Octet, D> (&x)[
   }
   const auto whole = __builtin_convertvector(base, WholeNumbers);
   std::memcpy(weights.base.data(), &whole, sizeof whole);
+}
+
+}  // namespace detail
+
+/// Weights of the points at x in a tile, eight and eight, as far as they are wanted: as weigh() of
+/// lane_stencils.hpp.
+template <int D, Wanted wanted>
+void weigh_single(const StencilFrame<D>& frame, const std::array<Octet, D> (&x)[2],
+                  SingleWeights<D>& weights) {
+  if (frame.kind == ShapeFunctions::gimp)
+    detail::weigh_single<ShapeFunctions::gimp, D, wanted>(frame, x, weights);
+  else
+    detail::weigh_single<ShapeFunctions::b_spline, D, wanted>(frame, x, weights);
 }
 
 /// A nodal field at sixteen points: values, and slopes or moments in each direction. Entry 3 of four is not
