@@ -94,10 +94,10 @@ LaneStress<Space::dim, Lanes> stress_of(const StrainRate<Space, Lanes>& rate, co
 /// 1/inertia in each direction [1/m^2], by one division. On a wall one control has all the weight: no slope
 /// can be seen there, and none is given.
 template <int D, class Lanes>
-[[gnu::always_inline]] inline std::array<Lanes, D> inverse_inertia(const std::array<Axis, D>& axes,
+[[gnu::always_inline]] inline std::array<Lanes, D> inverse_inertia(const StencilFrame<D>& frame,
                                                                    const Lanes* inertia) {
   using Real = ScalarOf<Lanes>;
-  const auto per_cell = [&](int d) { return static_cast<Real>(1.0 / (axes[d].h * axes[d].h)); };
+  const auto per_cell = [&](int d) { return static_cast<Real>(frame.axis[d].ih * frame.axis[d].ih); };
   const Lanes one = 1 - Lanes{};
   Lanes cells[D];  // in cells^2
   decltype(one > one) seen[D];
@@ -121,8 +121,9 @@ template <int D, class Lanes>
 
 /// Moves group g with velocities v.
 template <int D>
-[[gnu::always_inline]] inline void move_places(const std::array<Axis, D>& axes, double dt, const Octet* v,
-                                               LanePoints<D>& points, std::size_t g, LaneSums& sums) {
+[[gnu::always_inline]] inline void move_places(const std::array<Axis, D>& axes, const StencilFrame<D>& frame,
+                                               double dt, const Octet* v, LanePoints<D>& points,
+                                               std::size_t g, LaneSums& sums) {
   Octet speed2 = {};
   for (int d = 0; d < D; ++d) {
     Octet& x = points.x[d][g];
@@ -131,7 +132,7 @@ template <int D>
     if (a.wall_low()) x = max(x, all_lanes(a.origin + 1e-6 * a.h));
     if (a.wall_high()) x = min(x, all_lanes(a.origin + a.length() - 1e-6 * a.h));
     speed2 += points.v[d][g] * points.v[d][g];
-    const Octet cells = (dt / a.h) * (v[d] < 0.0 ? -v[d] : v[d]);
+    const Octet cells = (dt * frame.axis[d].ih) * (v[d] < 0.0 ? -v[d] : v[d]);
     sums.ran_away |= ~(cells < 0.5);
     sums.farthest = max(sums.farthest, cells);
   }
@@ -140,16 +141,16 @@ template <int D>
 
 /// New velocities and places of group g. The moments of `fields` become its affine velocities, C[b][a].
 template <int D>
-void move_group(const std::array<Axis, D>& axes, const Transfer& transfer, double dt,
-                const Weights<D>& weights, Fields<D>& fields, LanePoints<D>& points, std::size_t g,
+void move_group(const std::array<Axis, D>& axes, const StencilFrame<D>& frame, const Transfer& transfer,
+                double dt, const Weights<D>& weights, Fields<D>& fields, LanePoints<D>& points, std::size_t g,
                 LaneSums& sums) {
   for (int d = 0; d < D; ++d) {
     Octet& v = points.v[d][g];
     v = transfer.flip ? fields.v[d] + transfer.flip_blend * (v - fields.v_start[d]) : fields.v[d];
   }
-  move_places<D>(axes, dt, fields.v, points, g, sums);
+  move_places<D>(axes, frame, dt, fields.v, points, g, sums);
   if (transfer.flip) return;
-  const std::array<Octet, D> inverse = inverse_inertia<D>(axes, weights.inertia.data());
+  const std::array<Octet, D> inverse = inverse_inertia<D>(frame, weights.inertia.data());
   for (int b = 0; b < D; ++b)
     for (int a = 0; a < D; ++a) fields.moment[b][a] *= inverse[b];
   if (points.C[0].empty()) return;
@@ -305,8 +306,8 @@ void visit_group(TilePass<pass, Space, Law, NodeLanes>& in, std::size_t g) {
     stress = stress_of<Space, Octet>(rate, resistance.viscosity, in.cells ? Octet{} : resistance.pressure);
   }
   if (pass.move && pass.gather) {
-    move_group<D>(in.state.grid.axes, in.settings.transfer, in.input.dt, weights, fields, in.points, g,
-                  in.reduced);
+    move_group<D>(in.state.grid.axes, in.frame, in.settings.transfer, in.input.dt, weights, fields, in.points,
+                  g, in.reduced);
     place();
   }
   if (in.cells) push_cells(in, g, n, resistance.pressure, cell);

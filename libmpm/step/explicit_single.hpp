@@ -60,15 +60,14 @@ template <Pass pass, class Space, class Law>
 void move_pair(TilePass<pass, Space, Law, SingleNode>& in, const GroupPair& pair,
                const SingleWeights<Space::dim>& weights, SingleFields<Space::dim>& read) {
   constexpr int D = Space::dim;
-  const auto& axes = in.state.grid.axes;
-  const std::array<Singles, D> inverse = inverse_inertia<D>(axes, weights.inertia);
+  const std::array<Singles, D> inverse = inverse_inertia<D>(in.frame, weights.inertia);
   for (int b = 0; b < D; ++b)
     for (int a = 0; a < D; ++a) read.along[b][a] *= inverse[b];
   for (int half = 0; half < 2 && pair.n[half] > 0; ++half) {
     const std::size_t g = pair.g[half];
     Octet v[D];
     for (int d = 0; d < D; ++d) in.points.v[d][g] = v[d] = to_double(read.value[d], half);
-    move_places<D>(axes, in.input.dt, v, in.points, g, in.reduced);
+    move_places<D>(in.state.grid.axes, in.frame, in.input.dt, v, in.points, g, in.reduced);
     for (int b = 0; b < D && !in.points.C[0].empty(); ++b)
       for (int a = 0; a < D; ++a) in.points.C[a * D + b][g] = to_double(read.along[b][a], half);
   }
@@ -117,10 +116,10 @@ Reached scatter_stress(double impulse_dt, const SingleWeights<Space::dim>& weigh
   return scatter_impulses<D, hooped>(weights, impulses, pair.real(), sums);
 }
 
-template <Wanted wanted, int D>
+template <WeighedFor use, int D>
 void weigh_pair(const StencilFrame<D>& frame, const LanePoints<D>& points, const GroupPair& pair,
                 SingleWeights<D>& weights) {
-  weigh_single<D, wanted>(frame, {places_of<D>(points, pair.g[0]), places_of<D>(points, pair.g[1])}, weights);
+  weigh_single<use, D>(frame, {places_of<D>(points, pair.g[0]), places_of<D>(points, pair.g[1])}, weights);
 }
 
 /// Pairs that go through a pass side by side, from part to part: what one of them waits for (a root, a
@@ -137,7 +136,7 @@ void press_batch(TilePass<pass, Space, Law, SingleNode>& in, Batch batch) {
   SingleFields<D> read[batch_size];
   LaneStress<D, Singles> stress[batch_size];
   for (std::size_t i = 0; i < batch.size(); ++i)
-    weigh_pair<slopes_only>(in.frame, in.points, batch[i], weights[i]);
+    weigh_pair<WeighedFor::stress>(in.frame, in.points, batch[i], weights[i]);
   for (std::size_t i = 0; i < batch.size(); ++i)
     gather_slopes<D, std::is_same_v<Space, Axisymmetric>>(in.v.data(), weights[i], batch[i].real(), read[i]);
   for (std::size_t i = 0; i < batch.size(); ++i) stress[i] = press_pair(in, batch[i], read[i]);
@@ -153,19 +152,17 @@ void move_batch(TilePass<pass, Space, Law, SingleNode>& in, Batch batch) {
   static_assert(pass.move && !pass.stress);
   SingleWeights<D> weights[batch_size];
   SingleFields<D> motion[batch_size];
-  const auto weigh = [&] {
-    for (std::size_t i = 0; i < batch.size(); ++i)
-      weigh_pair<moments_only>(in.frame, in.points, batch[i], weights[i]);
-  };
   if constexpr (pass.gather) {
-    weigh();
+    for (std::size_t i = 0; i < batch.size(); ++i)
+      weigh_pair<WeighedFor::reading>(in.frame, in.points, batch[i], weights[i]);
     for (std::size_t i = 0; i < batch.size(); ++i)
       gather_moments<D>(in.v.data(), weights[i], batch[i].real(), motion[i]);
     for (std::size_t i = 0; i < batch.size(); ++i) move_pair(in, batch[i], weights[i], motion[i]);
   } else {
     for (std::size_t i = 0; i < batch.size(); ++i) motion[i] = kept_motion<D>(in.points, batch[i]);
   }
-  weigh();
+  for (std::size_t i = 0; i < batch.size(); ++i)
+    weigh_pair<WeighedFor::giving>(in.frame, in.points, batch[i], weights[i]);
   for (std::size_t i = 0; i < batch.size(); ++i)
     in.count(scatter_motion<D>(weights[i], motion[i], batch[i], in.points, in.sums.data()));
 }

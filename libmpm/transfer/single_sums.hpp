@@ -15,6 +15,13 @@
 
 namespace tremie {
 
+/// What weights are made for; what it does not read is not written.
+enum class WeighedFor {
+  stress,   ///< gather_slopes and scatter_impulses
+  reading,  ///< gather_moments, and the inertia for what it reads
+  giving    ///< scatter_momenta
+};
+
 /// Shape functions of sixteen points at their three controls in each direction, and where their stencils
 /// begin in the tile's cube. Slopes [1/m] and arms from the point times weights [m] are those of the first
 /// and the last control.
@@ -39,7 +46,7 @@ template <ShapeFunctions kind, class Lanes>
     b_spline_weights(axis, at, X - at, w, dw, arm);
 }
 
-template <ShapeFunctions kind, int D, Wanted wanted>
+template <ShapeFunctions kind, int D, WeighedFor use>
 void weigh_single(const StencilFrame<D>& frame, const std::array<Octet, D> (&x)[2],
                   SingleWeights<D>& weights) {
   const Singles low = -1 - Singles{}, high = tile_cells - Singles{};
@@ -55,13 +62,19 @@ void weigh_single(const StencilFrame<D>& frame, const std::array<Octet, D> (&x)[
     Singles w[3], dw[3], arm[3];
     weights_of_axis<kind>(frame.single[d], at, X, w, dw, arm);
     base = base * tile_span + (at + 1);
-    for (int k = 0; k < 3; ++k) weights.w[d][k] = w[k];
-    if (wanted.slopes) weights.dw[d][0] = dw[0], weights.dw[d][1] = dw[2];
-    if (!wanted.moments) continue;
-    weights.middle[d] = arm[1];
-    const Singles first = weights.arm[d][0] = arm[0] - arm[1], last = weights.arm[d][1] = arm[2] - arm[1];
-    weights.wa[d][0] = w[0] * arm[0], weights.wa[d][1] = w[2] * arm[2];
-    weights.inertia[d] = weights.wa[d][0] * first + weights.wa[d][1] * last;
+    weights.w[d][0] = w[0], weights.w[d][2] = w[2];
+    const Singles first = arm[0] - arm[1], last = arm[2] - arm[1];
+    if constexpr (use == WeighedFor::stress) {
+      weights.w[d][1] = w[1];
+      weights.dw[d][0] = dw[0], weights.dw[d][1] = dw[2];
+    } else if constexpr (use == WeighedFor::reading) {
+      weights.wa[d][0] = w[0] * arm[0], weights.wa[d][1] = w[2] * arm[2];
+      weights.inertia[d] = weights.wa[d][0] * first + weights.wa[d][1] * last;
+    } else {
+      weights.w[d][1] = w[1];
+      weights.middle[d] = arm[1];
+      weights.arm[d][0] = first, weights.arm[d][1] = last;
+    }
   }
   const auto whole = __builtin_convertvector(base, WholeNumbers);
   std::memcpy(weights.base.data(), &whole, sizeof whole);
@@ -69,15 +82,14 @@ void weigh_single(const StencilFrame<D>& frame, const std::array<Octet, D> (&x)[
 
 }  // namespace detail
 
-/// Weights of the points at x in a tile, eight and eight, as far as they are wanted: as weigh() of
-/// lane_stencils.hpp.
-template <int D, Wanted wanted>
+/// Weights of the points at x in a tile, eight and eight: as weigh() of lane_stencils.hpp.
+template <WeighedFor use, int D>
 void weigh_single(const StencilFrame<D>& frame, const std::array<Octet, D> (&x)[2],
                   SingleWeights<D>& weights) {
   if (frame.kind == ShapeFunctions::gimp)
-    detail::weigh_single<ShapeFunctions::gimp, D, wanted>(frame, x, weights);
+    detail::weigh_single<ShapeFunctions::gimp, D, use>(frame, x, weights);
   else
-    detail::weigh_single<ShapeFunctions::b_spline, D, wanted>(frame, x, weights);
+    detail::weigh_single<ShapeFunctions::b_spline, D, use>(frame, x, weights);
 }
 
 /// A nodal field at sixteen points: values, and slopes or moments in each direction. Entry 3 of four is not

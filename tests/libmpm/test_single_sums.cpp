@@ -59,7 +59,7 @@ Shape<D> shape_of(ShapeFunctions kind) {
 template <int D>
 struct SixteenPoints {
   Weights<D> weights[2];
-  SingleWeights<D> with_slopes = unwritten<D>(), with_moments = unwritten<D>();
+  SingleWeights<D> with_slopes = unwritten<D>(), with_moments = unwritten<D>(), with_arms = unwritten<D>();
   typename TileGrid<D>::Buffer v;
   typename TileGrid<D>::SingleBuffer single_v;
 
@@ -78,8 +78,9 @@ struct SixteenPoints {
       weigh<D>(axes, shape, {}, x[half], weights[half]);
     }
     const auto frame = stencil_frame<D>(axes, shape, {});
-    weigh_single<D, slopes_only>(frame, x, with_slopes);
-    weigh_single<D, moments_only>(frame, x, with_moments);
+    weigh_single<WeighedFor::stress, D>(frame, x, with_slopes);
+    weigh_single<WeighedFor::reading, D>(frame, x, with_moments);
+    weigh_single<WeighedFor::giving, D>(frame, x, with_arms);
     std::uniform_real_distribution<double> u(-1.0, 1.0);
     single_v.fill(SingleNode{});
     for (std::size_t i = 0; i < v.size(); ++i) {
@@ -101,6 +102,7 @@ void stencils_begin_alike(const Case& c) {
   for (std::size_t l = 0; l < singles_size; ++l) {
     EXPECT_EQ(points.with_slopes.base[l], points.base(l));
     EXPECT_EQ(points.with_moments.base[l], points.base(l));
+    EXPECT_EQ(points.with_arms.base[l], points.base(l));
   }
 }
 
@@ -204,14 +206,14 @@ void momenta_as_double_has_them(const Case& of) {
     for (int d = 0; d < D; ++d)
       for (int c = 0; c < D; ++c) {
         moment[d][c] = static_cast<double>(momenta.moment[d][c][l]);
-        value[c] -= moment[d][c] * static_cast<double>(points.with_moments.middle[d][l]);
+        value[c] -= moment[d][c] * static_cast<double>(points.with_arms.middle[d][l]);
       }
   };
   for (const std::size_t n : numbers_of_points) {
     TileRows rows;
     const auto expected = expected_sums<D>(points, n, rows, one);
     typename TileGrid<D>::SingleBuffer got{};
-    const Reached reached = scatter_momenta<D>(points.with_moments, momenta, n, got.data());
+    const Reached reached = scatter_momenta<D>(points.with_arms, momenta, n, got.data());
     EXPECT_EQ(reached.rows, rows);
     EXPECT_GE(reached.runs, 1);
     expect_sums(got, expected);
@@ -270,7 +272,7 @@ void nothing_is_lost(const Case& of) {
   for (int c = 0; c < D; ++c) EXPECT_NEAR(push[c], 0.0, tolerance * hardest);
 
   const SingleMomenta<D> momenta = random_momenta<D>(random);
-  scatter_momenta<D>(points.with_moments, momenta, singles_size, moved.data());
+  scatter_momenta<D>(points.with_arms, momenta, singles_size, moved.data());
   const auto [sum, most] = total_of(moved);
   for (int c = 0; c <= D; ++c) {
     double given = 0.0;
@@ -278,8 +280,8 @@ void nothing_is_lost(const Case& of) {
       given += static_cast<double>(momenta.value[c][l]);
       // The arms of a point's controls from its middle one average to minus the middle one's from the point.
       for (int d = 0; d < D && c < D; ++d)
-        given -= static_cast<double>(momenta.moment[d][c][l]) *
-                 static_cast<double>(points.with_moments.middle[d][l]);
+        given -=
+            static_cast<double>(momenta.moment[d][c][l]) * static_cast<double>(points.with_arms.middle[d][l]);
     }
     EXPECT_NEAR(sum[c], given, tolerance * std::max(most, 1.0));
   }
@@ -323,7 +325,7 @@ TEST(OnAWall, TheWallsControlHasAllTheWeight) {
       Weights<D> weights;
       SingleWeights<D> single;
       weigh<D>(axes, shape, {}, x, weights);
-      weigh_single<D, slopes_and_moments>(stencil_frame<D>(axes, shape, {}), {both[0], both[1]}, single);
+      weigh_single<WeighedFor::stress, D>(stencil_frame<D>(axes, shape, {}), {both[0], both[1]}, single);
       const std::size_t on_wall = kind == ShapeFunctions::gimp ? 1 : 0;
       for (std::size_t k = 0; k < 3; ++k) {
         const double all = k == on_wall ? 1.0 : 0.0;
@@ -346,7 +348,7 @@ TEST(PressureCellsInSingle, AreTheStencils) {
   const auto shape = shape_of<D>(ShapeFunctions::b_spline);
   const std::array<Octet, D> x = {all_lanes(0.3 - 1e-10), all_lanes(0.25)}, both[2] = {x, x};
   SingleWeights<D> single;
-  weigh_single<D, slopes_only>(stencil_frame<D>(axes, shape, {}), {both[0], both[1]}, single);
+  weigh_single<WeighedFor::stress, D>(stencil_frame<D>(axes, shape, {}), {both[0], both[1]}, single);
   std::array<int, octet_size> cell;
   find_pressure_cells<D, float>(axes, shape, {}, x, cell);
   EXPECT_EQ(single.base[0], 4 * tile_span + 3);
