@@ -234,33 +234,34 @@ void read_blocks(const Tile<D>& tile, TileRows rows, const std::vector<BlockNode
   }
 }
 
-namespace detail {
-
-/// Four controls of a row, and sums of them.
+/// Four controls of a row.
 struct FourNodes {
   TwoNodes low = {}, high = {};
-  void add(const NodeLanes* row) {
-    const auto* from = reinterpret_cast<const TwoNodes*>(row);
-    low += from[0], high += from[1];
-  }
-  std::array<NodeLanes, tile_cells> total() const {
-    std::array<NodeLanes, tile_cells> of;
-    std::memcpy(&of[0], &low, sizeof low), std::memcpy(&of[2], &high, sizeof high);
-    return of;
-  }
 };
-struct FourSingleNodes {
-  using Four [[gnu::vector_size(64), gnu::may_alias]] = float;
-  Four sum = {};
-  void add(const SingleNode* row) { sum += *reinterpret_cast<const Four*>(row); }
-  std::array<NodeLanes, tile_cells> total() const {
-    const auto node = [this](int i) {
-      SingleNode one;
-      std::memcpy(&one, reinterpret_cast<const char*>(&sum) + i * static_cast<int>(sizeof one), sizeof one);
-      return in_double(one);
-    };
-    return {node(0), node(1), node(2), node(3)};
+
+inline FourNodes load_row(const NodeLanes* from) { return {load_two(from), load_two(from + tile_cells / 2)}; }
+inline void store_row(const FourNodes& four, NodeLanes* to) {
+  store_two(four.low, to), store_two(four.high, to + tile_cells / 2);
+}
+
+namespace detail {
+
+/// Sums of four controls of a row.
+struct FourSums {
+  FourNodes sum;
+  void add(const NodeLanes* row) {
+    const FourNodes more = load_row(row);
+    sum.low += more.low, sum.high += more.high;
   }
+  FourNodes total() const { return sum; }
+};
+struct FourSingleSums {
+  Singles sum = {};
+  void add(const SingleNode* row) {
+    using Row [[gnu::vector_size(64), gnu::may_alias]] = float;
+    sum += *reinterpret_cast<const Row*>(row);
+  }
+  FourNodes total() const { return {to_double(sum, 0), to_double(sum, 1)}; }
 };
 
 }  // namespace detail
@@ -271,7 +272,7 @@ template <int D, class Buffer, class Visit>
 void sum_tiles(const TileGrid<D>& grid, const NodeBlock<D>& block, const std::vector<Buffer>& buffers,
                Visit visit) {
   using Four = std::conditional_t<std::is_same_v<Buffer, typename TileGrid<D>::SingleBuffer>,
-                                  detail::FourSingleNodes, detail::FourNodes>;
+                                  detail::FourSingleSums, detail::FourSums>;
   unsigned reached = 0;
   std::array<Four, power(tile_cells, D - 1)> sum{};
   for (int k = 0; k < power(2, D); ++k) {

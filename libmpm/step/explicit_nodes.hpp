@@ -64,7 +64,7 @@ void update_block(const Body<Space>& body, double friction_coefficient, const st
   constexpr int D = Space::dim;
   TileGrid<D>& grid = state.grid;
   const NodeBlock<D>& block = grid.blocks[b];
-  sum_tiles<D>(grid, block, buffers, [&](int row, const std::array<NodeLanes, tile_cells>& total) {
+  sum_tiles<D>(grid, block, buffers, [&](int row, const FourNodes& total) {
     const int first = row * tile_cells;
     NodeLanes* const v = &grid.v[b][static_cast<std::size_t>(first)];
     update(total, static_cast<std::size_t>(first));
@@ -77,28 +77,36 @@ void update_block(const Body<Space>& body, double friction_coefficient, const st
   });
 }
 
-/// 1/mass of four controls, 0 where there is none.
+/// Entry D of each of two controls in all entries of it.
 template <int D>
-NodeLanes inverse_masses(const std::array<NodeLanes, tile_cells>& total) {
-  NodeLanes mass;
-  for (int i = 0; i < tile_cells; ++i) mass[i] = total[static_cast<std::size_t>(i)][D];
+TwoNodes mass_of(const TwoNodes& two) {
+  return __builtin_shufflevector(two, two, D, D, D, D, D + 4, D + 4, D + 4, D + 4);
+}
+
+/// Velocities, and 1/mass in its place.
+template <int D>
+TwoNodes with_mass(const TwoNodes& v, const TwoNodes& inverse_mass) {
+  if constexpr (D == 3)
+    return __builtin_shufflevector(v, inverse_mass, 0, 1, 2, 8, 4, 5, 6, 12);
+  else
+    return __builtin_shufflevector(v, inverse_mass, 0, 1, 8, 3, 4, 5, 12, 7);
+}
+
+/// 1/mass of four controls in all their entries, 0 where there is none.
+template <int D>
+FourNodes inverse_masses(const FourNodes& total) {
+  const NodeLanes mass = __builtin_shufflevector(total.low, total.high, D, D + 4, D + 8, D + 12);
   const auto there = mass > 0.0;
-  return there ? 1.0 / (there ? mass : NodeLanes{} + 1.0) : NodeLanes{};
+  const NodeLanes inverse = there ? 1.0 / (there ? mass : NodeLanes{} + 1.0) : NodeLanes{};
+  return {__builtin_shufflevector(inverse, inverse, 0, 0, 0, 0, 1, 1, 1, 1),
+          __builtin_shufflevector(inverse, inverse, 2, 2, 2, 2, 3, 3, 3, 3)};
 }
 
 template <int D>
-NodeLanes as_lanes(const Vec<D>& a) {
-  NodeLanes r = {};
-  for (int d = 0; d < D; ++d) r[d] = a[d];
-  return r;
-}
-
-/// v with 1/mass in its place.
-template <int D>
-NodeLanes with_mass(const NodeLanes& v, const NodeLanes& inverse_mass) {
-  NodeLanes r = v;
-  r[D] = inverse_mass[D];
-  return r;
+TwoNodes twice(const Vec<D>& a) {
+  NodeLanes one = {};
+  for (int d = 0; d < D; ++d) one[d] = a[d];
+  return both(one, one);
 }
 
 /// Velocities of block b from the momenta (with the impulses of the stresses already in them), and gravity.
@@ -106,14 +114,14 @@ template <class Space>
 void velocities_from_sums(const Body<Space>& body, double friction, const Vec<Space::dim>& gravity_impulse,
                           std::size_t b, ExplicitState<Space>& state) {
   constexpr int D = Space::dim;
-  const NodeLanes pull = as_lanes<D>(gravity_impulse);
-  const auto divide = [&](const std::array<NodeLanes, tile_cells>& total, std::size_t at) {
-    const NodeLanes inverse = inverse_masses<D>(total);
-    for (std::size_t i = 0; i < tile_cells; ++i) {
-      const NodeLanes of_mass = NodeLanes{} + inverse[i];
-      const NodeLanes moving = total[i] * of_mass + pull;
-      state.grid.v[b][at + i] = with_mass<D>(of_mass > 0.0 ? moving : NodeLanes{}, of_mass);
-    }
+  const TwoNodes pull = twice<D>(gravity_impulse);
+  const auto velocity = [&pull](const TwoNodes& total, const TwoNodes& inverse) {
+    const TwoNodes moving = total * inverse + pull;
+    return with_mass<D>(inverse > 0.0 ? moving : TwoNodes{}, inverse);
+  };
+  const auto divide = [&](const FourNodes& total, std::size_t at) {
+    const FourNodes inverse = inverse_masses<D>(total);
+    store_row({velocity(total.low, inverse.low), velocity(total.high, inverse.high)}, &state.grid.v[b][at]);
   };
   if (state.grid.single)
     update_block(body, friction, state.grid.single_sums, b, state, divide);
@@ -126,15 +134,15 @@ template <class Space, class Buffer>
 void add_impulses(const Body<Space>& body, double friction, const std::vector<Buffer>& impulses, bool flip,
                   const Vec<Space::dim>& gravity_impulse, std::size_t b, ExplicitState<Space>& state) {
   constexpr int D = Space::dim;
-  const NodeLanes pull = as_lanes<D>(gravity_impulse);
-  const auto add = [&](const std::array<NodeLanes, tile_cells>& total, std::size_t at) {
-    for (std::size_t i = 0; i < tile_cells; ++i) {
-      NodeLanes& v = state.grid.v[b][at + i];
-      const NodeLanes of_mass = NodeLanes{} + v[D];
-      if (flip) state.grid.v_start[b][at + i] = v;
-      const NodeLanes faster = v + (total[i] * of_mass + pull);
-      v = with_mass<D>(of_mass > 0.0 ? faster : v, of_mass);
-    }
+  const TwoNodes pull = twice<D>(gravity_impulse);
+  const auto faster = [&pull](const TwoNodes& v, const TwoNodes& impulse) {
+    const TwoNodes inverse = mass_of<D>(v), moving = v + (impulse * inverse + pull);
+    return with_mass<D>(inverse > 0.0 ? moving : v, inverse);
+  };
+  const auto add = [&](const FourNodes& total, std::size_t at) {
+    const FourNodes v = load_row(&state.grid.v[b][at]);
+    if (flip) store_row(v, &state.grid.v_start[b][at]);
+    store_row({faster(v.low, total.low), faster(v.high, total.high)}, &state.grid.v[b][at]);
   };
   update_block(body, friction, impulses, b, state, add);
 }
