@@ -85,7 +85,7 @@ SingleFields<D> kept_motion(const LanePoints<D>& points, const GroupPair& pair) 
 }
 
 /// Mass and momentum of a pair to the controls.
-template <int D>
+template <ShapeFunctions kind, int D>
 Reached scatter_motion(const SingleWeights<D>& weights, const SingleFields<D>& motion, const GroupPair& pair,
                        const LanePoints<D>& points, SingleNode* sums) {
   SingleMomenta<D> momenta;
@@ -97,7 +97,7 @@ Reached scatter_motion(const SingleWeights<D>& weights, const SingleFields<D>& m
       momenta.value[i] += momenta.moment[j][i] * weights.middle[j];
     }
   }
-  return scatter_momenta<D>(weights, momenta, pair.real(), sums);
+  return scatter_momenta<kind, D>(weights, momenta, pair.real(), sums);
 }
 
 /// Impulses of a pair's stresses to the controls; x_0: its first coordinates.
@@ -116,27 +116,28 @@ Reached scatter_stress(double impulse_dt, const SingleWeights<Space::dim>& weigh
   return scatter_impulses<D, hooped>(weights, impulses, pair.real(), sums);
 }
 
-template <WeighedFor use, int D>
+template <ShapeFunctions kind, WeighedFor use, int D>
 void weigh_pair(const StencilFrame<D>& frame, const LanePoints<D>& points, const GroupPair& pair,
                 SingleWeights<D>& weights) {
-  weigh_single<use, D>(frame, {places_of<D>(points, pair.g[0]), places_of<D>(points, pair.g[1])}, weights);
+  weigh_single<kind, use, D>(frame, {places_of<D>(points, pair.g[0]), places_of<D>(points, pair.g[1])},
+                             weights);
 }
 
 /// Pairs that go through a pass side by side, from part to part: what one of them waits for (a root, a
 /// quotient, an exponential) the others fill.
-inline constexpr std::size_t batch_size = 2;
+inline constexpr std::size_t pairs_at_once = 2;
 using Batch = std::span<const GroupPair>;
 
 /// A pass with stress over a batch.
-template <Pass pass, class Space, class Law>
+template <ShapeFunctions kind, Pass pass, class Space, class Law>
 void press_batch(TilePass<pass, Space, Law, SingleNode>& in, Batch batch) {
   constexpr int D = Space::dim;
   static_assert(pass.gather && !pass.move);
-  SingleWeights<D> weights[batch_size];
-  SingleFields<D> read[batch_size];
-  LaneStress<D, Singles> stress[batch_size];
+  SingleWeights<D> weights[pairs_at_once];
+  SingleFields<D> read[pairs_at_once];
+  LaneStress<D, Singles> stress[pairs_at_once];
   for (std::size_t i = 0; i < batch.size(); ++i)
-    weigh_pair<WeighedFor::stress>(in.frame, in.points, batch[i], weights[i]);
+    weigh_pair<kind, WeighedFor::stress>(in.frame, in.points, batch[i], weights[i]);
   for (std::size_t i = 0; i < batch.size(); ++i)
     gather_slopes<D, std::is_same_v<Space, Axisymmetric>>(in.v.data(), weights[i], batch[i].real(), read[i]);
   for (std::size_t i = 0; i < batch.size(); ++i) stress[i] = press_pair(in, batch[i], read[i]);
@@ -146,44 +147,51 @@ void press_batch(TilePass<pass, Space, Law, SingleNode>& in, Batch batch) {
 }
 
 /// A pass with motion over a batch.
-template <Pass pass, class Space, class Law>
+template <ShapeFunctions kind, Pass pass, class Space, class Law>
 void move_batch(TilePass<pass, Space, Law, SingleNode>& in, Batch batch) {
   constexpr int D = Space::dim;
   static_assert(pass.move && !pass.stress);
-  SingleWeights<D> weights[batch_size];
-  SingleFields<D> motion[batch_size];
+  SingleWeights<D> weights[pairs_at_once];
+  SingleFields<D> motion[pairs_at_once];
   if constexpr (pass.gather) {
     for (std::size_t i = 0; i < batch.size(); ++i)
-      weigh_pair<WeighedFor::reading>(in.frame, in.points, batch[i], weights[i]);
+      weigh_pair<kind, WeighedFor::reading>(in.frame, in.points, batch[i], weights[i]);
     for (std::size_t i = 0; i < batch.size(); ++i)
-      gather_moments<D>(in.v.data(), weights[i], batch[i].real(), motion[i]);
+      gather_moments<kind, D>(in.v.data(), weights[i], batch[i].real(), motion[i]);
     for (std::size_t i = 0; i < batch.size(); ++i) move_pair(in, batch[i], weights[i], motion[i]);
   } else {
     for (std::size_t i = 0; i < batch.size(); ++i) motion[i] = kept_motion<D>(in.points, batch[i]);
   }
   for (std::size_t i = 0; i < batch.size(); ++i)
-    weigh_pair<WeighedFor::giving>(in.frame, in.points, batch[i], weights[i]);
+    weigh_pair<kind, WeighedFor::giving>(in.frame, in.points, batch[i], weights[i]);
   for (std::size_t i = 0; i < batch.size(); ++i)
-    in.count(scatter_motion<D>(weights[i], motion[i], batch[i], in.points, in.sums.data()));
+    in.count(scatter_motion<kind, D>(weights[i], motion[i], batch[i], in.points, in.sums.data()));
 }
 
 /// All groups of a tile, two by two. With the stress first a pass has either stress or motion.
-template <Pass pass, class Space, class Law>
-void visit_groups(TilePass<pass, Space, Law, SingleNode>& in) {
+template <ShapeFunctions kind, Pass pass, class Space, class Law>
+void visit_groups_as(TilePass<pass, Space, Law, SingleNode>& in) {
   constexpr int D = Space::dim;
   const auto last = static_cast<std::size_t>(in.tile.last_group);
   for (auto g = static_cast<std::size_t>(in.tile.first_group); g < last;) {
-    std::array<GroupPair, batch_size> pairs;
+    std::array<GroupPair, pairs_at_once> pairs;
     std::size_t n = 0;
-    for (; n < batch_size && g < last; ++n, g += 2) {
+    for (; n < pairs_at_once && g < last; ++n, g += 2) {
       pairs[n] = {{g, g}, {filled<D>(in.points, g), 0}};
       if (g + 1 < last) pairs[n].g[1] = g + 1, pairs[n].n[1] = filled<D>(in.points, g + 1);
     }
     if constexpr (pass.stress)
-      press_batch(in, Batch(pairs.data(), n));
+      press_batch<kind>(in, Batch(pairs.data(), n));
     else
-      move_batch(in, Batch(pairs.data(), n));
+      move_batch<kind>(in, Batch(pairs.data(), n));
   }
+}
+template <Pass pass, class Space, class Law>
+void visit_groups(TilePass<pass, Space, Law, SingleNode>& in) {
+  if (in.frame.kind == ShapeFunctions::gimp)
+    visit_groups_as<ShapeFunctions::gimp>(in);
+  else
+    visit_groups_as<ShapeFunctions::b_spline>(in);
 }
 
 }  // namespace tremie::detail

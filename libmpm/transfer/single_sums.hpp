@@ -6,9 +6,12 @@
 // vector each, wherever its stencil begins: points of different cells cost what those of one cell do. Shape
 // functions are made for the sixteen points at once, one lane a point.
 //
-// The weights of a direction add up to 1, and their slopes and first moments to 0, which leaves two numbers
-// of three: reading takes differences from the middle control, and of impulses the middle row has what the
-// others leave. (The middle control has half of the weight at least, but for splines next to a wall.)
+// On some processors additions have units of their own, and multiply-adds are what binds: so sums are made of
+// as few of these as there may be. The weights of a direction add up to 1, their slopes to 0, which leaves
+// two numbers of three: slopes are read from differences to the middle control, and of impulses the middle
+// row has what the others leave. (The middle control has half of the weight at least, but for splines next to
+// a wall.) Moments are read, and momenta given, about the middle control, whose neighbours are a cell away
+// (splines next to a wall: half a cell): each row has one product with its weight, the rest is sums.
 
 #include "libmpm/transfer/lane_sums.hpp"
 #include "libmpm/transfer/single_lanes.hpp"
@@ -23,11 +26,13 @@ enum class WeighedFor {
 };
 
 /// Shape functions of sixteen points at their three controls in each direction, and where their stencils
-/// begin in the tile's cube. Slopes [1/m] and arms from the point times weights [m] are those of the first
-/// and the last control.
+/// begin in the tile's cube.
 template <int D>
 struct SingleWeights {
-  Singles w[D][3], dw[D][2], wa[D][2];
+  Singles w[D][3];
+  Singles dw[D][2];                 ///< slopes at the first and the last [1/m]
+  Singles across[power(3, D - 1)];  ///< of rows: the product of all directions but the last
+  Singles wa[2];       ///< arm from the point times weight, first and last of the last direction [m]
   Singles middle[D];   ///< arm of the middle control from the point [m]
   Singles arm[D][2];   ///< of the first and the last from the middle one [m]
   Singles inertia[D];  ///< sum of w times the arm from the point squared [m^2]
@@ -46,11 +51,15 @@ template <ShapeFunctions kind, class Lanes>
     b_spline_weights(axis, at, X - at, w, dw, arm);
 }
 
-template <ShapeFunctions kind, int D, WeighedFor use>
+}  // namespace detail
+
+/// Weights of the points at x in a tile, eight and eight: as weigh() of lane_stencils.hpp.
+template <ShapeFunctions kind, WeighedFor use, int D>
 void weigh_single(const StencilFrame<D>& frame, const std::array<Octet, D> (&x)[2],
                   SingleWeights<D>& weights) {
+  constexpr int last = D - 1;
   const Singles low = -1 - Singles{}, high = tile_cells - Singles{};
-  Singles base = {};
+  Singles base = {}, w[D][3];
 #pragma GCC unroll 3
   for (int d = 0; d < D; ++d) {
     const StencilAxis& axis = frame.axis[d];
@@ -59,37 +68,26 @@ void weigh_single(const StencilFrame<D>& frame, const std::array<Octet, D> (&x)[
     };
     const Singles X = to_single(in_tile(x[0][d]), in_tile(x[1][d]));
     const Singles at = min(max(kind == ShapeFunctions::gimp ? nearest(X) : floor(X), low), high);
-    Singles w[3], dw[3], arm[3];
-    weights_of_axis<kind>(frame.single[d], at, X, w, dw, arm);
+    Singles dw[3], arm[3];
+    detail::weights_of_axis<kind>(frame.single[d], at, X, w[d], dw, arm);
     base = base * tile_span + (at + 1);
-    weights.w[d][0] = w[0], weights.w[d][2] = w[2];
-    const Singles first = arm[0] - arm[1], last = arm[2] - arm[1];
+    if (use == WeighedFor::stress || d == last) std::copy_n(w[d], 3, weights.w[d]);
     if constexpr (use == WeighedFor::stress) {
-      weights.w[d][1] = w[1];
       weights.dw[d][0] = dw[0], weights.dw[d][1] = dw[2];
-    } else if constexpr (use == WeighedFor::reading) {
-      weights.wa[d][0] = w[0] * arm[0], weights.wa[d][1] = w[2] * arm[2];
-      weights.inertia[d] = weights.wa[d][0] * first + weights.wa[d][1] * last;
-    } else {
-      weights.w[d][1] = w[1];
-      weights.middle[d] = arm[1];
-      weights.arm[d][0] = first, weights.arm[d][1] = last;
+      continue;
+    }
+    const Singles below = arm[0] - arm[1], above = arm[2] - arm[1];
+    weights.middle[d] = arm[1], weights.arm[d][0] = below, weights.arm[d][1] = above;
+    if constexpr (use == WeighedFor::reading) {
+      const Singles wa[2] = {w[d][0] * arm[0], w[d][2] * arm[2]};
+      weights.inertia[d] = wa[0] * below + wa[1] * above;
+      if (d == last) std::copy_n(wa, 2, weights.wa);
     }
   }
+  for (int r = 0; r < power(3, D - 1) && use != WeighedFor::stress; ++r)
+    weights.across[r] = D == 2 ? w[0][r] : w[0][r / 3] * w[1][r % 3];
   const auto whole = __builtin_convertvector(base, WholeNumbers);
   std::memcpy(weights.base.data(), &whole, sizeof whole);
-}
-
-}  // namespace detail
-
-/// Weights of the points at x in a tile, eight and eight: as weigh() of lane_stencils.hpp.
-template <WeighedFor use, int D>
-void weigh_single(const StencilFrame<D>& frame, const std::array<Octet, D> (&x)[2],
-                  SingleWeights<D>& weights) {
-  if (frame.kind == ShapeFunctions::gimp)
-    detail::weigh_single<ShapeFunctions::gimp, D, use>(frame, x, weights);
-  else
-    detail::weigh_single<ShapeFunctions::b_spline, D, use>(frame, x, weights);
 }
 
 /// A nodal field at sixteen points: values, and slopes or moments in each direction. Entry 3 of four is not
@@ -119,47 +117,26 @@ struct Rows {
   }
 };
 
-/// Sums over the rows of point l: sum[0] with the weights of all directions but the last, sum[1 + d] with
-/// `side` in place of the weights of direction d.
-template <int D>
-[[gnu::always_inline]] inline void sum_rows(const Rows<D>& rows, const SingleWeights<D>& p,
-                                            const Singles (&side)[D][2], std::size_t l, Singles (&sum)[D]) {
-  Singles row[3], turned[3];
-#pragma GCC unroll 3
-  for (int i = 0; i < 3; ++i) {
-    if constexpr (D == 2) {
-      row[i] = rows.at[i];
-    } else {
-      row[i] = sum_to_one(p.w[1][0][l], p.w[1][2][l], rows.at[i]);
-      turned[i] = sum_to_none(side[1][0][l], side[1][1][l], rows.at[i]);
-    }
-  }
-  const auto across = differences(row[0], row[1], row[2]);
-  const auto first = p.w[0][0][l], last = p.w[0][2][l];
-  sum[0] = sum_to_one(first, last, across);
-  sum[1] = sum_to_none(side[0][0][l], side[0][1][l], across);
-  if constexpr (D == 3) sum[2] = sum_to_one(first, last, differences(turned[0], turned[1], turned[2]));
-}
-
-/// Values at the first n of sixteen points, and what `side` in place of a direction's weights gives: slopes
-/// with dw, moments with wa. The others get what the rows of the first point of their eight are with weights
-/// of their own: the same as it, where they stand. Values may be left out. Points of one stencil that follow
-/// each other read its rows once.
-template <int D, bool values>
-[[gnu::noinline]] void sum_controls(const SingleNode* v, const SingleWeights<D>& p,
-                                    const Singles (&side)[D][2], std::size_t n, SingleFields<D>& fields) {
+/// What the first n of sixteen points read: `load(base)` the rows of the stencil that begins there, `sum(l,
+/// of)` what point l has of them, of[0] with the weights of all directions but the last, of[1 + d] with
+/// direction d's slopes or moments in place of its weights. Then the last direction, `side` in place of its
+/// weights for the last of the fields. What is no real point gets what the rows of the first point of its
+/// eight are with weights of its own: the same as it, where it stands there. Values may be left out. Points
+/// of one stencil that follow each other read its rows once.
+template <int D, bool values, class Load, class Sum>
+[[gnu::always_inline]] inline void sum_controls(const SingleWeights<D>& p, const Singles (&side)[2],
+                                                std::size_t n, SingleFields<D>& fields, Load load, Sum sum) {
   Singles entry[D + 1][4];  // of points 4b + a in block a of vector b
-  Rows<D> rows;
   int base = -1;
   for (std::size_t b = 0; b < 4; ++b) {
     Singles of_four[D][4];
 #pragma GCC unroll 4
     for (std::size_t a = 0; a < 4; ++a) {
       const std::size_t l = 4 * b + a, from = l < n ? l : n > octet_size ? l & octet_size : 0;
-      if (p.base[from] != base) rows.load(v + (base = p.base[from]));
-      Singles sum[D];
-      sum_rows<D>(rows, p, side, from, sum);
-      for (int q = 0; q < D; ++q) of_four[q][a] = sum[q];
+      if (p.base[from] != base) load(base = p.base[from]);
+      Singles of[D];
+      sum(from, of);
+      for (int q = 0; q < D; ++q) of_four[q][a] = of[q];
     }
     const auto repeat = [b](const Singles& of) {
       return each_four_times(reinterpret_cast<const SingleNode*>(&of)[b]);
@@ -169,7 +146,7 @@ template <int D, bool values>
       const Blocks block = first_three_blocks(of_four[q]);
       const auto along = differences(block.first, block.second, block.third);
       if (q > 0 || values) entry[q][b] = sum_to_one(first, last, along);
-      if (q == 0) entry[D][b] = sum_to_none(repeat(side[D - 1][0]), repeat(side[D - 1][1]), along);
+      if (q == 0) entry[D][b] = sum_to_none(repeat(side[0]), repeat(side[1]), along);
     }
   }
   for (int q = values ? 0 : 1; q <= D; ++q) {
@@ -183,14 +160,68 @@ template <int D, bool values>
 
 /// Slopes at the first n of sixteen points, and values if they are wanted.
 template <int D, bool values>
-void gather_slopes(const SingleNode* v, const SingleWeights<D>& p, std::size_t n, SingleFields<D>& fields) {
-  detail::sum_controls<D, values>(v, p, p.dw, n, fields);
+[[gnu::noinline]] void gather_slopes(const SingleNode* v, const SingleWeights<D>& p, std::size_t n,
+                                     SingleFields<D>& fields) {
+  detail::Rows<D> rows;
+  const auto sum = [&](std::size_t l, Singles(&of)[D]) {
+    Singles row[3], turned[3];
+#pragma GCC unroll 3
+    for (int i = 0; i < 3; ++i) {
+      if constexpr (D == 2) {
+        row[i] = rows.at[i];
+      } else {
+        row[i] = detail::sum_to_one(p.w[1][0][l], p.w[1][2][l], rows.at[i]);
+        turned[i] = detail::sum_to_none(p.dw[1][0][l], p.dw[1][1][l], rows.at[i]);
+      }
+    }
+    const auto across = detail::differences(row[0], row[1], row[2]);
+    const auto first = p.w[0][0][l], last = p.w[0][2][l];
+    of[0] = detail::sum_to_one(first, last, across);
+    of[1] = detail::sum_to_none(p.dw[0][0][l], p.dw[0][1][l], across);
+    if constexpr (D == 3)
+      of[2] = detail::sum_to_one(first, last, detail::differences(turned[0], turned[1], turned[2]));
+  };
+  detail::sum_controls<D, values>(
+      p, p.dw[D - 1], n, fields, [&](int base) { rows.load(v + base); }, sum);
 }
 
 /// Values and moments about the points.
-template <int D>
-void gather_moments(const SingleNode* v, const SingleWeights<D>& p, std::size_t n, SingleFields<D>& fields) {
-  detail::sum_controls<D, true>(v, p, p.wa, n, fields);
+template <ShapeFunctions kind, int D>
+[[gnu::noinline]] void gather_moments(const SingleNode* v, const SingleWeights<D>& p, std::size_t n,
+                                      SingleFields<D>& fields) {
+  constexpr bool even = kind == ShapeFunctions::gimp;
+  constexpr int rows = power(3, D - 1);
+  Singles row[rows];
+  const auto load = [&](int base) {
+#pragma GCC unroll 9
+    for (int r = 0; r < rows; ++r) row[r] = detail::load_controls(v + base + row_offset<D>(r));
+  };
+  const auto sum = [&](std::size_t l, Singles(&of)[D]) {
+    const auto share = [&](int r) { return detail::rounded(p.across[r][l] * row[r]); };
+    // Moment about the middle control in direction d, where its arms are even in units of them.
+    const auto moment = [&](int d, const Singles& low, const Singles& high) {
+      return even ? high - low : p.arm[d][0][l] * low + p.arm[d][1][l] * high;
+    };
+    if constexpr (D == 2) {
+      const Singles low = share(0), high = share(2);
+      of[0] = (low + high) + p.across[1][l] * row[1];
+      of[1] = moment(0, low, high);
+    } else {
+      const Singles corner[2][2] = {{share(0), share(2)}, {share(6), share(8)}};
+      const Singles left = share(3), right = share(5);
+      const Singles low = (corner[0][0] + corner[0][1]) + p.across[1][l] * row[1],
+                    high = (corner[1][0] + corner[1][1]) + p.across[7][l] * row[7];
+      of[0] = (low + high) + ((left + right) + p.across[4][l] * row[4]);
+      of[1] = moment(0, low, high);
+      of[2] = moment(1, corner[0][0] + corner[1][0] + left, corner[0][1] + corner[1][1] + right);
+    }
+  };
+  detail::sum_controls<D, true>(p, p.wa, n, fields, load, sum);
+  for (int d = 0; d + 1 < D; ++d)
+    for (int c = 0; c < 3; ++c) {
+      Singles& moment = fields.along[d][c];
+      moment = (even ? p.arm[d][1] * moment : moment) + p.middle[d] * fields.value[c];
+    }
 }
 
 /// Rows that points add to, and how many runs of points with the same stencil they are.
@@ -235,35 +266,47 @@ template <int D, class Add, class End>
 /// Adds momenta and masses of the first n of sixteen points to their controls in the tile's cube,
 /// w_i w_j w_k (value + moment[0] a_i + moment[1] a_j + moment[2] a_k). The control behind a stencil's row is
 /// added nothing. noipa: as add_by_runs() of lane_sums.hpp.
-template <int D>
+template <ShapeFunctions kind, int D>
 [[gnu::noipa]] Reached scatter_momenta(const SingleWeights<D>& p, const SingleMomenta<D>& of, std::size_t n,
                                        SingleNode* sums) {
   using detail::each_four_times, detail::four_times, detail::entries_of;
+  constexpr bool even = kind == ShapeFunctions::gimp;
   constexpr int rows = power(3, D - 1);
   constexpr std::size_t last = D - 1;
   const Singles arms[3] = {p.w[last][0] * p.arm[last][0], Singles{}, p.w[last][2] * p.arm[last][1]};
   const detail::Entries w = entries_of(p.w[last]), wa = entries_of(arms), value = entries_of(of.value);
-  detail::Entries moment[D];
-  for (int d = 0; d < D; ++d) moment[d] = entries_of(of.moment[d]);
-  Singles weight[rows], sum[rows] = {};
-  for (int r = 0; r < rows; ++r) weight[r] = D == 2 ? p.w[0][r] : p.w[0][r / 3] * p.w[1][r % 3];
+  detail::Entries moment[D];  // where arms are even, in the directions across times these
+  for (std::size_t d = 0; d < D; ++d) {
+    Singles times_arm[D];
+    for (int c = 0; c < D; ++c)
+      times_arm[c] = even && d < last ? p.arm[d][1] * of.moment[d][c] : of.moment[d][c];
+    moment[d] = entries_of(times_arm);
+  }
+  Singles sum[rows] = {};
   const auto add = [&](std::size_t l) {
     const std::size_t at = detail::place_of(l);
-    const Singles w_k = each_four_times(w[at]), by_i = w_k * four_times(moment[0][at]);
+    const Singles w_k = each_four_times(w[at]);
     const Singles middle =
         w_k * four_times(value[at]) + each_four_times(wa[at]) * four_times(moment[last][at]);
-    const Singles row[3] = {middle + p.arm[0][0][l] * by_i, middle, middle + p.arm[0][1][l] * by_i};
+    // What the first and the last in direction d have more than the middle one.
+    const auto more = [&](std::size_t d, Singles(&of_d)[2]) {
+      const Singles by_d = detail::rounded(w_k * four_times(moment[d][at]));
+      for (std::size_t k = 0; k < 2; ++k)
+        of_d[k] = even ? (k == 0 ? -by_d : by_d) : detail::rounded(p.arm[d][k][l] * by_d);
+    };
+    Singles by_i[2];
+    more(0, by_i);
+    const Singles row[3] = {middle + by_i[0], middle, middle + by_i[1]};
     if constexpr (D == 2) {
-      for (int i = 0; i < 3; ++i) sum[i] += weight[i][l] * row[i];
+      for (int i = 0; i < 3; ++i) sum[i] += p.across[i][l] * row[i];
     } else {
-      const Singles by_j = w_k * four_times(moment[1][at]);
-      const Singles down = detail::rounded(p.arm[1][0][l] * by_j),
-                    up = detail::rounded(p.arm[1][1][l] * by_j);
+      Singles by_j[2];
+      more(1, by_j);
 #pragma GCC unroll 3
       for (int i = 0; i < 3; ++i) {
-        sum[3 * i] += weight[3 * i][l] * (row[i] + down);
-        sum[3 * i + 1] += weight[3 * i + 1][l] * row[i];
-        sum[3 * i + 2] += weight[3 * i + 2][l] * (row[i] + up);
+        sum[3 * i] += p.across[3 * i][l] * (row[i] + by_j[0]);
+        sum[3 * i + 1] += p.across[3 * i + 1][l] * row[i];
+        sum[3 * i + 2] += p.across[3 * i + 2][l] * (row[i] + by_j[1]);
       }
     }
   };
