@@ -85,11 +85,23 @@ inline double sum(const Octet& a) {
   return s;
 }
 
+using EightWhole [[gnu::vector_size(32)]] = int;
+
 /// Whole numbers that are kept as doubles.
 inline void to_whole(const Octet& a, std::array<int, octet_size>& whole) {
-  using EightWhole [[gnu::vector_size(32)]] = int;
   const auto converted = __builtin_convertvector(a, EightWhole);
   std::memcpy(whole.data(), &converted, sizeof converted);
+}
+
+/// `of`, and of[0] where the id is that of no point.
+inline std::array<int, octet_size> in_place_of_none(const std::array<std::int32_t, octet_size>& id,
+                                                    const std::array<int, octet_size>& of) {
+  EightWhole ids, values;
+  std::memcpy(&ids, id.data(), sizeof ids), std::memcpy(&values, of.data(), sizeof values);
+  const EightWhole chosen = ids < 0 ? EightWhole{} + of[0] : values;
+  std::array<int, octet_size> result;
+  std::memcpy(result.data(), &chosen, sizeof chosen);
+  return result;
 }
 
 /// table[at[l]] in each lane.

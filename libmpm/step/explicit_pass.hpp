@@ -231,7 +231,7 @@ struct TilePass {
   bool cells;                                   ///< pressures go by the cell, and there are any in this pass
   PressureCells<Space, Node>&before, &pressed;  ///< cells of the points as they were, and as they push
   const GroupCells* entered;  ///< pressure cells of each group, where `before` has been read
-  StencilFrame<D> frame;
+  const StencilFrame<D>& frame;
   LaneSums& reduced;
 
   void count(const Reached& reached) { rows |= reached.rows, reduced.mixed += reached.runs; }
@@ -244,9 +244,7 @@ GroupCells cells_of_group(const TilePass<pass, Space, Law, Node>& in, std::size_
   if (in.entered) return in.entered[g - static_cast<std::size_t>(in.tile.first_group)];
   GroupCells cell{};
   using Real = typename PressureCells<Space, Node>::Real;
-  if (in.cells || in.held)
-    find_pressure_cells<D, Real>(in.state.grid.axes, in.state.shape, in.tile.at, places_of<D>(in.points, g),
-                                 cell);
+  if (in.cells || in.held) find_pressure_cells<D, Real>(in.frame, places_of<D>(in.points, g), cell);
   return cell;
 }
 
@@ -352,8 +350,9 @@ PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& 
   const HeldCells<D>* held = pass.stress ? state.holding.of(static_cast<int>(t)) : nullptr;
   const bool cell_pressure = pass.stress && settings.cell_pressure;
   constexpr bool pressed_anew = pass.gather && pass.move;  // by the cells that points have moved to
+  const StencilFrame<D> frame = stencil_frame<D>(grid.axes, state.shape, tile.at);
   const auto no_cells = [&](bool wanted) {
-    return PressureCells<Space, Node>(grid.axes, state.shape, tile.at, settings.stress, held, wanted);
+    return PressureCells<Space, Node>(grid.axes, tile.at, frame, settings.stress, held, wanted);
   };
   PressureCells<Space, Node> before = no_cells(cell_pressure),
                              after = no_cells(cell_pressure && pressed_anew);
@@ -375,7 +374,7 @@ PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& 
                                       .before = before,
                                       .pressed = pressed_anew ? after : before,
                                       .entered = nullptr,
-                                      .frame = stencil_frame<D>(grid.axes, state.shape, tile.at),
+                                      .frame = frame,
                                       .reduced = reduced};
   static thread_local std::vector<GroupCells> entered;
   if (in.cells && pass.gather) read_pressure_cells(in, entered);

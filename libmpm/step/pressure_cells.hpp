@@ -35,18 +35,18 @@ class PressureCells {
   using Cube = NodeCube<Node, TileGrid<D>::tile_nodes>;
 
   /// `held`: the tile's cells at walls that hold, if there are any. Without `wanted` nothing may be entered.
-  PressureCells(const std::array<Axis, D>& axes, const Shape<D>& shape, const Index<D>& tile,
+  PressureCells(const std::array<Axis, D>& axes, const Index<D>& tile, const StencilFrame<D>& frame,
                 StressUpdate stress, const HeldCells<D>* held, bool wanted)
       : axes_(axes),
-        shape_(shape),
         tile_(tile),
-        follows_(shape.kind == ShapeFunctions::b_spline || stress == StressUpdate::last),
+        frame_(frame),
+        follows_(frame.kind == ShapeFunctions::b_spline || stress == StressUpdate::last),
         held_(held) {
     if (!wanted) return;
     entered_.fill(0), impulse_.fill(0.0);
     if (follows_) moment_.fill(NodeLanes{}), points_.fill(0);
     for (int d = 0; d < D; ++d) {
-      origin_[d] = axes[d].origin, per_cell_[d] = 1.0 / axes[d].h, first_[d] = tile[d] * tile_cells;
+      origin_[d] = frame.axis[d].origin, per_cell_[d] = frame.axis[d].ih, first_[d] = frame.axis[d].first;
       along_[d][d] = static_cast<Real>(per_cell_[d]);
       for (int e = 0; e < D; ++e) across_[d][e] = e == d ? 0 : 1;
     }
@@ -56,9 +56,9 @@ class PressureCells {
   /// Enters the points of group g: `cells` are theirs.
   void enter(const LanePoints<D>& points, std::size_t g, std::array<int, octet_size>& cells) {
     const std::array<Octet, D> x = places_of<D>(points, g);
-    find_pressure_cells<D, Real>(axes_, shape_, tile_, x, cells);
+    find_pressure_cells<D, Real>(frame_, x, cells);
     // What fills up a group need not have stayed with its points: it must not enter a cell of its own.
-    for (std::size_t l = 1; l < octet_size; ++l) cells[l] = points.id[g][l] < 0 ? cells[0] : cells[l];
+    cells = in_place_of_none(points.id[g], cells);
     for (const int cell : cells) entered_[static_cast<std::size_t>(cell)] = 1;
     if (!follows_) return;
     Octet column[4] = {};
@@ -67,7 +67,7 @@ class PressureCells {
     NodeLanes moment[octet_size];
     to_rows(column, moment);
     for (std::size_t l = 0; l < octet_size; ++l) moment_[static_cast<std::size_t>(cells[l])] += moment[l];
-    if (shape_.kind != ShapeFunctions::b_spline) return;
+    if (frame_.kind != ShapeFunctions::b_spline) return;
     for (std::size_t l = 0; l < octet_size; ++l) {
       const auto c = static_cast<std::size_t>(cells[l]);
       if (moment[l][D] > 0.0 && points_[c] < few + 1) first_points_[c][points_[c]++] = moment[l];
@@ -191,7 +191,7 @@ class PressureCells {
   /// GIMP's rows are the slopes of the hats of the cell's corners. Averaged over an extent they would see
   /// other controls too, but no longer add up to a uniform push along a row of points.
   bool at_corners() const {
-    return shape_.kind == ShapeFunctions::gimp && !std::is_same_v<Space, Axisymmetric>;
+    return frame_.kind == ShapeFunctions::gimp && !std::is_same_v<Space, Axisymmetric>;
   }
 
   Edges edges_at(const NodeLanes& place) const {
@@ -251,7 +251,7 @@ class PressureCells {
       with_row(cell, place,
                [&](int base, const auto& weights, double x_0) { use(share, base, weights, x_0); });
     };
-    if (!follows_ || shape_.kind != ShapeFunctions::b_spline || !leaves_out_a_corner(cell)) {
+    if (!follows_ || frame_.kind != ShapeFunctions::b_spline || !leaves_out_a_corner(cell)) {
       at_place(place_of(cell), 1.0);
       return;
     }
@@ -266,8 +266,8 @@ class PressureCells {
   template <class Use>
   void with_row(std::size_t cell, const NodeLanes& place, Use use) const {
     const Index<D> at = index_of(cell);
-    const double x_0 = origin_[0] + (first_[0] + at[0] + place[0]) * axes_[0].h;
-    if (shape_.kind == ShapeFunctions::gimp) {
+    const double x_0 = origin_[0] + (first_[0] + at[0] + place[0]) * frame_.axis[0].h;
+    if (frame_.kind == ShapeFunctions::gimp) {
       PointWeights<D, 2> weights{};
       int base = 0;
       for (int d = 0; d < D; ++d) {
@@ -289,8 +289,8 @@ class PressureCells {
   }
 
   const std::array<Axis, D>& axes_;
-  const Shape<D>& shape_;
   const Index<D>& tile_;
+  const StencilFrame<D>& frame_;
   bool follows_;  ///< the rows' places are those of the points
   const HeldCells<D>* held_;
   NodeLanes origin_ = {}, per_cell_ = {}, first_ = {};

@@ -127,16 +127,17 @@ template <class Real, class Lanes>
 
 }  // namespace detail
 
-/// Cells of eight points at x, numbered within a tile. Real: in which their stencils are found; a point whose
-/// place is rounded up into the next cell there must be in the same cell here.
+/// Cells of eight points at x, numbered within the frame's tile. Real: in which their stencils are found; a
+/// point whose place is rounded up into the next cell there must be in the same cell here.
 template <int D, class Real>
-void find_pressure_cells(const std::array<Axis, D>& axes, const Shape<D>& shape, const Index<D>& tile,
-                         const std::array<Octet, D>& x, std::array<int, octet_size>& cells) {
+void find_pressure_cells(const StencilFrame<D>& frame, const std::array<Octet, D>& x,
+                         std::array<int, octet_size>& cells) {
   Octet cell = {};
-  const bool gimp = shape.kind == ShapeFunctions::gimp;
+  const bool gimp = frame.kind == ShapeFunctions::gimp;
   const Octet low = all_lanes(gimp ? -2.0 : -1.0), high = all_lanes(tile_cells);
   for (int d = 0; d < D; ++d) {
-    Octet X = place_in_tile(axes[d].origin, 1.0 / axes[d].h, tile[d] * tile_cells, x[d]);
+    const StencilAxis& axis = frame.axis[d];
+    Octet X = place_in_tile(axis.origin, axis.ih, axis.first, x[d]);
     if (std::is_same_v<Real, float> && !gimp) X = to_double(to_single(X, X), 0);
     cell = cell * tile_pressure_cells + (min(max(floor(X), low), high) + 2.0);
   }

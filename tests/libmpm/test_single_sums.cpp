@@ -353,8 +353,8 @@ TEST(OnAWall, TheWallsControlHasAllTheWeight) {
       }
       EXPECT_EQ(single.base[0], weights.base[0]);
       std::array<int, octet_size> cell, single_cell;
-      find_pressure_cells<D, double>(axes, shape, {}, x, cell);
-      find_pressure_cells<D, float>(axes, shape, {}, x, single_cell);
+      find_pressure_cells<D, double>(frame, x, cell);
+      find_pressure_cells<D, float>(frame, x, single_cell);
       EXPECT_EQ(cell[0], 2 * tile_pressure_cells + 2);
       EXPECT_EQ(single_cell[0], cell[0]);
     }
@@ -367,13 +367,13 @@ TEST(PressureCellsInSingle, AreTheStencils) {
   const auto shape = shape_of<D>(ShapeFunctions::b_spline);
   const std::array<Octet, D> x = {all_lanes(0.3 - 1e-10), all_lanes(0.25)}, both[2] = {x, x};
   SingleWeights<D> single;
-  weigh_single<ShapeFunctions::b_spline, WeighedFor::stress, D>(stencil_frame<D>(axes, shape, {}), both,
-                                                                single);
+  const auto frame = stencil_frame<D>(axes, shape, {});
+  weigh_single<ShapeFunctions::b_spline, WeighedFor::stress, D>(frame, both, single);
   std::array<int, octet_size> cell;
-  find_pressure_cells<D, float>(axes, shape, {}, x, cell);
+  find_pressure_cells<D, float>(frame, x, cell);
   EXPECT_EQ(single.base[0], 4 * tile_span + 3);
   EXPECT_EQ(cell[0], 5 * tile_pressure_cells + 4);
-  find_pressure_cells<D, double>(axes, shape, {}, x, cell);
+  find_pressure_cells<D, double>(frame, x, cell);
   EXPECT_EQ(cell[0], 4 * tile_pressure_cells + 4);
 }
 
