@@ -159,4 +159,21 @@ class DoneMarks {
   std::unique_ptr<Mark[]> marks_;
 };
 
+/// Of n things each goes to whom asks for it first in a pass.
+class Claims {
+ public:
+  void set_out(std::size_t n) { claims_ = std::make_unique<Claim[]>(n); }
+  bool take(int i, std::int64_t pass) {
+    std::atomic<std::int64_t>& last = claims_[static_cast<std::size_t>(i)].pass;
+    return last.load(std::memory_order_relaxed) < pass &&
+           last.exchange(pass, std::memory_order_relaxed) < pass;
+  }
+
+ private:
+  struct alignas(64) Claim {
+    std::atomic<std::int64_t> pass = 0;
+  };
+  std::unique_ptr<Claim[]> claims_;
+};
+
 }  // namespace tremie

@@ -83,6 +83,7 @@ void share_out(TileGrid<D>& grid, int n_threads) {
   }
   begin.back() = static_cast<int>(grid.blocks.size());
   grid.block_work.set_out(begin);
+  grid.block_claims.set_out(grid.blocks.size());
   grid.blocks_done.set_out(grid.blocks.size()), grid.tiles_done.set_out(grid.tiles.size());
   grid.passes = 0;
 }

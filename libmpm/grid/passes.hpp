@@ -31,17 +31,20 @@ template <int D, class Pass>
 void do_part(TileGrid<D>& grid, int s, std::size_t number, const Pass& pass) {
   assert(number == 0 || !pass.blocks_done);
   const std::int64_t now = grid.passes + static_cast<std::int64_t>(number) + 1;
-  if (!pass.blocks_done)
-    grid.block_work.own(s, [&](int b) {
-      if (number > 0)
-        for (const int t : grid.blocks[static_cast<std::size_t>(b)].tile)
-          if (t >= 0) grid.tiles_done.wait_for(t, now - 1);
-      pass.of_block(b);
-      grid.blocks_done.mark(b, now);
-    });
+  const auto do_block = [&](int b) {
+    if (number > 0)
+      for (const int t : grid.blocks[static_cast<std::size_t>(b)].tile)
+        if (t >= 0) grid.tiles_done.wait_for(t, now - 1);
+    pass.of_block(b);
+    grid.blocks_done.mark(b, now);
+  };
   grid.tile_work[number].take(s, [&](int t) {
-    if (!pass.blocks_done)
-      for (const int b : grid.tiles[static_cast<std::size_t>(t)].block) grid.blocks_done.wait_for(b, now);
+    const auto& blocks = grid.tiles[static_cast<std::size_t>(t)].block;
+    if (!pass.blocks_done) {
+      for (const int b : blocks)
+        if (grid.block_claims.take(b, now)) do_block(b);
+      for (const int b : blocks) grid.blocks_done.wait_for(b, now);
+    }
     pass.of_tile(t);
     grid.tiles_done.mark(t, now);
   });

@@ -119,6 +119,7 @@ struct TileGrid {
   std::unique_ptr<Crew> crew;
   SharedWork block_work;                ///< of its threads
   std::array<SharedWork, 2> tile_work;  ///< in up to two passes in a row
+  Claims block_claims;
   DoneMarks blocks_done, tiles_done;
   std::int64_t passes = 0;             ///< so far, since the grid was laid
   std::vector<BlockNodes<D>> v;        ///< a block: velocities, in the rows that a tile reaches
