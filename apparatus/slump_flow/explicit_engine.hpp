@@ -124,11 +124,13 @@ Outcome run_explicit_in(const Scene& scene, const Law& law, const Observer& obse
     const double until = std::min(body.time + reading_interval, scene.duration);
     StepReport step;
     do {
-      const ExplicitReport one = explicit_step(body, law, settings, state, wall);
-      limits.see(one);
-      step = {.dt = one.dt, .converged = true, .failed = one.failed, .max_speed = one.max_speed};
-      step.shear_rate_mean = one.shear_rate_mean;
-      outcome.cost.steps += 1;
+      const auto most = std::llround(std::ceil((until - body.time) / state.next_dt - 0.5));
+      for (const ExplicitReport& one : explicit_steps(body, law, settings, most, state, wall)) {
+        limits.see(one);
+        step = {.dt = one.dt, .converged = true, .failed = one.failed, .max_speed = one.max_speed};
+        step.shear_rate_mean = one.shear_rate_mean;
+        outcome.cost.steps += 1;
+      }
     } while (!step.failed && body.time < until - 0.5 * state.next_dt);
     if (engine::gave_up(step, outcome.status, outcome.checks, body.time)) break;
     write_back(state, body);

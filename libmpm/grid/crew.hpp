@@ -163,10 +163,12 @@ class DoneMarks {
 class Claims {
  public:
   void set_out(std::size_t n) { claims_ = std::make_unique<Claim[]>(n); }
+  bool taken(int i, std::int64_t pass) const {
+    return claims_[static_cast<std::size_t>(i)].pass.load(std::memory_order_relaxed) >= pass;
+  }
+  /// Whether it is the caller's. Passes must not overtake each other.
   bool take(int i, std::int64_t pass) {
-    std::atomic<std::int64_t>& last = claims_[static_cast<std::size_t>(i)].pass;
-    return last.load(std::memory_order_relaxed) < pass &&
-           last.exchange(pass, std::memory_order_relaxed) < pass;
+    return claims_[static_cast<std::size_t>(i)].pass.exchange(pass, std::memory_order_relaxed) < pass;
   }
 
  private:

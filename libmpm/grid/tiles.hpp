@@ -110,6 +110,7 @@ using BlockNodes = std::array<NodeLanes, power(tile_cells, D)>;
 template <int D>
 struct TileGrid {
   static constexpr int tile_nodes = power(tile_span, D);
+  static constexpr int passes_in_a_step = 2, most_times = 8;  ///< that follow each other without a wait
   using Buffer = NodeCube<NodeLanes, tile_nodes>;
   using SingleBuffer = NodeCube<SingleNode, tile_nodes>;
 
@@ -117,8 +118,8 @@ struct TileGrid {
   std::vector<Tile<D>> tiles;
   std::vector<NodeBlock<D>> blocks;
   std::unique_ptr<Crew> crew;
-  SharedWork block_work;                ///< of its threads
-  std::array<SharedWork, 2> tile_work;  ///< in up to two passes in a row
+  SharedWork block_work;  ///< of its threads
+  std::array<SharedWork, passes_in_a_step * most_times> tile_work;  ///< in passes that follow each other
   Claims block_claims;
   DoneMarks blocks_done, tiles_done;
   std::int64_t passes = 0;             ///< so far, since the grid was laid

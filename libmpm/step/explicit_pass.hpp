@@ -394,7 +394,7 @@ PassSums pass_as_set(const Mix& mix, const Law& law, const ExplicitSettings& set
   return pass_over_tile<pass, NodeLanes, Space>(mix, law, settings, input, t, state);
 }
 
-/// A pass over the points, tile by tile in any order.
+/// A pass over the points, tile by tile in any order, in each of some steps.
 template <Pass pass, class Space, class Law>
 struct PointsPass {
   const Mix& mix;
@@ -402,17 +402,21 @@ struct PointsPass {
   const ExplicitSettings& settings;
   PassInput input;
   ExplicitState<Space>& state;
-  std::vector<PassSums> of_tile = std::vector<PassSums>(state.grid.tiles.size());
+  int steps = 1;
+  std::vector<PassSums> of_tile =
+      std::vector<PassSums>(state.grid.tiles.size() * static_cast<std::size_t>(steps));
 
-  void operator()(int tile) {
+  void operator()(int tile, int step) {
     const auto t = static_cast<std::size_t>(tile);
-    of_tile[t] = pass_as_set<pass, Space>(mix, law, settings, input, t, state);
+    of_tile[static_cast<std::size_t>(step) * state.grid.tiles.size() + t] =
+        pass_as_set<pass, Space>(mix, law, settings, input, t, state);
   }
 
-  /// When all tiles are done.
-  PassSums sums() const {
+  /// Of a step, when all tiles are done, and its steps before have been asked for.
+  PassSums sums(int step) const {
     PassSums all;
-    for (const PassSums& one : of_tile) all.add(one);
+    const auto first = of_tile.begin() + step * std::ssize(state.grid.tiles);
+    std::for_each(first, first + std::ssize(state.grid.tiles), [&](const PassSums& one) { all.add(one); });
     if (state.mixed_groups < 0) state.mixed_groups = all.mixed;
     state.mixed_since += std::max<std::int64_t>(0, all.mixed - state.mixed_groups);
     return all;

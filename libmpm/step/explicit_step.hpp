@@ -15,8 +15,8 @@ namespace detail {
 /// A pass over the points for run_passes: `of_block(block)` makes the velocities that it reads.
 template <Pass pass, class Space, class Law, class OfBlock>
 auto controls_to_points(bool controls_done, OfBlock of_block, PointsPass<pass, Space, Law>& of_tile) {
-  return GridPass{controls_done, [of_block](int block) { of_block(static_cast<std::size_t>(block)); },
-                  [&of_tile](int tile) { of_tile(tile); }};
+  return GridPass{controls_done, [of_block](int block, int) { of_block(static_cast<std::size_t>(block)); },
+                  [&of_tile](int tile, int step) { of_tile(tile, step); }};
 }
 
 /// A pass over the points, with the velocities that the controls have.
@@ -26,7 +26,7 @@ PassSums pass_over_points(const Mix& mix, const Law& law, const ExplicitSettings
   const auto no_change = [](std::size_t) {};
   PointsPass<pass, Space, Law> of_tile{mix, law, settings, input, state};
   run_passes(state.grid, controls_to_points(true, no_change, of_tile));
-  return of_tile.sums();
+  return of_tile.sums(0);
 }
 
 }  // namespace detail
@@ -55,11 +55,13 @@ ExplicitState<Space> start_explicit(Body<Space>& body, const Law& law, const Exp
   return state;
 }
 
-/// Updates the stress last (USL): the velocities at the end of the step deform and move the points. Points to
+/// Updates the stress last (USL): the velocities at the end of a step deform and move the points. Points to
 /// grid for the step to come happens in the same pass, with the impulses that the new stresses give in it.
+/// Returns the sums of each of n steps.
 template <class Space, class Law>
-detail::PassSums stress_last(Body<Space>& body, const Law& law, const ExplicitSettings& settings,
-                             const RigidWall<Space::dim>& wall, double dt, ExplicitState<Space>& state) {
+std::vector<detail::PassSums> stress_last(Body<Space>& body, const Law& law, const ExplicitSettings& settings,
+                                          const RigidWall<Space::dim>& wall, double dt, int n,
+                                          ExplicitState<Space>& state) {
   const Vec<Space::dim> pull = dt * body.gravity, none = Vec<Space::dim>::Zero();
   const double friction = settings.friction_coefficient;
   // Momentum balance on the grid; the stresses' impulses are in the momenta, but for FLIP.
@@ -74,17 +76,21 @@ detail::PassSums stress_last(Body<Space>& body, const Law& law, const ExplicitSe
   if (sort) detail::sort_points(settings, state);
   look_into_wall_cells(state);
   // Grid to points, stress, motion, points to grid.
-  detail::PointsPass<detail::whole_pass, Space, Law> whole{
-      body.mix, law, settings, {dt, state.next_dt}, state};
-  run_passes(state.grid, detail::controls_to_points(all_at_once, velocities, whole));
-  return whole.sums();
+  detail::PointsPass<detail::whole_pass, Space, Law> whole{body.mix, law, settings, {dt, state.next_dt},
+                                                           state,    n};
+  repeat_passes(state.grid, n, detail::controls_to_points(all_at_once, velocities, whole));
+  std::vector<detail::PassSums> sums;
+  for (int step = 0; step < n; ++step) sums.push_back(whole.sums(step));
+  return sums;
 }
 
 /// Updates the stress first (USF), the paper's order: with the points' velocities as the grid has them before
 /// the forces act.
 template <class Space, class Law>
-detail::PassSums stress_first(Body<Space>& body, const Law& law, const ExplicitSettings& settings,
-                              const RigidWall<Space::dim>& wall, double dt, ExplicitState<Space>& state) {
+std::vector<detail::PassSums> stress_first(Body<Space>& body, const Law& law,
+                                           const ExplicitSettings& settings,
+                                           const RigidWall<Space::dim>& wall, double dt, int n,
+                                           ExplicitState<Space>& state) {
   const Vec<Space::dim> pull = dt * body.gravity, none = Vec<Space::dim>::Zero();
   const auto velocities = [&](std::size_t block) {
     detail::velocities_from_sums(body, 0.0, none, block, state);
@@ -102,8 +108,8 @@ detail::PassSums stress_first(Body<Space>& body, const Law& law, const ExplicitS
     detail::sort_points(settings, state);
   }
   look_into_wall_cells(state);
-  detail::PointsPass<detail::stress_pass, Space, Law> stress{body.mix, law, settings, {dt, dt}, state};
-  detail::PointsPass<detail::motion_pass, Space, Law> motion{body.mix, law, settings, {dt, 0.0}, state};
+  detail::PointsPass<detail::stress_pass, Space, Law> stress{body.mix, law, settings, {dt, dt}, state, n};
+  detail::PointsPass<detail::motion_pass, Space, Law> motion{body.mix, law, settings, {dt, 0.0}, state, n};
   const auto first = detail::controls_to_points(sort, velocities, stress);
   const auto second = detail::controls_to_points(bool{wall}, impulses, motion);
   if (wall) {
@@ -112,37 +118,86 @@ detail::PassSums stress_first(Body<Space>& body, const Law& law, const ExplicitS
     detail::push_off_wall(wall, body.time + dt, dt, settings.wall_gap, state);
     run_passes(state.grid, second);
   } else {
-    run_passes(state.grid, first, second);
+    repeat_passes(state.grid, n, first, second);
   }
-  detail::PassSums sums = stress.sums();
-  sums.add(motion.sums());
+  std::vector<detail::PassSums> sums;
+  for (int step = 0; step < n; ++step) {
+    sums.push_back(stress.sums(step));
+    sums.back().add(motion.sums(step));
+  }
   return sums;
 }
 
-/// Advances the body by one step. Its points are left on the tiles: write_back brings them to body.points.
-template <class Space, class Law>
-ExplicitReport explicit_step(Body<Space>& body, const Law& law, const ExplicitSettings& settings,
-                             ExplicitState<Space>& state, const RigidWall<Space::dim>& wall = {}) {
-  ExplicitReport report;
-  const double dt = state.next_dt;
-  report.dt = dt;
-  report.limits = state.limits;
-  report.beyond_limit = dt > state.limits.viscous || dt > state.limits.acoustic;
-  detail::choose_next_step(body, law, settings, state);
+namespace detail {
 
-  const detail::PassSums sums = settings.stress == StressUpdate::last
-                                    ? stress_last(body, law, settings, wall, dt, state)
-                                    : stress_first(body, law, settings, wall, dt, state);
-  body.time += dt;
-  body.dt = dt;
-  report.failed = sums.ran_away;
+/// How many steps may follow each other, at most `most`, before points must be sorted or cells at walls
+/// looked into: none may move more than twice as far as in the last.
+template <class Space>
+int steps_in_a_row(const ExplicitSettings& settings, const ExplicitState<Space>& state, bool wall,
+                   std::int64_t most) {
+  if (wall || !settings.fixed_dt || should_sort(state) || state.holding.drift >= hold_drift) return 1;
+  const double left = std::min(drift_allowed - state.drift, hold_drift - state.holding.drift);
+  const double steps = left / std::max(2.0 * state.farthest, 1e-300);
+  return static_cast<int>(
+      std::clamp(static_cast<double>(std::min<std::int64_t>(most, TileGrid<Space::dim>::most_times)), 1.0,
+                 std::max(1.0, steps)));
+}
+
+/// The step to come, with what is known of the last.
+template <class Space, class Law>
+ExplicitReport begin_step(const Body<Space>& body, const Law& law, const ExplicitSettings& settings,
+                          ExplicitState<Space>& state) {
+  ExplicitReport report;
+  report.dt = state.next_dt;
+  report.limits = state.limits;
+  report.beyond_limit = report.dt > state.limits.viscous || report.dt > state.limits.acoustic;
+  choose_next_step(body, law, settings, state);
+  return report;
+}
+
+template <class Space>
+void end_step(const ExplicitSettings& settings, const PassSums& sums, Body<Space>& body,
+              ExplicitState<Space>& state, ExplicitReport& report) {
+  body.time += report.dt;
+  body.dt = report.dt;
   report.max_speed = state.max_speed = std::sqrt(sums.speed2);
   report.shear_rate_mean = sums.volume > 0.0 ? sums.volume_rate / sums.volume : 0.0;
   state.lambda_max = sums.lambda;
+  state.farthest = sums.farthest;
   state.drift += sums.farthest;
   state.holding.drift += sums.farthest;
-  state.wall_drift += sums.farthest * body.grid.axes[0].h + settings.wall_speed * dt;
-  return report;
+  state.wall_drift += sums.farthest * body.grid.axes[0].h + settings.wall_speed * report.dt;
+  report.failed = sums.ran_away || !(state.drift < 1.0);
+}
+
+}  // namespace detail
+
+/// Advances the body by up to `most` steps, one or more, and reports on each; where one fails it is the last.
+/// The points are left on the tiles: write_back brings them to body.points.
+template <class Space, class Law>
+std::vector<ExplicitReport> explicit_steps(Body<Space>& body, const Law& law,
+                                           const ExplicitSettings& settings, std::int64_t most,
+                                           ExplicitState<Space>& state,
+                                           const RigidWall<Space::dim>& wall = {}) {
+  const int n = detail::steps_in_a_row(settings, state, bool{wall}, most);
+  std::vector<ExplicitReport> reports{detail::begin_step(body, law, settings, state)};
+  const double dt = reports[0].dt;
+  const auto sums = settings.stress == StressUpdate::last
+                        ? stress_last(body, law, settings, wall, dt, n, state)
+                        : stress_first(body, law, settings, wall, dt, n, state);
+  for (const detail::PassSums& of_step : sums) {
+    if (&of_step != sums.data()) reports.push_back(detail::begin_step(body, law, settings, state));
+    detail::end_step(settings, of_step, body, state, reports.back());
+    if (reports.back().failed) break;
+  }
+  return reports;
+}
+
+/// One step.
+template <class Space, class Law>
+ExplicitReport explicit_step(Body<Space>& body, const Law& law, const ExplicitSettings& settings,
+                             ExplicitState<Space>& state, const RigidWall<Space::dim>& wall = {}) {
+  return explicit_steps(body, law, settings, 1, state, wall).front();
 }
 
 }  // namespace tremie

@@ -115,13 +115,17 @@ class PassesWatched {
   explicit PassesWatched(TileGrid<3>& grid)
       : grid_(grid), blocks_(grid.blocks.size()), tiles_(grid.tiles.size()) {}
 
-  auto pass(int number, bool blocks_done) {
+  /// `first`: the number of the pass when it comes for the first time, `each` how many there are till it
+  /// comes again.
+  auto pass(int first, bool blocks_done, int each = 0) {
     return GridPass{blocks_done,
-                    [this, number](int b) {
+                    [this, first, each](int b, int time) {
+                      const int number = first + each * time;
                       visit(blocks_[static_cast<std::size_t>(b)], number, tiles_,
                             grid_.blocks[static_cast<std::size_t>(b)].tile, number - 1);
                     },
-                    [this, number, blocks_done](int t) {
+                    [this, first, each, blocks_done](int t, int time) {
+                      const int number = first + each * time;
                       visit(tiles_[static_cast<std::size_t>(t)], number, blocks_,
                             grid_.tiles[static_cast<std::size_t>(t)].block, blocks_done ? 0 : number);
                     }};
@@ -153,7 +157,9 @@ class PassesWatched {
         }
     };
     look();
-    if (number % 2 == 1) std::this_thread::sleep_for(std::chrono::microseconds(20));
+    // Now this, now that thread is held up, longer than all the rest of a pass takes.
+    if ((&one - (&others == &tiles_ ? blocks_ : tiles_).data() + 7 * number) % 11 == 0)
+      std::this_thread::sleep_for(std::chrono::microseconds(50));
     look();
     ++one.done;
   }
@@ -172,6 +178,10 @@ void expect_in_order(TileGrid<3>& grid) {
   for_each_block(grid, [&](int b) { watched.block_done(b, 4); });
   run_passes(grid, watched.pass(4, true), watched.pass(5, false));
   watched.expect_all_done(5);
+  for (int done = 5; done < 150; done += 14) {
+    repeat_passes(grid, 7, watched.pass(done + 1, false, 2), watched.pass(done + 2, false, 2));
+    watched.expect_all_done(done + 14);
+  }
 }
 
 TEST(Tiles, PassesWaitForWhatTheyNeed) {
