@@ -5,7 +5,7 @@
 // A block may be done when its tiles are done with the pass before: they have given what it sums up, and no
 // longer read its velocities. A tile may be done when its blocks are: they have what it reads, and no longer
 // read what it gave. Tiles are shared out as they come. The blocks of a tile that nobody has begun with are
-// done by whoever comes to it: what lies at the border of two threads is asked for last, when the other is
+// done by whoever comes to it: of two threads each asks last for what lies at their border, when the other is
 // done with it as well.
 
 #include <cassert>

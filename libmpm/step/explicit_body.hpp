@@ -34,11 +34,11 @@ struct ExplicitSettings {
 };
 
 struct ExplicitReport {
-  double dt = 0.0;               ///< [s]
-  StabilityLimits limits = {};   ///< at the start of the step
-  bool beyond_limit = false;     ///< dt was longer than one of them
-  bool failed = false;           ///< a point moved half a cell in the step, or is not finite
-  double max_speed = 0.0;        ///< of the points [m/s]
+  double dt = 0.0;              ///< [s]
+  StabilityLimits limits = {};  ///< at the start of the step
+  bool beyond_limit = false;    ///< dt was longer than one of them
+  bool failed = false;     ///< a point moved half a cell, or is not finite, or has left what its tile sees
+  double max_speed = 0.0;  ///< of the points [m/s]
   double shear_rate_mean = 0.0;  ///< volume mean [1/s]
 };
 
@@ -72,7 +72,7 @@ struct ExplicitState {
   TileGrid<D> grid;
   double next_dt = 0.0;     ///< of the step to come [s]
   double drift = 0.0;       ///< no point is further from where it was sorted, in cells
-  double farthest = 0.0;    ///< move of a point along an axis in the last step, in cells
+  double farthest = 1e300;  ///< move of a point along an axis in the last step, in cells: not known yet
   double max_speed = 0.0;   ///< of the points [m/s]
   double lambda_max = 0.0;  ///< largest flocculation in a point
   StabilityLimits limits;

@@ -77,9 +77,9 @@ void update_block(const Body<Space>& body, double friction_coefficient, const st
   });
 }
 
-/// Entry D of each of two controls in all entries of it.
+/// 1/mass of two controls, which their velocities have in entry D, in all their entries.
 template <int D>
-TwoNodes mass_of(const TwoNodes& two) {
+TwoNodes inverse_mass_of(const TwoNodes& two) {
   return __builtin_shufflevector(two, two, D, D, D, D, D + 4, D + 4, D + 4, D + 4);
 }
 
@@ -102,8 +102,9 @@ FourNodes inverse_masses(const FourNodes& total) {
           __builtin_shufflevector(inverse, inverse, 2, 2, 2, 2, 3, 3, 3, 3)};
 }
 
+/// The same for two controls.
 template <int D>
-TwoNodes twice(const Vec<D>& a) {
+TwoNodes for_two(const Vec<D>& a) {
   NodeLanes one = {};
   for (int d = 0; d < D; ++d) one[d] = a[d];
   return both(one, one);
@@ -114,7 +115,7 @@ template <class Space>
 void velocities_from_sums(const Body<Space>& body, double friction, const Vec<Space::dim>& gravity_impulse,
                           std::size_t b, ExplicitState<Space>& state) {
   constexpr int D = Space::dim;
-  const TwoNodes pull = twice<D>(gravity_impulse);
+  const TwoNodes pull = for_two<D>(gravity_impulse);
   const auto velocity = [&pull](const TwoNodes& total, const TwoNodes& inverse) {
     const TwoNodes moving = total * inverse + pull;
     return with_mass<D>(inverse > 0.0 ? moving : TwoNodes{}, inverse);
@@ -134,9 +135,9 @@ template <class Space, class Buffer>
 void add_impulses(const Body<Space>& body, double friction, const std::vector<Buffer>& impulses, bool flip,
                   const Vec<Space::dim>& gravity_impulse, std::size_t b, ExplicitState<Space>& state) {
   constexpr int D = Space::dim;
-  const TwoNodes pull = twice<D>(gravity_impulse);
+  const TwoNodes pull = for_two<D>(gravity_impulse);
   const auto faster = [&pull](const TwoNodes& v, const TwoNodes& impulse) {
-    const TwoNodes inverse = mass_of<D>(v), moving = v + (impulse * inverse + pull);
+    const TwoNodes inverse = inverse_mass_of<D>(v), moving = v + (impulse * inverse + pull);
     return with_mass<D>(inverse > 0.0 ? moving : v, inverse);
   };
   const auto add = [&](const FourNodes& total, std::size_t at) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// One explicit step of the material point method, from top to bottom.
+// An explicit step of the material point method, from top to bottom, and some that follow each other.
 
 #include "libmpm/contact/impulses.hpp"
 #include "libmpm/step/explicit_nodes.hpp"
@@ -12,7 +12,7 @@ namespace tremie {
 
 namespace detail {
 
-/// A pass over the points for run_passes: `of_block(block)` makes the velocities that it reads.
+/// A pass over the points for repeat_passes: `of_block(block)` makes the velocities that it reads.
 template <Pass pass, class Space, class Law, class OfBlock>
 auto controls_to_points(bool controls_done, OfBlock of_block, PointsPass<pass, Space, Law>& of_tile) {
   return GridPass{controls_done, [of_block](int block, int) { of_block(static_cast<std::size_t>(block)); },
@@ -57,7 +57,7 @@ ExplicitState<Space> start_explicit(Body<Space>& body, const Law& law, const Exp
 
 /// Updates the stress last (USL): the velocities at the end of a step deform and move the points. Points to
 /// grid for the step to come happens in the same pass, with the impulses that the new stresses give in it.
-/// Returns the sums of each of n steps.
+/// Returns the sums of each of n steps: one where there is a wall, or the points must be sorted.
 template <class Space, class Law>
 std::vector<detail::PassSums> stress_last(Body<Space>& body, const Law& law, const ExplicitSettings& settings,
                                           const RigidWall<Space::dim>& wall, double dt, int n,
@@ -85,7 +85,7 @@ std::vector<detail::PassSums> stress_last(Body<Space>& body, const Law& law, con
 }
 
 /// Updates the stress first (USF), the paper's order: with the points' velocities as the grid has them before
-/// the forces act.
+/// the forces act. Sums and n as in stress_last.
 template <class Space, class Law>
 std::vector<detail::PassSums> stress_first(Body<Space>& body, const Law& law,
                                            const ExplicitSettings& settings,
@@ -131,11 +131,13 @@ std::vector<detail::PassSums> stress_first(Body<Space>& body, const Law& law,
 namespace detail {
 
 /// How many steps may follow each other, at most `most`, before points must be sorted or cells at walls
-/// looked into: none may move more than twice as far as in the last.
+/// looked into, if they move no more than twice as far in each as in the last. Points that are faster all of
+/// a sudden are sorted late, and those that leave what their tile sees fail.
 template <class Space>
 int steps_in_a_row(const ExplicitSettings& settings, const ExplicitState<Space>& state, bool wall,
                    std::int64_t most) {
-  if (wall || !settings.fixed_dt || should_sort(state) || state.holding.drift >= hold_drift) return 1;
+  if (wall || settings.fixed_dt != state.next_dt || should_sort(state) || state.holding.drift >= hold_drift)
+    return 1;
   const double left = std::min(drift_allowed - state.drift, hold_drift - state.holding.drift);
   const double steps = left / std::max(2.0 * state.farthest, 1e-300);
   return static_cast<int>(
@@ -172,8 +174,8 @@ void end_step(const ExplicitSettings& settings, const PassSums& sums, Body<Space
 
 }  // namespace detail
 
-/// Advances the body by up to `most` steps, one or more, and reports on each; where one fails it is the last.
-/// The points are left on the tiles: write_back brings them to body.points.
+/// Advances the body by up to `most` steps, one or more, and reports on each; where one fails it is the last,
+/// and the points are not to be used. They are left on the tiles: write_back brings them to body.points.
 template <class Space, class Law>
 std::vector<ExplicitReport> explicit_steps(Body<Space>& body, const Law& law,
                                            const ExplicitSettings& settings, std::int64_t most,

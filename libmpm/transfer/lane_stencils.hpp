@@ -148,7 +148,7 @@ void find_pressure_cells(const StencilFrame<D>& frame, const std::array<Octet, D
 struct Wanted {
   bool slopes = true, moments = true;
 };
-inline constexpr Wanted slopes_and_moments{}, slopes_only{.moments = false}, moments_only{.slopes = false},
+inline constexpr Wanted slopes_and_moments{}, slopes_only{.moments = false},
     value_only{.slopes = false, .moments = false};
 
 /// Weights of eight points at x in a tile, as far as they are wanted. Points more than a cell outside of it

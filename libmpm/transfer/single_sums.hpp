@@ -10,8 +10,9 @@
 // as few of these as there may be. The weights of a direction add up to 1, their slopes to 0, which leaves
 // two numbers of three: slopes are read from differences to the middle control, and of impulses the middle
 // row has what the others leave. (The middle control has half of the weight at least, but for splines next to
-// a wall.) Moments are read, and momenta given, about the middle control, whose neighbours are a cell away
-// (splines next to a wall: half a cell): each row has one product with its weight, the rest is sums.
+// a wall.) Across the rows moments are read, and momenta given, about the middle control, whose neighbours
+// are a cell away (splines next to a wall: half a cell): each row has one product with its weight, the rest
+// is sums.
 
 #include "libmpm/transfer/lane_sums.hpp"
 #include "libmpm/transfer/single_lanes.hpp"
@@ -29,7 +30,7 @@ enum class WeighedFor {
 /// begin in the tile's cube.
 template <int D>
 struct SingleWeights {
-  Singles w[D][3];
+  Singles w[D][3];                  ///< in all directions for stress, else in the last alone
   Singles dw[D][2];                 ///< slopes at the first and the last [1/m]
   Singles across[power(3, D - 1)];  ///< of rows: the product of all directions but the last
   Singles wa[2];       ///< arm from the point times weight, first and last of the last direction [m]
