@@ -119,13 +119,6 @@ class SharedWork {
     }
   }
 
-  /// Thread s: visit(piece) for its own pieces alone.
-  template <class Visit>
-  void own(int s, Visit visit) const {
-    const Run& run = runs_[static_cast<std::size_t>(s)];
-    for (int i = 0; i < run.size; ++i) visit(run.piece(i));
-  }
-
  private:
   struct alignas(64) Run {
     std::atomic<int> taken = 0;

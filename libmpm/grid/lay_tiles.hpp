@@ -65,24 +65,12 @@ std::vector<int> even_runs(const std::vector<Tile<D>>& tiles, int n) {
   return begin;
 }
 
-/// Sets the crew to the tiles, and to the blocks: those that the tiles of two runs see go with the first of
-/// them.
+/// Sets the crew to the tiles.
 template <int D>
 void share_out(TileGrid<D>& grid, int n_threads) {
   if (!grid.crew || grid.crew->size() != n_threads) grid.crew = std::make_unique<Crew>(n_threads);
-  std::vector<int> begin = even_runs<D>(grid.tiles, n_threads);
+  const std::vector<int> begin = even_runs<D>(grid.tiles, n_threads);
   for (SharedWork& work : grid.tile_work) work.set_out(begin);
-  for (std::size_t s = 1; s + 1 < begin.size(); ++s) {
-    if (begin[s] == 0) continue;
-    Index<D> last = grid.tiles[static_cast<std::size_t>(begin[s]) - 1].at;
-    for (int& i : last) ++i;  // where the axis is periodic it may be none, and what is behind it goes on
-    const auto behind =
-        std::upper_bound(grid.blocks.begin(), grid.blocks.end(), last,
-                         [](const Index<D>& at, const NodeBlock<D>& block) { return at < block.at; });
-    begin[s] = static_cast<int>(behind - grid.blocks.begin());
-  }
-  begin.back() = static_cast<int>(grid.blocks.size());
-  grid.block_work.set_out(begin);
   grid.block_claims.set_out(grid.blocks.size());
   grid.blocks_done.set_out(grid.blocks.size()), grid.tiles_done.set_out(grid.tiles.size());
   grid.passes = 0;

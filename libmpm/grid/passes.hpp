@@ -73,10 +73,13 @@ void run_passes(TileGrid<D>& grid, const Passes&... passes) {
   repeat_passes(grid, 1, passes...);
 }
 
-/// Visits each block.
+/// Visits each block; each thread has as many of them.
 template <int D, class Visit>
 void for_each_block(TileGrid<D>& grid, Visit visit) {
-  grid.crew->run([&](int s) { grid.block_work.own(s, visit); });
+  const std::int64_t n = std::ssize(grid.blocks), threads = grid.crew->size();
+  grid.crew->run([&](int s) {
+    for (std::int64_t b = n * s / threads; b < n * (s + 1) / threads; ++b) visit(static_cast<int>(b));
+  });
 }
 
 }  // namespace tremie

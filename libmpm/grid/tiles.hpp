@@ -118,7 +118,6 @@ struct TileGrid {
   std::vector<Tile<D>> tiles;
   std::vector<NodeBlock<D>> blocks;
   std::unique_ptr<Crew> crew;
-  SharedWork block_work;                                            ///< of its threads
   std::array<SharedWork, passes_in_a_step * most_times> tile_work;  ///< in passes that follow each other
   Claims block_claims;
   DoneMarks blocks_done, tiles_done;

@@ -26,6 +26,17 @@
 
 namespace tremie::detail {
 
+/// `of`, and of[0] where the id is that of no point.
+inline std::array<int, octet_size> in_place_of_none(const std::array<std::int32_t, octet_size>& id,
+                                                    const std::array<int, octet_size>& of) {
+  EightWhole ids, values;
+  std::memcpy(&ids, id.data(), sizeof ids), std::memcpy(&values, of.data(), sizeof values);
+  const EightWhole chosen = ids < 0 ? EightWhole{} + of[0] : values;
+  std::array<int, octet_size> result;
+  std::memcpy(result.data(), &chosen, sizeof chosen);
+  return result;
+}
+
 /// Node: of the tile's controls that the rows read and push.
 template <class Space, class Node>
 class PressureCells {

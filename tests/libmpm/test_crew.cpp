@@ -76,9 +76,10 @@ TEST(SharedWork, EverySecondRunGoesFromItsEnd) {
   SharedWork work;
   work.set_out({0, 3, 7});
   std::vector<int> pieces;
-  for (int s = 0; s < 2; ++s) work.own(s, [&](int piece) { pieces.push_back(piece); });
+  work.take(0, [&](int piece) { pieces.push_back(piece); });
   EXPECT_EQ(pieces, (std::vector<int>{0, 1, 2, 6, 5, 4, 3}));
   pieces.clear();
+  work.start_anew();
   work.take(1, [&](int piece) { pieces.push_back(piece); });
   EXPECT_EQ(pieces, (std::vector<int>{6, 5, 4, 3, 0, 1, 2}));
 }
