@@ -4,174 +4,98 @@
 //
 // A cell is coupled with those within two of it in every direction, 125 with itself. S is symmetric: the 63
 // entries with itself and the cells ahead are kept, and a product uses each twice, for the cell and for the
-// one ahead; 252 bytes a cell are read, in the order in which they lie, where the rows of B would be 864. The
-// cells lie in columns along the body's longest way, sixteen of them go side by side. Columns go together in
-// strips, eight wide, each of which gives what its entries make of x to room of its own; where strips meet,
-// it is added up in their order: the bits do not depend on the threads.
+// one ahead; 252 bytes a cell are read, in the order in which they lie, where the rows of B would be 864.
+// They lie by columns of cells (cell_columns.hpp), sixteen cells of which go side by side. A strip of columns
+// gives what its entries make of x to room of its own; where strips meet, it is added up in their order: the
+// bits do not depend on the threads.
 
 #include <algorithm>
-#include <array>
-#include <numeric>
 #include <utility>
 #include <vector>
 
-#include "libmpm/grid/active_grid.hpp"
-#include "libmpm/step/cell_lanes.hpp"
+#include "libmpm/step/cell_columns.hpp"
 
 namespace tremie {
 
 class PressureEntries {
  public:
+  using Column = CellColumns::Column;
+  static constexpr int reach = CellColumns::reach;
+
   /// Makes room for the cells of a grid that is not periodic in all directions; all entries zero.
   void reset(const ActiveGrid<3>& grid);
   /// Adds to S(c, other) and S(other, c). Threads may add to different entries.
   void add(const ActiveGrid<3>& grid, int c, int other, float value);
-  float diagonal(int c) const { return entries_[first_[c]]; }
   /// Calls use(c, other, value) for every entry on and ahead of the diagonal.
   template <class Use>
   void for_each(Use use) const;
   /// Sp = S p. To be called by all threads of a parallel region.
   void multiply_in_region(const Eigen::VectorXf& p, Eigen::VectorXf& Sp);
 
+  /// Which of a cell's entries is that with the cell at an offset, ahead of it or itself, by the axes of the
+  /// columns. Negative where that one is behind.
+  static constexpr int offset(int a, int b, int c) { return 5 * (5 * a + b) + c; }
+  /// Entry k of the cell at low + i of a column is [k size + i] of what this returns.
+  const float* of_column(const Column& column) const { return &entries_[slack + kept * column.first]; }
+
+  CellColumns layout;  ///< with the vectors in which products are made
+
  private:
-  static constexpr int reach = 2, kept = 63;
-  static constexpr int slack = batch_size + 2 * reach;  ///< of reading whole batches
-  static constexpr int strip = 8,
-                       strip_span = strip + 2 * reach;  ///< columns across: its own, and that it reaches
+  static constexpr int kept = 63, slack = CellColumns::slack, strip = CellColumns::strip;
+  static constexpr int strip_span = strip + 2 * reach;  ///< columns across: its own, and that it reaches
+  static constexpr int asked_for = 1536;                ///< how many entries before they are multiplied
 
-  /// Cells next to each other along way_[2], with what lies between them if they have gaps.
-  struct Column {
-    Index<2> across;
-    int low, end;
-    std::size_t at = 0;  ///< its first entry; those with the same neighbour follow each other
-    int size() const { return end - low; }
-  };
-  struct Ghost {
-    int place, cell;
-  };
-
-  static int offset(int a, int b, int c) { return 5 * (5 * a + b) + c; }
-  int place(const Index<3>& at) const { return (at[0] * extent_[1] + at[1]) * extent_[2] + at[2]; }
-  void find_columns(const std::vector<Index<3>>& at);
-  void find_ghosts(const ActiveGrid<3>& grid, const std::vector<Index<3>>& at);
-  int n_strips() const { return (extent_[1] - 1) / strip + 1; }
-  std::size_t strip_size() const { return static_cast<std::size_t>(extent_[0]) * strip_span * extent_[2]; }
+  std::size_t strip_size() const {
+    return static_cast<std::size_t>(layout.extent[0]) * strip_span * layout.extent[2];
+  }
   /// Where the column at `across` begins in the room of a strip.
   std::size_t place_in_strip(int which, const Index<2>& across) const {
     const int beside = across[1] - strip * which + reach;
-    return strip_size() * which + static_cast<std::size_t>((across[0] * strip_span + beside) * extent_[2]);
+    return strip_size() * which +
+           static_cast<std::size_t>((across[0] * strip_span + beside) * layout.extent[2]);
   }
   void multiply_column(const Column& column, float* in_strip);
   void add_up_strips(const Index<2>& across, const Column& column);
 
-  Index<3> way_{}, extent_{};        ///< axes, the longest one last; the box with a margin on all sides
-  std::vector<Column> columns_;      ///< those of a strip follow each other
-  std::vector<int> strip_begin_;     ///< strip k has the columns strip_begin_[k] .. strip_begin_[k + 1]
-  std::vector<int> column_at_;       ///< by place across, -1 where none
-  std::vector<int> place_, column_;  ///< of each cell
-  std::vector<std::size_t> first_;   ///< each cell's diagonal entry
-  std::vector<Ghost> ghosts_;        ///< places in the margin that repeat a cell on a periodic axis
-  std::vector<float> entries_, x_,
-      y_;                         ///< x_, y_: a vector, zero where no cell is, and its product in the box
-  std::vector<float> in_strips_;  ///< the product's parts
+  std::vector<float> entries_;    ///< column by column; those of a column with the same neighbour together
+  std::vector<float> in_strips_;  ///< a product's parts
 };
 
-inline void PressureEntries::find_columns(const std::vector<Index<3>>& at) {
-  const auto across = [&](const Index<2>& a) { return static_cast<std::size_t>(a[0] * extent_[1] + a[1]); };
-  const int n = static_cast<int>(at.size());
-  column_at_.assign(across({extent_[0], 0}), -1);
-  columns_.clear();
-  for (const Index<3>& cell : at) {
-    int& k = column_at_[across({cell[0], cell[1]})];
-    if (k < 0) {
-      k = static_cast<int>(columns_.size());
-      columns_.push_back({.across = {cell[0], cell[1]}, .low = cell[2], .end = cell[2] + 1});
-    }
-    columns_[k].low = std::min(columns_[k].low, cell[2]);
-    columns_[k].end = std::max(columns_[k].end, cell[2] + 1);
-  }
-  const auto strip_of = [](const Column& column) { return column.across[1] / strip; };
-  std::sort(columns_.begin(), columns_.end(), [&](const Column& a, const Column& b) {
-    return std::pair(strip_of(a), a.across) < std::pair(strip_of(b), b.across);
-  });
-  strip_begin_.assign(static_cast<std::size_t>(n_strips() + 1), 0);
-  for (const Column& column : columns_) ++strip_begin_[strip_of(column) + 1];
-  std::partial_sum(strip_begin_.begin(), strip_begin_.end(), strip_begin_.begin());
-  std::size_t size = slack;
-  for (std::size_t k = 0; k < columns_.size(); ++k) {
-    Column& column = columns_[k];
-    column.at = size;
-    column_at_[across(column.across)] = static_cast<int>(k);
-    size += static_cast<std::size_t>(kept * column.size());
-  }
-  make_room(entries_, size + slack);
-  std::fill(entries_.begin(), entries_.end(), 0.0f);
-  make_room(place_, at.size()), make_room(column_, at.size()), make_room(first_, at.size());
-  for (int c = 0; c < n; ++c) {
-    column_[c] = column_at_[across({at[c][0], at[c][1]})];
-    const Column& column = columns_[column_[c]];
-    place_[c] = place(at[c]);
-    first_[c] = column.at + static_cast<std::size_t>(at[c][2] - column.low);
-  }
-}
-
-/// Places beside the ends of periodic axes; their columns are those of the cells that they repeat.
-inline void PressureEntries::find_ghosts(const ActiveGrid<3>& grid, const std::vector<Index<3>>& at) {
-  ghosts_.clear();
-  Index<2> turns{}, period{};
-  for (int d = 0; d < 2; ++d)
-    if (const Axis& axis = grid.axes[way_[d]]; axis.periodic) turns[d] = reach, period[d] = axis.n_cells;
-  if (turns == Index<2>{}) return;
-  for (int i = -turns[0]; i <= turns[0]; ++i)
-    for (int j = -turns[1]; j <= turns[1]; ++j)
-      for (std::size_t c = 0; c < at.size() && (i != 0 || j != 0); ++c) {
-        const Index<3> to{at[c][0] + i * period[0], at[c][1] + j * period[1], at[c][2]};
-        if (to[0] < 0 || to[0] >= extent_[0] || to[1] < 0 || to[1] >= extent_[1]) continue;
-        ghosts_.push_back({place(to), static_cast<int>(c)});
-        column_at_[to[0] * extent_[1] + to[1]] = column_[c];
-      }
-}
-
 inline void PressureEntries::reset(const ActiveGrid<3>& grid) {
-  const auto length = [&](int d) { return grid.axes[d].periodic ? 0 : grid.cell_map.extent[d]; };
-  way_ = {0, 1, 2};
-  std::stable_sort(way_.begin(), way_.end(), [&](int a, int b) { return length(a) < length(b); });
-  for (int d = 0; d < 3; ++d) extent_[d] = grid.cell_map.extent[way_[d]] + 2 * reach;
-  extent_[2] += batch_size;
-  std::vector<Index<3>> at(grid.cell_index.size());
-  for (std::size_t c = 0; c < at.size(); ++c)
-    for (int d = 0; d < 3; ++d) at[c][d] = grid.cell_index[c][way_[d]] - grid.cell_map.low[way_[d]] + reach;
-  find_columns(at);
-  find_ghosts(grid, at);
-  const auto box = static_cast<std::size_t>(extent_[0]) * extent_[1] * extent_[2] + slack;
-  x_.assign(box, 0.0f), y_.assign(box, 0.0f);
-  make_room(in_strips_, strip_size() * static_cast<std::size_t>(n_strips()) + slack);
+  layout.lay_out(grid);
+  make_room(entries_, kept * layout.n_places() + 2 * slack);
+  std::fill(entries_.begin(), entries_.end(), 0.0f);
+  make_room(in_strips_, strip_size() * static_cast<std::size_t>(layout.n_strips()) + slack);
 }
 
 inline void PressureEntries::add(const ActiveGrid<3>& grid, int c, int other, float value) {
   Index<3> step;
   for (int d = 0; d < 3; ++d) {
-    const Axis& axis = grid.axes[way_[d]];
-    step[d] = grid.cell_index[other][way_[d]] - grid.cell_index[c][way_[d]];
+    const Axis& axis = grid.axes[layout.way[d]];
+    step[d] = grid.cell_index[other][layout.way[d]] - grid.cell_index[c][layout.way[d]];
     if (axis.periodic && std::abs(step[d]) > reach) step[d] -= step[d] > 0 ? axis.n_cells : -axis.n_cells;
   }
   const int k = offset(step[0], step[1], step[2]), from = k < 0 ? other : c;
-  entries_[first_[from] + static_cast<std::size_t>(std::abs(k) * columns_[column_[from]].size())] += value;
+  const Column& column = layout.columns[layout.column_of[from]];
+  const int i = layout.place_of[from] - layout.begin_of(column);
+  entries_[slack + kept * column.first + static_cast<std::size_t>(std::abs(k) * column.size() + i)] += value;
 }
 
 template <class Use>
 void PressureEntries::for_each(Use use) const {
-  std::vector<int> cell(x_.size(), -1);
-  for (std::size_t c = 0; c < place_.size(); ++c) cell[place_[c]] = static_cast<int>(c);
-  for (const Ghost& g : ghosts_) cell[g.place] = g.cell;
-  for (int c = 0; c < static_cast<int>(place_.size()); ++c)
+  const int n = static_cast<int>(layout.place_of.size());
+  std::vector<int> cell(layout.x.size(), -1);
+  for (int c = 0; c < n; ++c) cell[layout.place_of[c]] = c;
+  for (const CellColumns::Ghost& g : layout.ghosts) cell[g.place] = g.cell;
+  for (int c = 0; c < n; ++c) {
+    const Column& column = layout.columns[layout.column_of[c]];
+    const float* const own = of_column(column) + (layout.place_of[c] - layout.begin_of(column));
     for (int a = 0; a <= reach; ++a)
       for (int b = a == 0 ? 0 : -reach; b <= reach; ++b)
         for (int d = a == 0 && b == 0 ? 0 : -reach; d <= reach; ++d)
-          if (const int other = cell[place_[c] + place({a, b, d})]; other >= 0)
-            use(c, other,
-                entries_[first_[c] +
-                         static_cast<std::size_t>(offset(a, b, d) * columns_[column_[c]].size())]);
+          if (const int other = cell[layout.place_of[c] + layout.place_at({a, b, d})]; other >= 0)
+            use(c, other, own[offset(a, b, d) * column.size()]);
+  }
 }
 
 /// What a column's entries make of x, sixteen cells at a time, for its own cells and for those of the columns
@@ -182,8 +106,8 @@ inline void PressureEntries::multiply_column(const Column& column, float* in_str
   const auto at = [](const float* from) { return Sixteen(from); };
   const auto add_to = [](float* y, const Lanes<float>& more) { Eigen::Map<Lanes<float>>{y} += more; };
   const int size = column.size();
-  const float* const x = &x_[place({column.across[0], column.across[1], column.low})];
-  const float* const own = &entries_[column.at];
+  const float* const x = &layout.x[layout.begin_of(column)];
+  const float* const own = of_column(column);
   float* const y = in_strip + column.low;
   for (int i = 0; i < size; i += batch_size) {
     Lanes<float> sum = at(own + i) * at(x + i);
@@ -193,13 +117,15 @@ inline void PressureEntries::multiply_column(const Column& column, float* in_str
   }
   for (int a = 0; a <= reach; ++a)
     for (int b = a == 0 ? 1 : -reach; b <= reach; ++b) {
-      const int k = column_at_[(column.across[0] + a) * extent_[1] + column.across[1] + b];
+      const int k = layout.beside(column, a, b);
       if (k < 0) continue;
       // Of both columns the places that have a neighbour in the other, from the own column's low on.
-      const int low = columns_[k].low - column.low, end = columns_[k].end - column.low;
+      const int low = layout.columns[k].low - column.low, end = layout.columns[k].end - column.low;
       const float* const entries = own + offset(a, b, 0) * size;
-      const float* const x_there = x + place({a, b, 0});
-      float* const y_there = y + (a * strip_span + b) * extent_[2];
+      for (int i = -reach * size; i < (reach + 1) * size; i += batch_size)
+        __builtin_prefetch(entries + asked_for + i);
+      const float* const x_there = x + layout.place_at({a, b, 0});
+      float* const y_there = y + (a * strip_span + b) * layout.extent[2];
       for (int i = std::max(0, low - reach); i < std::min(size, end + reach); i += batch_size) {
         Lanes<float> sum = at(entries + i) * at(x_there + i);
         for (int d = 1; d <= reach; ++d)
@@ -220,8 +146,8 @@ inline void PressureEntries::multiply_column(const Column& column, float* in_str
 /// The product along a column at `across`, of all strips that reach it.
 inline void PressureEntries::add_up_strips(const Index<2>& across, const Column& column) {
   const int first = std::max(0, (across[1] - reach) / strip);
-  const int last = std::min(n_strips() - 1, (across[1] + reach) / strip);
-  float* const y = &y_[place({across[0], across[1], column.low})];
+  const int last = std::min(layout.n_strips() - 1, (across[1] + reach) / strip);
+  float* const y = &layout.y[layout.place_at({across[0], across[1], column.low})];
   for (int which = first; which <= last; ++which) {
     const float* const part =
         &in_strips_[place_in_strip(which, across) + static_cast<std::size_t>(column.low)];
@@ -230,25 +156,26 @@ inline void PressureEntries::add_up_strips(const Index<2>& across, const Column&
 }
 
 inline void PressureEntries::multiply_in_region(const Eigen::VectorXf& p, Eigen::VectorXf& Sp) {
-  const int n = static_cast<int>(place_.size()), strips = n_strips();
+  const auto& ghosts = layout.ghosts;
+  const int n = static_cast<int>(layout.place_of.size());
 #pragma omp for schedule(static)
-  for (int c = 0; c < n; ++c) x_[place_[c]] = p[c];
+  for (int c = 0; c < n; ++c) layout.x[layout.place_of[c]] = p[c];
 #pragma omp for schedule(static)
-  for (std::size_t g = 0; g < ghosts_.size(); ++g) x_[ghosts_[g].place] = p[ghosts_[g].cell];
+  for (std::size_t g = 0; g < ghosts.size(); ++g) layout.x[ghosts[g].place] = p[ghosts[g].cell];
 #pragma omp for schedule(dynamic)
-  for (int which = 0; which < strips; ++which) {
+  for (int which = 0; which < layout.n_strips(); ++which) {
     std::fill_n(in_strips_.begin() + static_cast<std::ptrdiff_t>(strip_size()) * which, strip_size(), 0.0f);
-    for (int k = strip_begin_[which]; k < strip_begin_[which + 1]; ++k)
-      multiply_column(columns_[k], &in_strips_[place_in_strip(which, columns_[k].across)]);
+    for (int k = layout.strip_begin[which]; k < layout.strip_begin[which + 1]; ++k)
+      multiply_column(layout.columns[k], &in_strips_[place_in_strip(which, layout.columns[k].across)]);
   }
 #pragma omp for schedule(static)
-  for (int across = 0; across < static_cast<int>(column_at_.size()); ++across)
-    if (const int k = column_at_[across]; k >= 0)
-      add_up_strips({across / extent_[1], across % extent_[1]}, columns_[k]);
+  for (int across = 0; across < static_cast<int>(layout.column_at.size()); ++across)
+    if (const int k = layout.column_at[across]; k >= 0)
+      add_up_strips({across / layout.extent[1], across % layout.extent[1]}, layout.columns[k]);
 #pragma omp single
-  for (const Ghost& g : ghosts_) y_[place_[g.cell]] += y_[g.place];
+  for (const CellColumns::Ghost& g : ghosts) layout.y[layout.place_of[g.cell]] += layout.y[g.place];
 #pragma omp for schedule(static)
-  for (int c = 0; c < n; ++c) Sp[c] = y_[place_[c]];
+  for (int c = 0; c < n; ++c) Sp[c] = layout.y[layout.place_of[c]];
 }
 
 }  // namespace tremie

@@ -3,14 +3,15 @@
 // The pressures' system S p = (C^-1 + B G^-1 B') p of a body too large for a factor: conjugate gradients
 // with its entries, preconditioned on two levels.
 //
-// S is a Laplacian of the pressures with a little softness C^-1, so that its diagonal alone leaves as many
-// iterations as the pressure reaches cells, a hundred for a stiff bulk modulus and a long step. What is
-// smooth over three cells is taken out by a second level: one pressure for each cube of three cells a
-// direction, P' S P, a narrow band with a twenty-seventh of the unknowns, which is factorised:
+// S is a Laplacian of the pressures with a little softness C^-1. What reaches over single cells is taken out
+// by F' F, which comes near S^-1 (near_inverse.hpp); what is smooth over three cells by a second level: one
+// pressure for each cube of three cells a direction, P' S P, a narrow band with a twenty-seventh of the
+// unknowns, which is factorised. Both have part in what is smooth, so that the second one counts half:
 //
-//   M^-1 = diag(S)^-1 + P (P' S P)^-1 P'.
+//   M^-1 = F' F + 1/2 P (P' S P)^-1 P'.
 
 #include "libmpm/step/conjugate_gradients.hpp"
+#include "libmpm/step/near_inverse.hpp"
 #include "libmpm/step/pressure_entries.hpp"
 #include "libmpm/step/two_ended_cholesky.hpp"
 
@@ -33,7 +34,8 @@ class PressureIteration {
   void multiply(const Eigen::VectorXf& p, Eigen::VectorXf& Sp);
   void precondition(const Eigen::VectorXf& r, Eigen::VectorXf& z);
 
-  Eigen::VectorXf inverse_diagonal_, coarse_;
+  NearInverse near_;
+  Eigen::VectorXf coarse_;
   std::vector<int> cube_;        ///< of each cell
   std::vector<int> cube_begin_;  ///< cells cube_cell_[cube_begin_[k] .. cube_begin_[k + 1]) are in cube k
   std::vector<int> cube_cell_;
@@ -80,8 +82,7 @@ inline void PressureIteration::fill_coarse() {
 }
 
 inline bool PressureIteration::build(const ActiveGrid<3>& grid) {
-  inverse_diagonal_.resize(grid.n_cells());
-  for (int c = 0; c < grid.n_cells(); ++c) inverse_diagonal_[c] = 1.0f / entries.diagonal(c);
+  near_.build(entries);
   find_cubes(grid);
   fill_coarse();
   return band_.factorise();
@@ -103,9 +104,12 @@ inline void PressureIteration::precondition(const Eigen::VectorXf& r, Eigen::Vec
       for (int j = cube_begin_[k]; j < cube_begin_[k + 1]; ++j) coarse_[k] += r[cube_cell_[j]];
     }
     band_.solve_in_region(coarse_);
+    near_.apply_in_region(entries.layout, r);
 #pragma omp for schedule(static)
-    for (Eigen::Index c = 0; c < r.size(); ++c)
-      z[c] = inverse_diagonal_[c] * r[c] + coarse_[cube_[static_cast<std::size_t>(c)]];
+    for (Eigen::Index c = 0; c < r.size(); ++c) {
+      const auto cell = static_cast<std::size_t>(c);
+      z[c] = entries.layout.x[entries.layout.place_of[cell]] + 0.5f * coarse_[cube_[cell]];
+    }
   }
 }
 
