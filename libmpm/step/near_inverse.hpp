@@ -37,6 +37,10 @@ class NearInverse {
   /// Entry k of the cell at low + i of a column is [k size + i] of what this returns.
   const float* of_column(const Column& column) const { return &entries_[slack + kept * column.first]; }
   float* of_column(const Column& column) { return &entries_[slack + kept * column.first]; }
+  using Columns = std::array<const Column*, kept>;  ///< of the cells of a row of F; null where none
+  using Row = std::array<const float*, kept>;
+  static Row row_of(const PressureEntries& S, const Columns& there, int place);
+  static Mat<kept, kept> part_of(const Columns& there, const Row& row);
   void fill_column(const PressureEntries& S, const Column& column);
   void multiply_column(CellColumns& layout, const Column& column) const;
   void transposed_column(CellColumns& layout, const Column& column) const;
@@ -68,41 +72,51 @@ inline void store_lanes(float* y, const Lanes<float>& value, int n) {
 
 }  // namespace detail
 
-/// The row f of F of a cell: with S among the cells of the row, S g = e, the cell's own unit vector, and
-/// f = g / sqrt(g_own), so that F S F' has ones on its diagonal. A place without a cell, or with nothing on
-/// the diagonal of S, has S = 1 of its own; where rounding made the row's part of S indefinite the diagonal
-/// is left.
-inline void NearInverse::fill_column(const PressureEntries& S, const Column& column) {
-  const CellColumns& layout = S.layout;
-  std::array<const Column*, kept> there{};
+/// Of the cells of a row of F: where S has their diagonals, null where no cell is or nothing on the diagonal.
+inline NearInverse::Row NearInverse::row_of(const PressureEntries& S, const Columns& there, int place) {
+  Row row{};
+  for (std::size_t m = 0; m < kept; ++m) {
+    const int at = place + ahead[m][2];
+    if (there[m] == nullptr || at < there[m]->low || at >= there[m]->end) continue;
+    const float* const entry = S.of_column(*there[m]) + (at - there[m]->low);
+    if (*entry > 0.0f) row[m] = entry;
+  }
+  return row;
+}
+
+/// S among the cells of a row, on and below the diagonal; a place without a cell has 1 of its own.
+inline Mat<NearInverse::kept, NearInverse::kept> NearInverse::part_of(const Columns& there, const Row& row) {
+  Mat<kept, kept> part = Mat<kept, kept>::Identity();
   for (std::size_t m = 0; m < kept; ++m)
-    if (const int k = detail::own_column_beside(layout, column, ahead[m][0], ahead[m][1]); k >= 0)
-      there[m] = &layout.columns[k];
-  float* const own = of_column(column);
-  for (int i = 0; i < column.size(); ++i) {
-    Mat<kept, kept> near = Mat<kept, kept>::Identity();
-    std::array<const float*, kept> entry{};
-    for (std::size_t m = 0; m < kept; ++m) {
-      const int at = column.low + i + ahead[m][2];
-      if (there[m] == nullptr || at < there[m]->low || at >= there[m]->end) continue;
-      entry[m] = S.of_column(*there[m]) + (at - there[m]->low);
-      if (!(*entry[m] > 0.0f)) entry[m] = nullptr;
+    for (std::size_t n = 0; n <= m; ++n) {
+      if (row[m] == nullptr || row[n] == nullptr) continue;
+      const Index<3>&to = ahead[m], &from = ahead[n];
+      const int k = PressureEntries::offset(to[0] - from[0], to[1] - from[1], to[2] - from[2]);
+      const float value = k < 0 ? row[m][-k * there[m]->size()] : row[n][k * there[n]->size()];
+      part(static_cast<Eigen::Index>(m), static_cast<Eigen::Index>(n)) = static_cast<double>(value);
     }
-    if (entry[0] == nullptr) continue;
-    for (std::size_t m = 0; m < kept; ++m)
-      for (std::size_t n = 0; n <= m; ++n) {
-        if (entry[m] == nullptr || entry[n] == nullptr) continue;
-        const int k = PressureEntries::offset(ahead[m][0] - ahead[n][0], ahead[m][1] - ahead[n][1],
-                                              ahead[m][2] - ahead[n][2]);
-        const float value = k < 0 ? entry[m][-k * there[m]->size()] : entry[n][k * there[n]->size()];
-        near(static_cast<Eigen::Index>(m), static_cast<Eigen::Index>(n)) = static_cast<double>(value);
-      }
-    const Eigen::LLT<Mat<kept, kept>> factor(near);
+  return part;
+}
+
+/// The row f of F of a cell: with S among the cells of the row, S g = e, the cell's own unit vector, and
+/// f = g / sqrt(g_own), so that F S F' has ones on its diagonal. Where rounding made that part of S
+/// indefinite the diagonal is left.
+inline void NearInverse::fill_column(const PressureEntries& S, const Column& column) {
+  Columns there{};
+  for (std::size_t m = 0; m < kept; ++m)
+    if (const int k = detail::own_column_beside(S.layout, column, ahead[m][0], ahead[m][1]); k >= 0)
+      there[m] = &S.layout.columns[k];
+  const int size = column.size();
+  float* const own = of_column(column);
+  for (int i = 0; i < size; ++i) {
+    const Row row = row_of(S, there, column.low + i);
+    if (row[0] == nullptr) continue;
+    const Eigen::LLT<Mat<kept, kept>> factor(part_of(there, row));
     const Vec<kept> g = factor.solve(Vec<kept>::Unit(0));
-    const bool definite = factor.info() == Eigen::Success && g.allFinite();
-    for (int k = 0; k < kept; ++k)
-      own[k * column.size() + i] = definite ? static_cast<float>(g[k] / std::sqrt(g[0]))
-                                            : (k == 0 ? 1.0f / std::sqrt(*entry[0]) : 0.0f);
+    if (factor.info() == Eigen::Success && g.allFinite())
+      for (int k = 0; k < kept; ++k) own[k * size + i] = static_cast<float>(g[k] / std::sqrt(g[0]));
+    else
+      own[i] = 1.0f / std::sqrt(*row[0]);
   }
 }
 
