@@ -4,9 +4,9 @@
 // with its entries, preconditioned on two levels.
 //
 // S is a Laplacian of the pressures with a little softness C^-1. What reaches over single cells is taken out
-// by F' F, which comes near S^-1 (near_inverse.hpp); what is smooth over three cells by a second level: one
-// pressure for each cube of three cells a direction, P' S P, a narrow band with a twenty-seventh of the
-// unknowns, which is factorised. Both have part in what is smooth, so that the second one counts half:
+// by F' F, which comes near S^-1 (near_inverse.hpp); what is smooth over five cells by a second level: one
+// pressure for each cube of five cells a direction, P' S P, a narrow band with a 125th of the unknowns,
+// which is factorised. Both have part in what is smooth, so that the second one counts half:
 //
 //   M^-1 = F' F + 1/2 P (P' S P)^-1 P'.
 
@@ -19,7 +19,7 @@ namespace tremie {
 
 class PressureIteration {
  public:
-  static constexpr int cube = 3;  ///< cells a direction
+  static constexpr int cube = 5;  ///< cells a direction
 
   /// From `entries`; false where the second level is not positive definite.
   bool build(const ActiveGrid<3>& grid);

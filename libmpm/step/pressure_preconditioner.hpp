@@ -235,8 +235,8 @@ inline bool PressurePreconditioner::build(const ActiveGrid<3>& grid, const CellB
                                           const Quadrature<ThreeD>& quadrature,
                                           const std::vector<Mat<3, 3>>& G_inverse,
                                           const std::vector<double>& stiffness, double ratio) {
-  // What S^-1 misses, C makes ratio times as large.
-  reduction_ = std::clamp(0.3 / ratio, 5e-4, 1e-2);
+  // What S^-1 misses, C makes ratio times as large. Single precision leaves no less than a few millionths.
+  reduction_ = std::clamp(0.3 / ratio, 5e-6, 1e-2);
   rows_.build(grid, quadrature, G_inverse, stiffness);
   if (!by_band_) {
     auto& S = iteration_.entries;
