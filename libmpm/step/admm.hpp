@@ -29,6 +29,7 @@ struct AdmmSettings {
   double solve_share = 1.0;           ///< of the tolerated mismatch (squared) that a solve may leave
   int direct_below = 2000;            ///< unknowns; smaller systems are factorised
   double most_band_operations = 1e9;  ///< of a factor of the pressures' matrix; beyond, by iteration
+  double most_bulk_stiffness = 1e4;   ///< K dt over mu + r in a system; the rest by multipliers
 };
 
 namespace detail {
@@ -43,19 +44,20 @@ inline constexpr double fastest_rate = 100.0;
 inline constexpr double rate_at_rest = 0.01;
 
 /// Squares of the primal and dual mismatch and of the stress scale, of the rates and of what they miss,
-/// weighted by volume.
+/// weighted by volume; what the pressures miss, as the energy of a solve [W].
 struct Mismatch {
-  double primal = 0.0, dual = 0.0, scale = 0.0, missed = 0.0, rate = 0.0, volume = 0.0;
+  double primal = 0.0, dual = 0.0, scale = 0.0, missed = 0.0, rate = 0.0, volume = 0.0, pressure = 0.0;
 
   void add(const Mismatch& m) {
     primal += m.primal, dual += m.dual, scale += m.scale;
-    missed += m.missed, rate += m.rate, volume += m.volume;
+    missed += m.missed, rate += m.rate, volume += m.volume, pressure += m.pressure;
   }
-  /// In the stresses, and in the rates to a tenth: where the yield stress dwarfs r times the rate, the whole
-  /// rate could be missed within a tolerance on the stress.
+  /// How much of the rates may be missed, a tenth and what counts as rest: root of volume times square.
+  double tolerated_miss() const { return 0.1 * std::sqrt(rate) + rate_at_rest * std::sqrt(volume); }
+  /// In the stresses, and in the rates: where the yield stress dwarfs r times the rate, the whole rate could
+  /// be missed within a tolerance on the stress.
   bool within(double tolerance) const {
-    return std::max(primal, dual) <= tolerance * tolerance * scale &&
-           std::sqrt(missed) <= 0.1 * std::sqrt(rate) + rate_at_rest * std::sqrt(volume);
+    return std::max(primal, dual) <= tolerance * tolerance * scale && std::sqrt(missed) <= tolerated_miss();
   }
 };
 

@@ -24,7 +24,8 @@ inline SpaceDuals joined(const Duals<ThreeD>& duals, const Quadrature<ThreeD>& q
   return joined;
 }
 template <class Law>
-Duals<ThreeD> split(const Law& law, const SpaceDuals& joined, int n_cells) {
+Duals<ThreeD> split(const Law& law, const SpaceDuals& joined) {
+  const int n_cells = static_cast<int>(joined.batch.size()) * batch_size;
   Duals<ThreeD> duals;
   duals.stress.resize(n_cells), duals.rate.resize(n_cells);
   for (int c = 0; c < n_cells; ++c)
@@ -37,10 +38,46 @@ Duals<ThreeD> split(const Law& law, const SpaceDuals& joined, int n_cells) {
   return duals;
 }
 
-/// One pass over the cells at the velocities v: updates the duals if asked to, adds up the mismatch, and
-/// the forces R of stress, pressure and closed contacts on the nodes.
+/// Single precision forgets the viscosity beside a modulus that is millions of times stiffer over a step. The
+/// systems then have no more of it than `most` of K dt over the viscosity eta, and the rest is made up as in
+/// an augmented Lagrangian (Fortin, Glowinski 1983): p = p_offset - K dt div v, and p_offset moves to where p
+/// is what the mix's modulus makes of div v (follow_pressure()).
+inline void lower_modulus(double most, double eta, YieldProblem<ThreeD>& problem) {
+  const double ratio = problem.K * problem.dt / eta;
+  if (ratio <= most) return;
+  if (problem.p_offset.empty()) problem.p_offset = problem.quadrature.p;
+  problem.K_share *= most / ratio, problem.K *= most / ratio;
+}
+
+/// Moves the offset of cell c, whose pressure is p, and returns by how much: K_share of what p misses of the
+/// pressure that the mix's modulus makes of the same divergence.
+inline double follow_pressure(int c, double p, YieldProblem<ThreeD>& problem) {
+  const double p_0 = problem.quadrature.p[c], before = problem.p_offset[c];
+  problem.p_offset[c] = p_0 + (1.0 - problem.K_share) * (p - p_0);
+  return problem.p_offset[c] - before;
+}
+
+/// Pressures of a batch of cells that fall by K dt div v. Moves their offsets on if asked to, and adds what
+/// they missed, as the energy of its divergence at the mix's modulus, to `missed` [W].
+inline Lanes<double> pressures_of(int batch, const Lanes<double>& fall, bool update,
+                                  YieldProblem<ThreeD>& problem, double& missed) {
+  const int last = problem.grid.n_cells() - 1;
+  Lanes<double> p;
+  for (int l = 0; l < batch_size; ++l)
+    p[l] = problem.offset(std::min(batch * batch_size + l, last)) - fall[l];
+  if (problem.p_offset.empty() || !update) return p;
+  for (int l = 0, c = batch * batch_size; l < batch_size && c <= last; ++l, ++c) {
+    const double by = follow_pressure(c, p[l], problem);
+    p[l] += by;
+    missed += problem.quadrature.V_cell[c] * by * by / (problem.K_share * problem.K * problem.dt);
+  }
+  return p;
+}
+
+/// One pass over the cells at the velocities v: updates the duals and pressures if asked to, adds up the
+/// mismatch, and the forces R of stress, pressure and closed contacts on the nodes.
 template <class Law>
-Mismatch pass_over_cells(const YieldProblem<ThreeD>& problem, const Law& law, const AdmmSettings& settings,
+Mismatch pass_over_cells(YieldProblem<ThreeD>& problem, const Law& law, const AdmmSettings& settings,
                          double r, const std::vector<Vec<3>>& v, bool update, SpaceSystem& system,
                          SpaceDuals& duals, Eigen::VectorXd& R) {
   const double mu = problem.mu, rho = settings.over_relaxation, bulk = problem.K * problem.dt;
@@ -53,10 +90,11 @@ Mismatch pass_over_cells(const YieldProblem<ThreeD>& problem, const Law& law, co
     system.batches.gradients(b, v.data()->data(), G);
     const BatchVolumes<double> vol = batch_volumes(quad, b);
     SpaceDuals::Batch& own = duals.batch[b];
-    Lanes<double> p, mean = Lanes<double>::Zero(), primal = mean, dual = mean, scale = mean;
-    for (int l = 0; l < batch_size; ++l) p[l] = quad.p[std::min(b * batch_size + l, last)];
+    Lanes<double> mean = Lanes<double>::Zero(), missed = mean, moved = mean, scale = mean, rate = mean,
+                  volume = mean;
+    double missed_p = 0.0;
     for (int k = 0; k < 8; ++k) mean += vol.V[k] * (G.g[0][0][k] + G.g[1][1][k] + G.g[2][2][k]);
-    p -= bulk * vol.inverse_cell * mean;
+    const Lanes<double> p = pressures_of(b, bulk * vol.inverse_cell * mean, update, problem, missed_p);
     for (int k = 0; k < 8; ++k) {
       Lanes<double> q[5], s[5], d[5], div, stress[5], tau_y;
       strain_at(G, k, q, div);
@@ -69,17 +107,26 @@ Mismatch pass_over_cells(const YieldProblem<ThreeD>& problem, const Law& law, co
         split_dual(law, a, tau_y, r, s_new, d_new);
         own.tau_y[k] = tau_y;
         for (int j = 0; j < 5; ++j) {
-          primal += vol.V[k] * (q[j] - d_new[j]).square();
-          dual += vol.V[k] * (d_new[j] - d[j]).square();
+          missed += vol.V[k] * (q[j] - d_new[j]).square();
+          moved += vol.V[k] * (d_new[j] - d[j]).square();
           s[j] = s_new[j], d[j] = d_new[j];
         }
       }
-      scale += vol.V[k] * (tau_y + mu * norm(q) + no_stress).square();
+      const Lanes<double> gamma_dot = norm(q);
+      scale += vol.V[k] * (tau_y + mu * gamma_dot + no_stress).square();
+      rate += vol.V[k] * gamma_dot.square();
+      volume += vol.V[k];
       for (int j = 0; j < 5; ++j) stress[j] = -vol.V[k] * (mu * q[j] + s[j] + r * (q[j] - d[j]));
       stress_at<double>(stress, vol.V[k] * p, k, G);
     }
     system.batches.scatter(b, G, to);
-    part[b] = {r * r * sum_of(primal), r * r * sum_of(dual), sum_of(scale)};
+    part[b] = {.primal = r * r * sum_of(missed),
+               .dual = r * r * sum_of(moved),
+               .scale = sum_of(scale),
+               .missed = sum_of(missed),
+               .rate = sum_of(rate),
+               .volume = sum_of(volume),
+               .pressure = missed_p};
   };
   const auto give = [&](int strip, double* to) {
     for (int b = system.batches.first_batch(strip); b < system.batches.last_batch(strip); ++b)
@@ -95,7 +142,7 @@ Mismatch pass_over_cells(const YieldProblem<ThreeD>& problem, const Law& law, co
   });
   if (update) duals.r = r;
   Mismatch sum;
-  for (const Mismatch& m : part) sum.primal += m.primal, sum.dual += m.dual, sum.scale += m.scale;
+  for (const Mismatch& m : part) sum.add(m);
   return sum;
 }
 
@@ -120,23 +167,28 @@ SolveReport solve_admm_in_space(YieldProblem<ThreeD>& problem, const Law& law, c
                                 SpaceSystem& system, std::vector<Vec<3>>& v, SpaceDuals& duals) {
   const double r = detail::penalty(problem, settings.penalty_by_iteration), eta = problem.mu + r;
   SolveReport report;
+  detail::lower_modulus(settings.most_bulk_stiffness, eta, problem);
   system.set_up(problem, settings.most_band_operations);
   if (!system.prepare(problem, eta)) return report;
+  // An error e of v that a solve leaves has rates q(e), whose square over the volume is at most its energy
+  // (r, A^-1 r), here (r, P^-1 r), over eta, and is worth a stress of eta |q(e)|: no more of either than the
+  // iteration tolerates.
+  const auto tolerated_energy = [&](const detail::Mismatch& m) {
+    return std::min(std::pow(settings.tolerance, 2) * m.scale / eta, eta * std::pow(m.tolerated_miss(), 2));
+  };
   Eigen::VectorXd R;
   auto mismatch = detail::pass_over_cells(problem, law, settings, r, v, false, system, duals, R);
   for (; report.iterations < settings.max_iterations; ++report.iterations) {
     detail::residual_in_space(problem, v, R);
-    // An error e of v that the solve leaves is worth a stress of (mu + r) |q(e)|, whose square over the
-    // volume is at most mu + r times its energy (r, A^-1 r): no more of it than the iteration tolerates.
-    const double tolerated = std::pow(settings.tolerance, 2) * mismatch.scale / eta;
+    const double tolerated = tolerated_energy(mismatch);
     const double left = system.solve(
         problem, R, {.reduction = settings.solve_reduction, .enough = settings.solve_share * tolerated}, v);
     const bool contact_changed = update_active<3>(problem.contact, problem.grid.cell_nodes, v);
     const bool friction_settled =
         update_friction_admm<3>(problem.friction, v, settings.over_relaxation, settings.tolerance);
     mismatch = detail::pass_over_cells(problem, law, settings, r, v, true, system, duals, R);
-    report.converged =
-        mismatch.within(settings.tolerance) && friction_settled && !contact_changed && left <= tolerated;
+    report.converged = mismatch.within(settings.tolerance) && friction_settled && !contact_changed &&
+                       std::max(left, mismatch.pressure) <= std::min(tolerated, tolerated_energy(mismatch));
     if (report.converged) break;
   }
   return report;

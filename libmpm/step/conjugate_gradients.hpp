@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 namespace tremie {
@@ -39,8 +40,9 @@ struct SolveGoal {
   int most = 500;           ///< iterations
 };
 
-/// Solves A x = R from x = 0 and leaves the residual in R; returns the last (r, P^-1 r). multiply(x, out) and
-/// precondition(r, z) apply A and P^-1, both symmetric and positive definite.
+/// Solves A x = R from x = 0 and leaves the residual in R; returns the size of the last (r, P^-1 r).
+/// multiply(x, out) and precondition(r, z) apply A and P^-1, both symmetric and positive definite; it ends
+/// where rounding makes them seem not to be.
 template <class Vector, class Multiply, class Precondition>
 double conjugate_gradients(Multiply multiply, Precondition precondition, const SolveGoal& goal, Vector& R,
                            Vector& x) {
@@ -57,7 +59,9 @@ double conjugate_gradients(Multiply multiply, Precondition precondition, const S
   });
   for (int i = 0; rz > enough && i < goal.most; ++i) {
     multiply(p, Ap);
-    const double alpha = rz / block_dots(Ap, p)[0];
+    const double pAp = block_dots(Ap, p)[0];
+    if (!(pAp > 0.0)) break;
+    const double alpha = rz / pAp;
     const auto step = static_cast<Scalar>(alpha);
     for_each_block(n, [&](Eigen::Index j, Eigen::Index size) {
       x.segment(j, size) += step * p.segment(j, size);
@@ -73,7 +77,7 @@ double conjugate_gradients(Multiply multiply, Precondition precondition, const S
       p.segment(j, size) = z.segment(j, size) + again * p.segment(j, size);
     });
   }
-  return rz;
+  return std::abs(rz);
 }
 
 }  // namespace tremie

@@ -31,7 +31,7 @@ double energy(const YieldProblem<Space>& problem, const Law& law, const std::vec
     sum += 0.5 * problem.nodes.mass[i] / problem.dt * (v[i] - problem.nodes.v[i]).squaredNorm();
   for (int c = 0; c < problem.grid.n_cells(); ++c) {
     const double div = divergence(problem, v, c);
-    sum += quad.V_cell[c] * div * (0.5 * problem.K * problem.dt * div - quad.p[c]);
+    sum += quad.V_cell[c] * div * (0.5 * problem.K * problem.dt * div - problem.offset(c));
     for (int k = 0; k < power(2, Space::dim); ++k) {
       const auto q = strain_rate(problem, v, c, k);
       const double gamma_dot = q.norm(), excess = excess_divergence<Space>(q, div);

@@ -56,7 +56,7 @@ void carry_duals(const IndexMap<Space::dim>& old_map, const Law& law, const Step
       duals.space = carried(old_map, body.grid, duals.space);
       return;
     }
-    if (!duals.space.empty()) duals = split(law, duals.space, static_cast<int>(body.quadrature.V.size()));
+    if (!duals.space.empty()) duals = split(law, duals.space);
   }
   carry_duals<Space>(old_map, body.grid, body.duals);
 }
@@ -348,6 +348,17 @@ bool runs_away(const Body<Space>& body, double share, double dt, double cells = 
 template <class Space>
 bool starts_to_fall(const Body<Space>& body, const StepSettings& settings, double dt) {
   return runs_away(body, drops, dt, 1.0) || runs_away(body, settings.strays, dt, 10.0);
+}
+
+/// The duals that another try at a step over dt starts from: those that the step began with; in a large body,
+/// where no room is spent on them, what the last try found, or none if that ran away.
+template <class Space>
+void guess_again(const std::optional<Duals<Space>>& first, const StepSettings& settings, double dt,
+                 Body<Space>& body) {
+  if (first)
+    body.duals = *first;
+  else if constexpr (Space::dim == 3)
+    if (runs_away(body, settings.strays, dt)) body.duals.space = no_duals(body.grid.n_cells());
 }
 
 }  // namespace tremie::detail

@@ -44,14 +44,20 @@ struct YieldProblem {
   const ActiveGrid<D>& grid;
   const Quadrature<Space>& quadrature;
   const NodalState<D>& nodes;  ///< masses, and v* with gravity already in it
-  double dt, mu, K;
-  std::vector<char> fixed;                ///< a flag a component: prescribed by a wall
+  double dt, mu;
+  double K;                 ///< of the systems: the mix's, or as much as they can bear (admm_space.hpp)
+  std::vector<char> fixed;  ///< a flag a component: prescribed by a wall
   std::vector<ContactPoint<D>> contact;   ///< moving rigid walls
   std::vector<FrictionNode<D>> friction;  ///< Coulomb friction on flat walls, yield drag of side walls
   std::vector<BoundPoint<D>> bound;       ///< walls inside the grid
   std::vector<BoundPoint<D>> surface;     ///< head of the moving free surface, in a section
   std::vector<double> drag;               ///< viscous drag of side walls, a node each [kg/s]; empty: none
   double zeta = 0.0;                      ///< [Pa s], plane strain alone
+  std::vector<double> p_offset = {};      ///< of the cells' pressures [Pa]; empty: those before the step
+  double K_share = 1.0;                   ///< K over the mix's
+
+  /// Pressure of cell c without divergence.
+  double offset(int c) const { return p_offset.empty() ? quadrature.p[c] : p_offset[c]; }
 };
 
 struct SolveReport {
@@ -99,7 +105,7 @@ Eigen::VectorXd residual(const YieldProblem<Space>& problem, const std::vector<V
   std::vector<std::array<Vec<D>, n_local>> local(grid.cell_index.size());
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < grid.n_cells(); ++c) {
-    const double div = divergence(problem, v, c), p = quad.p[c] - problem.K * problem.dt * div;
+    const double div = divergence(problem, v, c), p = problem.offset(c) - problem.K * problem.dt * div;
     const auto& b = quad.divergence_rows(c);
     for (int i = 0; i < n_local; ++i) local[c][i] = quad.V_cell[c] * p * b[i];
     for (int k = 0; k < power(2, D); ++k) {

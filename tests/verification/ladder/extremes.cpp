@@ -207,6 +207,19 @@ void add_fixed_steps(std::vector<Extreme>& all) {
                             {set("model.time_step", dt, "s"), "test.lift_speed=instant"}));
 }
 
+/// Linear systems by iteration in single precision. A cone that does not yield spreads by 4 mm at most.
+void add_space(std::vector<Extreme>& all) {
+  for (double K : {3.3e4, 1e6, 2e9})
+    for (double mu : {1.0, 35.8, 1000.0})
+      for (double tau_0 : {54.0, 500.0, 5000.0}) {
+        all.push_back(slump("in space", fmt::format("K = {:g} Pa, {:g} Pa.s, {:g} Pa", K, mu, tau_0),
+                            {.tau_0 = tau_0, .mu = mu, .K = K, .cell = 0.004},
+                            {"model.space=quarter", "model.cell=15 mm", "model.points_per_cell=2"}));
+        all.back().monotone_key = fmt::format("in space {:g} {:g}", K, mu);
+        all.back().rank = tau_0;
+      }
+}
+
 /// The torque lies between those of the mix without and with all of its flocculation, by Reiner-Riwlin.
 std::string against_torque(const scene::Outcome& o, const Bingham& bingham, double lambda, double speed) {
   const auto torque = number_of(o, "torque_end_N_m");
@@ -315,6 +328,7 @@ std::vector<Extreme> extremes() {
   add_flocculation(all);
   add_cone_and_grid(all);
   add_fixed_steps(all);
+  add_space(all);
   add_vane(all);
   add_cell(all);
   return all;
