@@ -7,6 +7,9 @@
 #ifdef __linux__
 #include <sys/mman.h>
 #endif
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 namespace tremie {
 
@@ -14,6 +17,13 @@ namespace tremie {
 template <class T>
 void give_back(std::vector<T>& v) {
   std::vector<T>().swap(v);
+}
+
+/// Gives the system back what lies free within the heap, some twentieth of a large body's room.
+inline void give_back_free_heap() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
 }
 
 /// Asks the system to keep a large block in large pages: a body of a million points is read in order, over

@@ -36,13 +36,13 @@ StepReport implicit_step(Body<Space>& body, const Law& law, const StepSettings& 
   const std::vector<Vec<D>> v_old = body.nodes.v;
   const int attempts = settings.fixed_dt ? 1 : most_attempts;
   std::optional<Duals<Space>> guess;
-  if (attempts > 1) guess = body.duals;
+  if (attempts > 1 && !detail::by_iteration(body, settings)) guess = body.duals;
   std::optional<YieldProblem<Space>> posed;
   SolveReport solve;
   double dt = detail::choose_dt(body, settings);
   bool good = false;
   for (int attempt = 0; attempt < attempts && !good; ++attempt) {
-    if (attempt > 0) dt *= 0.5, body.duals = *guess;
+    if (attempt > 0) detail::guess_again(guess, settings, dt, body), dt *= 0.5;
     detail::pose(body, settings, wall, v_old, old_nodes, dt, posed);
     solve = detail::solve_step(*posed, law, settings, body);
     const bool falls =
@@ -70,7 +70,11 @@ StepReport implicit_step(Body<Space>& body, const Law& law, const StepSettings& 
   const bool even = Space::advects && settings.even_out.on, measured = settings.time_error > 0.0;
   const std::vector<Vec<D>> u =
       even ? detail::evening_shift(problem, settings, gamma_dot, body) : std::vector<Vec<D>>{};
-  if constexpr (D == 3) body.space_system.give_back();
+  if constexpr (D == 3)
+    if (detail::by_iteration(body, settings) && body.space_system.give_back()) {
+      body.quadrature = {};
+      give_back_free_heap();
+    }
   const std::vector<Vec<D>> v_before = measured ? body.points.v : std::vector<Vec<D>>{};
   grid_to_point(body.grid, body.v, v_old, settings.transfer, Space::advects ? dt : 0.0, body.points,
                 body.motion);

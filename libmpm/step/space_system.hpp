@@ -149,13 +149,14 @@ class SpaceSystem {
   void shear_rates(const YieldProblem<ThreeD>& problem, const std::vector<Vec<3>>& v,
                    std::vector<double>& of_cell, double& mean) const;
 
-  /// Gives back the room of a large body until the next set_up().
-  void give_back() {
-    if (!preconditioner.give_back()) return;
+  /// Gives back the room of a large body until the next set_up(); false if it is none.
+  bool give_back() {
+    if (!preconditioner.give_back()) return false;
     batches = {};
     forces = {};
     tremie::give_back(weights_);
     free_.resize(0), free_diagonal_.resize(0);
+    return true;
   }
 
   CellBatches batches;
