@@ -10,6 +10,7 @@
 
 #include "apparatus/engine.hpp"
 #include "apparatus/slump_flow/cone.hpp"
+#include "apparatus/slump_flow/energy_watch.hpp"
 #include "apparatus/slump_flow/reading.hpp"
 #include "apparatus/slump_flow/slump_flow.hpp"
 
@@ -184,6 +185,7 @@ Outcome run_in(const Scene& scene, const Law& law, const Observer& observer) {
   Outcome outcome;
   outcome.series.push_back(read(scene, body, {}));
   if (observer.on_frame) observer.on_frame(engine::frame_of(body));
+  EnergyWatch energy(energy_of<Space>(body.points, body.mix.K));
   engine::RestWatch watch;
   bool stopped = false, flows = true;
   double next_frame = scene.frame_interval;
@@ -198,14 +200,21 @@ Outcome run_in(const Scene& scene, const Law& law, const Observer& observer) {
     engine::count_step(body, step, outcome.checks, outcome.cost);
     engine::watch_fixed_step(body, scene.model, step, outcome.checks);
     if (engine::gave_up(step, outcome.status, outcome.checks, body.time)) break;
+    // What is elastic in it a body may turn into motion later: it counts for what it may have, not for what
+    // it has.
+    const bool pushed = wall && !cone_gone;
+    energy.see(pushed ? energy_of<Space>(body.points, body.mix.K) : energy_of_motion<Space>(body.points),
+               pushed);
     stopped = record(scene, body, step, observer, watch, outcome);
+    if (energy.ran_away()) outcome.status = Status::failed;
     if (observer.on_frame && body.time >= next_frame) {
       observer.on_frame(engine::frame_of(body));
       next_frame += scene.frame_interval;
     }
-    if (outcome.status == Status::interrupted) break;
+    if (outcome.status != Status::completed) break;
   }
   read_results(watch, stopped, outcome);
+  energy.tell(outcome.checks);
   engine::judge(body, start_mass, outcome.checks, outcome.cost);
   engine::judge_volume(outcome.series.front().volume_change, outcome.checks);
   judge_depth(scene, outcome);

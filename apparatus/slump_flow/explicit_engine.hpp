@@ -138,12 +138,13 @@ Outcome run_explicit_in(const Scene& scene, const Law& law, const Observer& obse
     outcome.cost.cells_active =
         std::max(outcome.cost.cells_active, count_active_cells<D>(body.grid.axes, body.points));
     stopped = record(scene, body, step, observer, watch, outcome);
+    if (energy.ran_away()) outcome.status = Status::failed;
     if (observer.on_frame && body.time >= next_frame) {
       observer.on_frame(frame_from(body));
       write_back(state, body);
       next_frame += scene.frame_interval;
     }
-    if (outcome.status == Status::interrupted) break;
+    if (outcome.status != Status::completed) break;
   }
   read_results(watch, stopped, outcome);
   limits.tell(outcome.cost.steps, outcome.checks);

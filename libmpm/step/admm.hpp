@@ -19,7 +19,7 @@
 namespace tremie {
 
 struct AdmmSettings {
-  double tolerance = 1e-3;  ///< of the stress mismatch, relative to the yield stress
+  double tolerance = 1e-3;  ///< of the stress mismatch, relative to the stresses
   int max_iterations = 1000;
   double over_relaxation = 1.6;  ///< rho
   double penalty = 3.0;          ///< r / mu
@@ -30,6 +30,8 @@ struct AdmmSettings {
   int direct_below = 2000;            ///< unknowns; smaller systems are factorised
   double most_band_operations = 1e9;  ///< of a factor of the pressures' matrix; beyond, by iteration
   double most_bulk_stiffness = 1e4;   ///< K dt over mu + r in a system; the rest by multipliers
+  double inertia_from = 10.0;         ///< mu: a cell's inertia beyond this is in the scale of the stresses,
+  double inertia_over = 0.3;          ///< over the time of a move by so many cells, or the step if longer
 };
 
 namespace detail {
@@ -116,16 +118,22 @@ double mean_yield_stress(const YieldProblem<Space>& problem) {
   return volume > 0.0 ? sum / volume : 0.0;
 }
 
+/// What the inertia of a cell opposes to its shear over a time t, as a viscosity [Pa s]: rho h^2/t.
+template <class Space>
+double inertial_viscosity(const YieldProblem<Space>& problem, double t) {
+  double mass = 0.0, volume = 0.0;
+  for (double m : problem.nodes.mass) mass += m;
+  for (double V : problem.quadrature.V_cell) volume += V;
+  const double h = problem.grid.cell_size_min();
+  return mass / volume * h * h / t;
+}
+
 /// The penalty r [Pa s]: a multiple of the viscosity, or the inertia of a cell or the yield stress over the
 /// fastest rate of a test where that is stiffer. A smaller one would hardly move the stresses in an
 /// iteration, and the mismatch r (q - d) would look converged from the start.
 template <class Space>
 double penalty(const YieldProblem<Space>& problem, double viscosities) {
-  double mass = 0.0, volume = 0.0;
-  for (double m : problem.nodes.mass) mass += m;
-  for (double V : problem.quadrature.V_cell) volume += V;
-  const double h = problem.grid.cell_size_min();
-  return std::max({viscosities * problem.mu, mass / volume * h * h / problem.dt,
+  return std::max({viscosities * problem.mu, inertial_viscosity(problem, problem.dt),
                    mean_yield_stress(problem) / fastest_rate});
 }
 

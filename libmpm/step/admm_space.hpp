@@ -74,13 +74,41 @@ inline Lanes<double> pressures_of(int batch, const Lanes<double>& fall, bool upd
   return p;
 }
 
+/// Speed of the nodes before the step, with what gravity gives them in it: root mean square by mass [m/s].
+inline double mean_speed(const YieldProblem<ThreeD>& problem) {
+  double mass = 0.0, sum = 0.0;
+  for (std::size_t i = 0; i < problem.nodes.mass.size(); ++i) {
+    mass += problem.nodes.mass[i];
+    sum += problem.nodes.mass[i] * problem.nodes.v[i].squaredNorm();
+  }
+  return mass > 0.0 ? std::sqrt(sum / mass) : 0.0;
+}
+
+/// Viscosities of an iteration [Pa s]: its penalty, and what opposes a rate. In water that is not the
+/// viscosity but the inertia, and r is as large. Measured by the viscosity the mismatch r (q - d) would have
+/// to be the smaller the shorter a step is, and none would be short enough to converge. The inertia is that
+/// over the time in which the concrete moves some of a cell, or what a step may miss would grow as it gets
+/// shorter.
+struct IterationViscosities {
+  double r, opposing;
+};
+inline IterationViscosities viscosities_of(const YieldProblem<ThreeD>& problem,
+                                           const AdmmSettings& settings) {
+  const double speed = mean_speed(problem), h = problem.grid.cell_size_min();
+  const double moved = settings.inertia_over * h / std::max(speed, 1e-300);
+  const double inertia = inertial_viscosity(problem, std::max(problem.dt, moved));
+  return {penalty(problem, settings.penalty_by_iteration),
+          problem.mu + std::max(0.0, inertia - settings.inertia_from * problem.mu)};
+}
+
 /// One pass over the cells at the velocities v: updates the duals and pressures if asked to, adds up the
 /// mismatch, and the forces R of stress, pressure and closed contacts on the nodes.
 template <class Law>
 Mismatch pass_over_cells(YieldProblem<ThreeD>& problem, const Law& law, const AdmmSettings& settings,
-                         double r, const std::vector<Vec<3>>& v, bool update, SpaceSystem& system,
-                         SpaceDuals& duals, Eigen::VectorXd& R) {
+                         const IterationViscosities& viscosities, const std::vector<Vec<3>>& v, bool update,
+                         SpaceSystem& system, SpaceDuals& duals, Eigen::VectorXd& R) {
   const double mu = problem.mu, rho = settings.over_relaxation, bulk = problem.K * problem.dt;
+  const auto [r, opposing] = viscosities;
   const auto& quad = problem.quadrature;
   const int last = problem.grid.n_cells() - 1;
   std::vector<Mismatch> part(duals.batch.size());
@@ -113,7 +141,7 @@ Mismatch pass_over_cells(YieldProblem<ThreeD>& problem, const Law& law, const Ad
         }
       }
       const Lanes<double> gamma_dot = norm(q);
-      scale += vol.V[k] * (tau_y + mu * gamma_dot + no_stress).square();
+      scale += vol.V[k] * (tau_y + opposing * gamma_dot + no_stress).square();
       rate += vol.V[k] * gamma_dot.square();
       volume += vol.V[k];
       for (int j = 0; j < 5; ++j) stress[j] = -vol.V[k] * (mu * q[j] + s[j] + r * (q[j] - d[j]));
@@ -165,7 +193,8 @@ inline void residual_in_space(const YieldProblem<ThreeD>& problem, const std::ve
 template <class Law>
 SolveReport solve_admm_in_space(YieldProblem<ThreeD>& problem, const Law& law, const AdmmSettings& settings,
                                 SpaceSystem& system, std::vector<Vec<3>>& v, SpaceDuals& duals) {
-  const double r = detail::penalty(problem, settings.penalty_by_iteration), eta = problem.mu + r;
+  const auto viscosities = detail::viscosities_of(problem, settings);
+  const double eta = problem.mu + viscosities.r;
   SolveReport report;
   detail::lower_modulus(settings.most_bulk_stiffness, eta, problem);
   system.set_up(problem, settings.most_band_operations);
@@ -177,7 +206,7 @@ SolveReport solve_admm_in_space(YieldProblem<ThreeD>& problem, const Law& law, c
     return std::min(std::pow(settings.tolerance, 2) * m.scale / eta, eta * std::pow(m.tolerated_miss(), 2));
   };
   Eigen::VectorXd R;
-  auto mismatch = detail::pass_over_cells(problem, law, settings, r, v, false, system, duals, R);
+  auto mismatch = detail::pass_over_cells(problem, law, settings, viscosities, v, false, system, duals, R);
   for (; report.iterations < settings.max_iterations; ++report.iterations) {
     detail::residual_in_space(problem, v, R);
     const double tolerated = tolerated_energy(mismatch);
@@ -186,7 +215,7 @@ SolveReport solve_admm_in_space(YieldProblem<ThreeD>& problem, const Law& law, c
     const bool contact_changed = update_active<3>(problem.contact, problem.grid.cell_nodes, v);
     const bool friction_settled =
         update_friction_admm<3>(problem.friction, v, settings.over_relaxation, settings.tolerance);
-    mismatch = detail::pass_over_cells(problem, law, settings, r, v, true, system, duals, R);
+    mismatch = detail::pass_over_cells(problem, law, settings, viscosities, v, true, system, duals, R);
     report.converged = mismatch.within(settings.tolerance) && friction_settled && !contact_changed &&
                        std::max(left, mismatch.pressure) <= std::min(tolerated, tolerated_energy(mismatch));
     if (report.converged) break;

@@ -122,6 +122,17 @@ TEST(SlumpFlowChecks, GainedEnergyIsMarked) {
   EXPECT_EQ(reasons({{90.0, false}, {101.0, false}}), 0U);
   EXPECT_EQ(reasons({{120.0, true}, {121.0, false}}), 0U);
   EXPECT_EQ(reasons({{80.0, true}, {90.0, false}, {70.0, false}}), 1U);
+  EXPECT_EQ(reasons({{500.0, true}, {400.0, false}}), 1U);  // more than a wall can give
+}
+
+// A body that has gained more than all that it had stays one that ran away, whatever it loses later.
+TEST(SlumpFlowChecks, TwiceTheEnergyRanAway) {
+  slump_flow::EnergyWatch watch(100.0);
+  watch.see(199.0, false);
+  EXPECT_FALSE(watch.ran_away());
+  watch.see(201.0, false);
+  watch.see(50.0, false);
+  EXPECT_TRUE(watch.ran_away());
 }
 
 // Explicit steps at 2 GPa run away on the paper's cells: single precision survives until 0.06 s, with a body

@@ -125,8 +125,8 @@ void law(benchmark::State& run) {
   if constexpr (Space::dim == 3) {
     Eigen::VectorXd R;
     for (auto _ : run)
-      detail::pass_over_cells(*set.problem, ExactBingham{}, set.settings.admm, r, b.v, true, b.space_system,
-                              b.duals.space, R);
+      detail::pass_over_cells(*set.problem, ExactBingham{}, set.settings.admm, {r, b.mix.mu}, b.v, true,
+                              b.space_system, b.duals.space, R);
   } else {
     const auto stress = [&](int c, int k, const Vec<Space::n_strain>& q) -> Vec<Space::n_strain> {
       return b.mix.mu * q + b.duals.stress[c][k] + r * (q - b.duals.rate[c][k]);
