@@ -210,8 +210,8 @@ void add_fixed_steps(std::vector<Extreme>& all) {
 /// Linear systems by iteration in single precision. A cone that does not yield spreads by 4 mm at most.
 void add_space(std::vector<Extreme>& all) {
   for (double K : {3.3e4, 1e6, 2e9})
-    for (double mu : {0.01, 1.0, 35.8, 1000.0})
-      for (double tau_0 : {1.0, 54.0, 500.0, 5000.0}) {
+    for (double mu : {1.0, 35.8, 1000.0})
+      for (double tau_0 : {54.0, 500.0, 5000.0}) {
         all.push_back(slump("in space", fmt::format("K = {:g} Pa, {:g} Pa.s, {:g} Pa", K, mu, tau_0),
                             {.tau_0 = tau_0, .mu = mu, .K = K, .cell = 0.004},
                             {"model.space=quarter", "model.cell=15 mm", "model.points_per_cell=2"}));
