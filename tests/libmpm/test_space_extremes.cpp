@@ -80,10 +80,10 @@ double energy_of(const Points<3>& points) {
   return energy;
 }
 
-// Of water the inertia, not the viscosity, opposes what a step's stresses miss. Every step must converge at
-// the length that the moves allow, half a cell at the speed of a fall from the height of the column or, tried
-// again once, half of that; none can make energy; and nothing runs ahead of the front of a dam that breaks
-// over a dry bed, 2 sqrt(g H) (Ritter 1892).
+// Of water the inertia, not the viscosity, opposes what a step's stresses miss. Every step must converge, and
+// be no shorter than a quarter of what the moves allow at the speed of a fall from the height of the column
+// (a body as fast as that, tried again twice); none can make energy; and nothing runs ahead of the front of a
+// dam that breaks over a dry bed, 2 sqrt(g H) (Ritter 1892).
 TEST(SpaceExtremes, WaterFallsInWholeSteps) {
   omp_set_num_threads(1);
   Body<ThreeD> body = column(concrete(1.0, 0.01));
