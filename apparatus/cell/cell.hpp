@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "apparatus/model.hpp"
+#include "apparatus/common/model.hpp"
 #include "apparatus/scene/keys.hpp"
-#include "apparatus/scene/outcome.hpp"
-#include "rheometer/material_cell.hpp"
+#include "apparatus/common/outcome.hpp"
+#include "rheometer/reference/material_cell.hpp"
 
 namespace tremie::cell {
 

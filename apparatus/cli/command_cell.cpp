@@ -8,7 +8,7 @@
 
 #include "apparatus/cell/cell.hpp"
 #include "apparatus/cli/commands.hpp"
-#include "apparatus/cli/rheometer_files.hpp"
+#include "apparatus/report/rheometer_files.hpp"
 #include "apparatus/cli/set_option.hpp"
 #include "apparatus/report/html.hpp"
 #include "apparatus/report/result_files.hpp"

@@ -8,7 +8,7 @@
 #include "apparatus/cell/cell.hpp"
 #include "apparatus/cli/commands.hpp"
 #include "apparatus/cli/set_option.hpp"
-#include "apparatus/scene/scene.hpp"
+#include "apparatus/registry/registry.hpp"
 
 namespace tremie::cli {
 namespace {

@@ -14,8 +14,8 @@
 #include "apparatus/cli/set_option.hpp"
 #include "apparatus/report/result_files.hpp"
 #include "apparatus/report/run_folder.hpp"
-#include "apparatus/scene/error_estimate.hpp"
-#include "apparatus/scene/scene.hpp"
+#include "apparatus/registry/error_estimate.hpp"
+#include "apparatus/registry/registry.hpp"
 
 namespace tremie::cli {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-#include "apparatus/scene/outcome.hpp"
+#include "apparatus/common/outcome.hpp"
 
 namespace tremie::cli {
 

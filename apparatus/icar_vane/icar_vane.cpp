@@ -70,7 +70,8 @@ std::vector<ProfilePoint> profile(const Body<typename Section::Space>& body, con
 
 template <class Section, class Law>
 Outcome run_section(const Scene& scene, const Section& section, const Law& law, const Observer& observer) {
-  auto body = section.body_at_rest(scene);
+  using Geometry = typename Section::Space;
+  ImplicitBody<Geometry> body{section.body_at_rest(scene)};
   engine::rest(body, scene.rest);
   StepSettings settings = engine::step_settings(scene.model);
   settings.keep_forces = true;
@@ -142,7 +143,7 @@ Estimate estimate(const Scene& scene) {
   refuse_what_has_no_engine(scene);
   return with_section(scene, [&](const auto& section) {
     auto body = section.body_at_rest(scene);
-    activate(body.grid, body.points);
+    activate(body.grid, body.points.x);
     Estimate e;
     e.points = static_cast<std::int64_t>(body.points.size());
     e.cells_active = body.grid.n_cells();

@@ -10,8 +10,8 @@
 #include <optional>
 #include <vector>
 
-#include "apparatus/model.hpp"
-#include "libmpm/law/mix.hpp"
+#include "apparatus/common/model.hpp"
+#include "libmpm/constitutive/mix.hpp"
 
 namespace tremie::icar_vane {
 

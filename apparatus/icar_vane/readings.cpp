@@ -6,9 +6,9 @@
 #include <cmath>
 #include <string>
 
-#include "rheometer/apparent_alpha.hpp"
-#include "rheometer/reiner_riwlin.hpp"
-#include "rheometer/thixotropic_couette.hpp"
+#include "rheometer/fits/apparent_alpha.hpp"
+#include "rheometer/reference/reiner_riwlin.hpp"
+#include "rheometer/reference/thixotropic_couette.hpp"
 
 namespace tremie::icar_vane {
 namespace {

@@ -5,10 +5,10 @@
 
 #include <numbers>
 
-#include "apparatus/engine.hpp"
+#include "apparatus/common/run.hpp"
 #include "apparatus/icar_vane/icar_vane.hpp"
-#include "libmpm/points/seed.hpp"
-#include "libmpm/transfer/refill.hpp"
+#include "libmpm/particles/seeding.hpp"
+#include "libmpm/implicit/particle_splitting.hpp"
 
 namespace tremie::icar_vane {
 

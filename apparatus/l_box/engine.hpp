@@ -2,7 +2,7 @@
 
 // The L-box test in one space for one yield law: set up, step until rest, read.
 
-#include "apparatus/engine.hpp"
+#include "apparatus/common/run.hpp"
 #include "apparatus/l_box/l_box.hpp"
 #include "apparatus/l_box/reading.hpp"
 #include "apparatus/l_box/set_up.hpp"
@@ -25,7 +25,7 @@ StepSettings step_settings(const Scene& scene) {
 }
 
 /// The longest step: the films on the column's walls drain ever more slowly, so may the steps go. In space
-/// gravity acts where the surface is at a step's start (libmpm/step/free_surface.hpp), and they do not grow.
+/// gravity acts where the surface is at a step's start (libmpm/implicit/free_surface.hpp), and they do not grow.
 template <class Space>
 double longest_dt(const Scene& scene, double time) {
   const double shortest = StepSettings{}.dt_max;
@@ -89,7 +89,7 @@ inline void judge_cells(const Scene& scene, const Results& r, Checks& checks) {
 
 template <class Space, class Law>
 Outcome run_in(const Scene& scene, const Law& law, const Observer& observer) {
-  Body<Space> body = filled_column<Space>(scene);
+  ImplicitBody<Space> body{filled_column<Space>(scene)};
   StepSettings settings = step_settings<Space>(scene);
   const double start_mass = engine::total_mass(body.points);
 

@@ -9,7 +9,7 @@ namespace {
 template <class Space>
 Estimate estimate_in(const Scene& scene) {
   Body<Space> body = filled_column<Space>(scene);
-  activate(body.grid, body.points);
+  activate(body.grid, body.points.x);
   Estimate e;
   e.points = static_cast<std::int64_t>(body.points.size());
   e.cells_active = body.grid.n_cells();

@@ -8,8 +8,8 @@
 #include <functional>
 #include <optional>
 
-#include "apparatus/model.hpp"
-#include "libmpm/law/mix.hpp"
+#include "apparatus/common/model.hpp"
+#include "libmpm/constitutive/mix.hpp"
 
 namespace tremie::l_box {
 
@@ -38,7 +38,7 @@ struct Scene {
   Model model;
   double frame_interval = 0.5;  ///< simulated time between frames [s]
   int threads = 1;
-  /// Against velocities that alternate from node to node (libmpm/step/yield_problem.hpp), in plastic
+  /// Against velocities that alternate from node to node (libmpm/implicit/problem/yield_problem.hpp), in plastic
   /// viscosities; no scene key, for studies.
   double alternating_viscosity = 100.0;
   bool side_walls_slip = false;  ///< in space; no scene key, for studies

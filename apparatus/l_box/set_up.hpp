@@ -10,9 +10,9 @@
 #include <numbers>
 #include <vector>
 
-#include "apparatus/engine.hpp"
+#include "apparatus/common/run.hpp"
 #include "apparatus/l_box/l_box.hpp"
-#include "libmpm/points/seed.hpp"
+#include "libmpm/particles/seeding.hpp"
 
 namespace tremie::l_box {
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "apparatus/scene/outcome.hpp"
+#include "apparatus/common/outcome.hpp"
 
 namespace tremie::report {
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "apparatus/scene/outcome.hpp"
+#include "apparatus/common/outcome.hpp"
 #include "libmpm/io/hdf5_file.hpp"
 
 namespace tremie::report {

@@ -7,9 +7,9 @@
 #include <numbers>
 
 #include "apparatus/slump_flow/slump_flow.hpp"
-#include "libmpm/contact/rigid_wall.hpp"
-#include "libmpm/law/equation_of_state.hpp"
-#include "libmpm/points/points.hpp"
+#include "libmpm/boundary/rigid_wall.hpp"
+#include "libmpm/constitutive/equation_of_state.hpp"
+#include "libmpm/particles/particles.hpp"
 
 namespace tremie::slump_flow {
 

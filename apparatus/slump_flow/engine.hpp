@@ -8,9 +8,9 @@
 #include <cstdio>
 #include <numbers>
 
-#include "apparatus/engine.hpp"
+#include "apparatus/common/run.hpp"
 #include "apparatus/slump_flow/cone.hpp"
-#include "apparatus/slump_flow/energy_watch.hpp"
+#include "apparatus/common/energy_watch.hpp"
 #include "apparatus/slump_flow/reading.hpp"
 #include "apparatus/slump_flow/slump_flow.hpp"
 
@@ -175,7 +175,7 @@ inline constexpr double flowing_tolerance = 4e-3, creeping = 1e-3;  // [1], [m/s
 
 template <class Space, class Law>
 Outcome run_in(const Scene& scene, const Law& law, const Observer& observer) {
-  Body<Space> body = filled_cone<Space>(scene);
+  ImplicitBody<Space> body{filled_cone<Space>(scene)};
   StepSettings settings = step_settings(scene);
   const double start_mass = engine::total_mass(body.points);
   const double reach = settings.wall_gap + settings.cfl * scene.model.cell[0];

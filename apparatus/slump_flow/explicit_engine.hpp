@@ -2,9 +2,9 @@
 
 // The slump-flow test by explicit steps: many short ones between two readings.
 
-#include "apparatus/slump_flow/energy_watch.hpp"
+#include "apparatus/common/energy_watch.hpp"
 #include "apparatus/slump_flow/engine.hpp"
-#include "libmpm/step/explicit_step.hpp"
+#include "libmpm/explicit/step.hpp"
 
 namespace tremie::slump_flow {
 
@@ -136,7 +136,7 @@ Outcome run_explicit_in(const Scene& scene, const Law& law, const Observer& obse
     write_back(state, body);
     energy.see(energy_of<Space>(body.points, body.mix.K), bool{wall});
     outcome.cost.cells_active =
-        std::max(outcome.cost.cells_active, count_active_cells<D>(body.grid.axes, body.points));
+        std::max(outcome.cost.cells_active, count_active_cells<D>(body.grid.axes, body.points.x));
     stopped = record(scene, body, step, observer, watch, outcome);
     if (energy.ran_away()) outcome.status = Status::failed;
     if (observer.on_frame && body.time >= next_frame) {

@@ -2,7 +2,7 @@
 
 // What is read off the concrete: spread and height.
 
-#include "libmpm/points/points.hpp"
+#include "libmpm/particles/particles.hpp"
 
 namespace tremie::slump_flow {
 

@@ -23,7 +23,7 @@ void refuse_what_has_no_engine(const Scene& scene) {
 template <class Space>
 void count(const Scene& scene, Estimate& e) {
   Body<Space> body = filled_cone<Space>(scene);
-  activate(body.grid, body.points);
+  activate(body.grid, body.points.x);
   e.points = static_cast<std::int64_t>(body.points.size());
   e.cells_active = body.grid.n_cells();
   const bool thixotropic = body.points.thixotropic();

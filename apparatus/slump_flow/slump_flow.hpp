@@ -7,8 +7,8 @@
 #include <functional>
 #include <optional>
 
-#include "apparatus/model.hpp"
-#include "libmpm/law/mix.hpp"
+#include "apparatus/common/model.hpp"
+#include "libmpm/constitutive/mix.hpp"
 
 namespace tremie::slump_flow {
 

@@ -11,9 +11,8 @@
 #include <vector>
 
 #include "libmpm/grid/axis.hpp"
-#include "libmpm/grid/room.hpp"
-#include "libmpm/points/points.hpp"
-#include "libmpm/space/spaces.hpp"
+#include "libmpm/parallel/buffers.hpp"
+#include "libmpm/geometry/geometries.hpp"
 
 namespace tremie {
 
@@ -255,15 +254,15 @@ void find_mirrors(ActiveGrid<D>& grid) {
 
 }  // namespace detail
 
-/// Finds the active cells alone, and sorts the points by cell: nodes are left as they are. Points must be
-/// finite.
+/// Finds the active cells alone, and sorts the points by cell: nodes are left as they are. Positions
+/// must be finite.
 template <int D>
-void activate_cells(ActiveGrid<D>& grid, const Points<D>& points) {
-  std::vector<Index<D>> cell(points.size());
+void activate_cells(ActiveGrid<D>& grid, const std::vector<Vec<D>>& x) {
+  std::vector<Index<D>> cell(x.size());
   Index<D> low, high;
   for (int d = 0; d < D; ++d) low[d] = high[d] = 0;
-  for (std::size_t p = 0; p < points.size(); ++p) {
-    cell[p] = detail::cell_of<D>(grid.axes, points.x[p]);
+  for (std::size_t p = 0; p < x.size(); ++p) {
+    cell[p] = detail::cell_of<D>(grid.axes, x[p]);
     for (int d = 0; d < D; ++d) {
       low[d] = p == 0 ? cell[p][d] : std::min(low[d], cell[p][d]);
       high[d] = p == 0 ? cell[p][d] : std::max(high[d], cell[p][d]);
@@ -273,19 +272,19 @@ void activate_cells(ActiveGrid<D>& grid, const Points<D>& points) {
   detail::sort_points_by_cell<D>(grid, cell);
 }
 
-/// Number of cells with points, without sorting them. Points must be finite.
+/// Number of cells with points, without sorting them. Positions must be finite.
 template <int D>
-std::int64_t count_active_cells(const std::array<Axis, D>& axes, const Points<D>& points) {
-  if (points.size() == 0) return 0;
-  Index<D> low = detail::cell_of<D>(axes, points.x.front()), high = low;
-  for (const Vec<D>& x : points.x) {
+std::int64_t count_active_cells(const std::array<Axis, D>& axes, const std::vector<Vec<D>>& positions) {
+  if (positions.empty()) return 0;
+  Index<D> low = detail::cell_of<D>(axes, positions.front()), high = low;
+  for (const Vec<D>& x : positions) {
     const Index<D> cell = detail::cell_of<D>(axes, x);
     for (int d = 0; d < D; ++d) low[d] = std::min(low[d], cell[d]), high[d] = std::max(high[d], cell[d]);
   }
   IndexMap<D> seen;
   seen.reset(low, high);
   std::int64_t cells = 0;
-  for (const Vec<D>& x : points.x) {
+  for (const Vec<D>& x : positions) {
     int& slot = seen.value[static_cast<std::size_t>(seen.offset(detail::cell_of<D>(axes, x)))];
     if (slot < 0) ++cells;
     slot = 0;
@@ -293,10 +292,11 @@ std::int64_t count_active_cells(const std::array<Axis, D>& axes, const Points<D>
   return cells;
 }
 
-/// Finds the active cells and nodes and sorts the points by cell. Points must be finite.
+/// Finds the active cells and nodes for points at the positions x, and sorts the points by cell. Positions must
+/// be finite.
 template <int D>
-void activate(ActiveGrid<D>& grid, const Points<D>& points) {
-  activate_cells(grid, points);
+void activate(ActiveGrid<D>& grid, const std::vector<Vec<D>>& x) {
+  activate_cells(grid, x);
   detail::number_nodes(grid);
   detail::find_mirrors(grid);
 }

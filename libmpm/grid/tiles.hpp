@@ -25,8 +25,8 @@
 #endif
 
 #include "libmpm/grid/active_grid.hpp"
-#include "libmpm/grid/crew.hpp"
-#include "libmpm/law/lanes.hpp"
+#include "libmpm/parallel/thread_pool.hpp"
+#include "libmpm/parallel/simd.hpp"
 
 namespace tremie {
 

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "libmpm/grid/active_grid.hpp"
-#include "libmpm/grid/cell_strips.hpp"
-#include "libmpm/points/points.hpp"
-#include "libmpm/space/motion.hpp"
-#include "libmpm/transfer/space_stencil.hpp"
+#include "libmpm/grid/node_reduction.hpp"
+#include "libmpm/particles/particles.hpp"
+#include "libmpm/particles/advection.hpp"
+#include "libmpm/transfer/stencil_3d.hpp"
 
 namespace tremie {
 

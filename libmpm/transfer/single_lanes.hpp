@@ -4,7 +4,7 @@
 // sixteen points, one lane a point, come there and back.
 
 #include "libmpm/grid/tiles.hpp"
-#include "libmpm/law/lanes.hpp"
+#include "libmpm/parallel/simd.hpp"
 #ifdef __AVX512F__
 #include <immintrin.h>
 #endif

@@ -14,7 +14,7 @@
 // are a cell away (splines next to a wall: half a cell): each row has one product with its weight, the rest
 // is sums.
 
-#include "libmpm/transfer/lane_sums.hpp"
+#include "libmpm/transfer/simd_sums.hpp"
 #include "libmpm/transfer/single_lanes.hpp"
 
 namespace tremie {

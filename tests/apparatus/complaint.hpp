@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "apparatus/scene/scene.hpp"
+#include "apparatus/registry/registry.hpp"
 
 namespace tremie::test {
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "apparatus/scene/error_estimate.hpp"
+#include "apparatus/registry/error_estimate.hpp"
 
 namespace tremie::scene {
 namespace {

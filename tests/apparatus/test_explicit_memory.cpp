@@ -4,7 +4,7 @@
 
 #include <cstdio>
 
-#include "apparatus/scene/scene.hpp"
+#include "apparatus/registry/registry.hpp"
 #include "tests/peak_memory.hpp"
 
 namespace tremie {

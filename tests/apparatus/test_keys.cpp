@@ -4,7 +4,7 @@
 
 #include "apparatus/scene/load.hpp"
 #include "apparatus/scene/resolved.hpp"
-#include "apparatus/scene/shared_keys.hpp"
+#include "apparatus/common/shared_keys.hpp"
 
 namespace tremie::scene {
 namespace {

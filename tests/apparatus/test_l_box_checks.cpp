@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "apparatus/scene/scene.hpp"
+#include "apparatus/registry/registry.hpp"
 
 namespace tremie {
 namespace {

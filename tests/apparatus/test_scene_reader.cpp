@@ -7,7 +7,7 @@
 #include <atomic>
 
 #include "apparatus/scene/resolved.hpp"
-#include "apparatus/scene/scene.hpp"
+#include "apparatus/registry/registry.hpp"
 #include "tests/apparatus/complaint.hpp"
 #include "tests/apparatus/temporary_folder.hpp"
 

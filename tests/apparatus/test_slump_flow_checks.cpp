@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "apparatus/engine.hpp"
-#include "apparatus/scene/scene.hpp"
-#include "apparatus/slump_flow/energy_watch.hpp"
+#include "apparatus/common/run.hpp"
+#include "apparatus/registry/registry.hpp"
+#include "apparatus/common/energy_watch.hpp"
 
 namespace tremie {
 namespace {

@@ -21,7 +21,7 @@ int main(int argc, char** argv) {
   scene.model.cell = {std::atof(argv[1]), 0.5 * std::atof(argv[1])};
   scene.duration = std::atof(argv[2]);
 
-  auto body = slump_flow::filled_cone<Axisymmetric>(scene);
+  ImplicitBody<Axisymmetric> body{slump_flow::filled_cone<Axisymmetric>(scene)};
   StepSettings settings = slump_flow::step_settings(scene);
   std::vector<slump_flow::Sample> series;
   long steps = 0;

@@ -7,8 +7,8 @@
 #include <benchmark/benchmark.h>
 #include <omp.h>
 
-#include "libmpm/step/explicit_step.hpp"
-#include "tests/libmpm/bodies.hpp"
+#include "libmpm/explicit/step.hpp"
+#include "apparatus/verification/references/bodies.hpp"
 
 namespace tremie {
 namespace {

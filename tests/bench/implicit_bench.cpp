@@ -10,8 +10,8 @@
 
 #include <optional>
 
-#include "libmpm/step/implicit_step.hpp"
-#include "tests/libmpm/bodies.hpp"
+#include "libmpm/implicit/step.hpp"
+#include "apparatus/verification/references/bodies.hpp"
 
 namespace tremie {
 namespace {
@@ -22,7 +22,7 @@ constexpr double dt = 0.02;
 template <class Space>
 struct Set {
   static constexpr int D = Space::dim;
-  Body<Space> body;
+  ImplicitBody<Space> body;
   StepSettings settings;
   std::optional<YieldProblem<Space>> problem;
   std::vector<double> gamma_dot;  ///< of the cells
@@ -48,7 +48,7 @@ struct Set {
     for (int i = 0; i < 2; ++i) implicit_step(body, ExactBingham{}, settings);
     const auto old = body.grid.cell_map;
     const auto old_nodes = body.grid.node_map;
-    activate(body.grid, body.points);
+    activate(body.grid, body.points.x);
     point_to_grid(body.grid, body.points, body.nodes);
     detail::carry_duals(old, ExactBingham{}, settings, body);
     lay_out_quadrature<Space>(body.grid, body.points, body.mix.tau_0, body.mix.K, body.quadrature);
@@ -72,7 +72,7 @@ struct Set {
 template <class Space>
 void sort_points(benchmark::State& run) {
   Set<Space> set(false);
-  for (auto _ : run) activate(set.body.grid, set.body.points);
+  for (auto _ : run) activate(set.body.grid, set.body.points.x);
   set.count(run);
 }
 

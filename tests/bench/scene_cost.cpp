@@ -19,7 +19,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/verification/study_output.hpp"
+#include "apparatus/verification/references/study_output.hpp"
 
 namespace {
 

@@ -2,8 +2,8 @@
 
 // Explicit steps of every kind, and a body for them.
 
-#include "libmpm/step/explicit_step.hpp"
-#include "tests/libmpm/bodies.hpp"
+#include "libmpm/explicit/step.hpp"
+#include "apparatus/verification/references/bodies.hpp"
 
 namespace tremie::test {
 

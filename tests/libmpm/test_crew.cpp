@@ -8,7 +8,7 @@
 #include <numeric>
 #include <thread>
 
-#include "libmpm/grid/crew.hpp"
+#include "libmpm/parallel/thread_pool.hpp"
 
 namespace tremie {
 namespace {

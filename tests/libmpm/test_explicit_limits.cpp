@@ -5,7 +5,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "libmpm/step/explicit_limits.hpp"
+#include "libmpm/explicit/stability_limits.hpp"
 
 namespace tremie {
 namespace {

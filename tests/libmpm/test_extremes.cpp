@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include "tests/libmpm/bodies.hpp"
+#include "apparatus/verification/references/bodies.hpp"
 
 namespace tremie {
 namespace {
@@ -12,8 +12,8 @@ using namespace test;
 
 constexpr double g = 9.81;
 
-Body<PlaneStrain> falling_block(const Mix& mix) {
-  Body<PlaneStrain> body;
+ImplicitBody<PlaneStrain> falling_block(const Mix& mix) {
+  ImplicitBody<PlaneStrain> body;
   body.mix = mix;
   body.gravity = {0.0, -g};
   body.grid.axes[0] = {.h = 0.05};
@@ -23,7 +23,7 @@ Body<PlaneStrain> falling_block(const Mix& mix) {
 }
 
 /// Kinetic energy and height above the floor.
-double energy(const Body<PlaneStrain>& body) {
+double energy(const ImplicitBody<PlaneStrain>& body) {
   double sum = kinetic_energy(body.points);
   for (std::size_t p = 0; p < body.points.size(); ++p) sum += body.points.mass[p] * g * body.points.x[p][1];
   return sum;
@@ -33,8 +33,8 @@ double energy(const Body<PlaneStrain>& body) {
 /// the speed that the step makes is what the default tolerance of 1e-3 of the yield stress may leave in a
 /// stiff body.
 template <class Law>
-void expect_honest(const Body<PlaneStrain>& start, const Law& law, StepSettings settings) {
-  Body<PlaneStrain> body = falling_block(start.mix), strict = falling_block(start.mix);
+void expect_honest(const ImplicitBody<PlaneStrain>& start, const Law& law, StepSettings settings) {
+  ImplicitBody<PlaneStrain> body = falling_block(start.mix), strict = falling_block(start.mix);
   body.points = start.points, strict.points = start.points;
   if (!implicit_step(body, law, settings).converged) return;
   settings.admm.tolerance = 1e-6;
@@ -93,7 +93,7 @@ TEST(Extremes, HundredTimesTheCourantStep) {
 
 TEST(Extremes, OnePoint) {
   omp_set_num_threads(1);
-  Body<PlaneStrain> body;
+  ImplicitBody<PlaneStrain> body;
   body.mix = concrete(54.0, 35.8);
   body.gravity = {0.0, -g};
   body.grid.axes[0] = {.h = 0.05};
@@ -110,7 +110,7 @@ TEST(Extremes, OnePoint) {
 
 Points<2> spread_for_a_while(int threads) {
   omp_set_num_threads(threads);
-  Body<Axisymmetric> body;
+  ImplicitBody<Axisymmetric> body;
   body.mix = concrete(54.0, 35.8);
   body.mix.thixotropy = Thixotropy{.A_thix = 1.3, .alpha = 0.0358};
   body.gravity = {0.0, -g};

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-#include "libmpm/law/flocculation.hpp"
+#include "libmpm/constitutive/flocculation.hpp"
 
 namespace tremie {
 namespace {

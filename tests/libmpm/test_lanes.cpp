@@ -6,10 +6,10 @@
 #include <set>
 #include <tuple>
 
-#include "libmpm/law/lane_laws.hpp"
-#include "libmpm/points/lane_points.hpp"
-#include "libmpm/space/gradients.hpp"
-#include "libmpm/transfer/lane_sums.hpp"
+#include "libmpm/constitutive/simd_laws.hpp"
+#include "libmpm/explicit/tiled_particles.hpp"
+#include "libmpm/geometry/gradients.hpp"
+#include "libmpm/transfer/simd_sums.hpp"
 
 namespace tremie {
 namespace {

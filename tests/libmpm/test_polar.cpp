@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include "tests/libmpm/bodies.hpp"
+#include "apparatus/verification/references/bodies.hpp"
 
 namespace tremie {
 namespace {
@@ -13,9 +13,9 @@ using namespace test;
 constexpr double r_in = 0.05, r_out = 0.15;
 
 /// A quarter of a ring of concrete between walls without friction, that turns as a whole.
-Body<Polar> turning_ring(double omega, double grid_rate) {
+ImplicitBody<Polar> turning_ring(double omega, double grid_rate) {
   omp_set_num_threads(1);
-  Body<Polar> body;
+  ImplicitBody<Polar> body;
   body.mix = concrete(54.0, 35.8);
   body.grid.axes[0] = {
       .h = 0.02, .origin = r_in, .low = FaceKind::free_slip, .high = FaceKind::free_slip, .n_cells = 5};
@@ -31,7 +31,7 @@ Body<Polar> turning_ring(double omega, double grid_rate) {
 
 /// About the axis, with the spin of the points' affine velocities: r v_theta summed over the nodes of the
 /// last step, which the transfer to the points keeps.
-double angular_momentum_of(const Body<Polar>& body) {
+double angular_momentum_of(const ImplicitBody<Polar>& body) {
   double sum = 0.0;
   for (int i = 0; i < body.grid.n_nodes(); ++i)
     sum += body.grid.node_position(i)[0] * body.nodes.mass[i] * body.v[i][1];

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "libmpm/step/near_inverse.hpp"
+#include "libmpm/implicit/schur/fsai.hpp"
 
 namespace tremie {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include "tests/libmpm/bodies.hpp"
+#include "apparatus/verification/references/bodies.hpp"
 
 namespace tremie {
 namespace {
@@ -15,9 +15,9 @@ constexpr double rho = 2400.0, g = 9.81, height = 0.3;
 /// A column of concrete, `levels` cells high, on a floor between free-slip walls; `hydrostatic`: it starts
 /// under its own weight, otherwise without pressure.
 template <class Space>
-Body<Space> column(int levels, int across, bool hydrostatic, double tau_0) {
+ImplicitBody<Space> column(int levels, int across, bool hydrostatic, double tau_0) {
   constexpr int D = Space::dim, up = Space::up;
-  Body<Space> body;
+  ImplicitBody<Space> body;
   body.mix = concrete(tau_0, 35.8);
   body.gravity[up] = -g;
   const double h = height / levels;
@@ -33,7 +33,7 @@ Body<Space> column(int levels, int across, bool hydrostatic, double tau_0) {
 
 /// Largest error of the pressure in a point, in units of rho g H, for a surface at `top`.
 template <class Space>
-double worst_pressure(const Body<Space>& body, double top) {
+double worst_pressure(const ImplicitBody<Space>& body, double top) {
   double worst = 0.0;
   for (std::size_t p = 0; p < body.points.size(); ++p) {
     const double head = pressure(body.points.ln_J[p], body.mix.K) / (rho * g);
@@ -81,7 +81,7 @@ TYPED_TEST(AllSpaces, HydrostaticStartNewtonian) {
 // at round-off (the pressure would give the axis cell 1 m/s in 1e-3 s if 1 % of it were out of balance).
 TYPED_TEST(AllSpaces, UniformPressureIsBalanced) {
   constexpr int D = TypeParam::dim;
-  Body<TypeParam> body;
+  ImplicitBody<TypeParam> body;
   body.mix = concrete(0.0, 35.8);
   for (Axis& a : body.grid.axes)
     a = {.h = 0.05, .low = FaceKind::free_slip, .high = FaceKind::free_slip, .n_cells = 4};
@@ -112,7 +112,7 @@ TEST(Rest, PressureFromNothing) {
 // bit.
 TYPED_TEST(AllSpaces, FreeFall) {
   constexpr int D = TypeParam::dim, up = TypeParam::up;
-  Body<TypeParam> body;
+  ImplicitBody<TypeParam> body;
   body.mix = concrete(54.0, 35.8);
   body.gravity[up] = -g;
   for (Axis& a : body.grid.axes) a.h = 0.05;
@@ -136,7 +136,7 @@ TYPED_TEST(AllSpaces, FreeFall) {
 // A body thrown through the grid keeps its shape and its momentum to round-off.
 TYPED_TEST(AllSpaces, Translation) {
   constexpr int D = TypeParam::dim;
-  Body<TypeParam> body;
+  ImplicitBody<TypeParam> body;
   body.mix = concrete(54.0, 35.8);
   for (Axis& a : body.grid.axes) a.h = 0.05;
   Vec<D> v = Vec<D>::Constant(0.7);
@@ -155,9 +155,9 @@ TYPED_TEST(AllSpaces, Translation) {
 
 /// A rotating body far from walls, without gravity.
 template <class Space>
-Body<Space> rotating(const Eigen::Vector3d& omega, double h, int per_cell) {
+ImplicitBody<Space> rotating(const Eigen::Vector3d& omega, double h, int per_cell) {
   constexpr int D = Space::dim;
-  Body<Space> body;
+  ImplicitBody<Space> body;
   body.mix = concrete(54.0, 35.8);
   for (Axis& a : body.grid.axes) a.h = h;
   fill_box(body, Vec<D>(Vec<D>::Constant(-0.1)), Vec<D>(Vec<D>::Constant(0.1)), per_cell);
@@ -174,7 +174,7 @@ Body<Space> rotating(const Eigen::Vector3d& omega, double h, int per_cell) {
 /// round-off. Points that are moved to even out the fill of cells carry their momentum elsewhere: with it on,
 /// 1e-5 is allowed.
 template <class Space>
-void expect_angular_momentum_kept(Body<Space> body, int steps, bool even_out, double tolerance) {
+void expect_angular_momentum_kept(ImplicitBody<Space> body, int steps, bool even_out, double tolerance) {
   omp_set_num_threads(1);
   const auto start = angular_momentum<Space::dim>(body);
   StepSettings settings;
@@ -221,7 +221,7 @@ TEST(Rotation, StaysRigid) {
 // cells.
 TEST(Periodic, UniformFlowWraps) {
   for (int n : {1, 2, 5}) {
-    Body<PlaneStrain> body;
+    ImplicitBody<PlaneStrain> body;
     body.mix = concrete(54.0, 35.8);
     body.grid.axes[0] = {.h = 0.05, .periodic = true, .n_cells = n};
     body.grid.axes[1] = {.h = 0.05, .low = FaceKind::free_slip};
@@ -246,7 +246,7 @@ TEST(Periodic, UniformFlowWraps) {
 TEST(Rest, VelocitiesThatAlternateAreResisted) {
   double speed[2];
   for (bool resisted : {false, true}) {
-    Body<PlaneStrain> body;
+    ImplicitBody<PlaneStrain> body;
     body.mix = concrete(0.0, 30.0);
     body.gravity = {0.0, -9.81};
     body.grid.axes[0] = {.h = 0.01, .low = FaceKind::free_slip, .high = FaceKind::free_slip, .n_cells = 6};

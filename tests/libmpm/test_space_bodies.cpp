@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include "tests/libmpm/bodies.hpp"
+#include "apparatus/verification/references/bodies.hpp"
 
 namespace tremie {
 namespace {
@@ -29,7 +29,7 @@ void expect_film(double most_band_operations) {
   omp_set_num_threads(1);
   const double H = 0.1, g = 0.6, rho = 2400.0, tau_0 = 54.0, mu = 35.8, plug = H - tau_0 / (rho * g);
   const Vec<3> along(0.8, 0.6, 0.0), across(-0.6, 0.8, 0.0);
-  Body<ThreeD> body;
+  ImplicitBody<ThreeD> body;
   body.mix = concrete(tau_0, mu);
   body.gravity = g * along - 9.79 * Vec<3>(Vec<3>::UnitZ());
   for (int d = 0; d < 2; ++d) body.grid.axes[d] = {.h = 0.02, .periodic = true, .n_cells = 3};
@@ -56,7 +56,7 @@ TEST(SpaceBodies, BinghamFilm) { expect_film(1e9); }
 TEST(SpaceBodies, BinghamFilmPressuresByIteration) { expect_film(0.0); }
 
 /// Points of a cylinder about the z axis that concrete sticks to, turning at `omega`, two a cell of size h.
-void add_cylinder(double r, double height, double omega, double h, Body<ThreeD>& body) {
+void add_cylinder(double r, double height, double omega, double h, ImplicitBody<ThreeD>& body) {
   const int around = static_cast<int>(std::ceil(4.0 * std::numbers::pi * r / h));
   for (int k = 0; k < std::lround(2.0 * height / h); ++k)
     for (int i = 0; i < around; ++i) {
@@ -72,7 +72,7 @@ void add_cylinder(double r, double height, double omega, double h, Body<ThreeD>&
 std::array<double, 2> couette_errors(int cells) {
   const double a = 0.05, b = 0.1, h = (b - a) / cells, height = 3 * h, omega = 1.0, tau_0 = 10.0, mu = 20.0;
   const double c = (2.0 * mu * omega + 2.0 * tau_0 * std::log(b / a)) / (1.0 / (a * a) - 1.0 / (b * b));
-  Body<ThreeD> body;
+  ImplicitBody<ThreeD> body;
   body.mix = concrete(tau_0, mu);
   for (int d = 0; d < 2; ++d) body.grid.axes[d] = {.h = h, .n_cells = 6 * cells};
   body.grid.axes[2] = {.h = h, .periodic = true, .n_cells = 3};
@@ -120,7 +120,7 @@ TEST(SpaceBodies, CouetteSection) {
 double speed_on_a_slope(double degrees) {
   omp_set_num_threads(1);
   const double theta = degrees * std::numbers::pi / 180.0;
-  Body<ThreeD> body;
+  ImplicitBody<ThreeD> body;
   body.mix = concrete(5e4, 100.0);
   body.gravity = 9.81 * Vec<3>(0.8 * std::sin(theta), 0.6 * std::sin(theta), -std::cos(theta));
   for (int d = 0; d < 2; ++d) body.grid.axes[d].h = 0.025;
@@ -151,9 +151,9 @@ TEST(SpaceBodies, FrictionHoldsAndSlides) {
 // the same result to the last bit.
 TEST(SpaceBodies, ALargerBoxCostsNothing) {
   omp_set_num_threads(1);
-  std::array<Body<ThreeD>, 2> bodies;
+  std::array<ImplicitBody<ThreeD>, 2> bodies;
   for (std::size_t i = 0; i < 2; ++i) {
-    Body<ThreeD>& body = bodies[i];
+    ImplicitBody<ThreeD>& body = bodies[i];
     body.mix = concrete(54.0, 35.8);
     body.gravity[2] = -9.81;
     for (Axis& axis : body.grid.axes)

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include "tests/libmpm/bodies.hpp"
+#include "apparatus/verification/references/bodies.hpp"
 
 namespace tremie {
 namespace {
@@ -13,8 +13,8 @@ using namespace test;
 constexpr double rho = 2400.0, g = 9.81, width = 0.1, height = 0.3;
 
 /// A column that stands on a floor that it sticks to, a quarter of it.
-Body<ThreeD> column(const Mix& mix) {
-  Body<ThreeD> body;
+ImplicitBody<ThreeD> column(const Mix& mix) {
+  ImplicitBody<ThreeD> body;
   body.mix = mix;
   body.gravity = {0.0, 0.0, -g};
   for (int d = 0; d < 2; ++d) body.grid.axes[d] = {.h = 0.02, .low = FaceKind::symmetry};
@@ -37,7 +37,7 @@ StepSettings flowing() {
 TEST(SpaceExtremes, AYieldStressOf5000PaStands) {
   omp_set_num_threads(1);
   for (double mu : {0.01, 35.8}) {
-    Body<ThreeD> body = column(concrete(5000.0, mu));
+    ImplicitBody<ThreeD> body = column(concrete(5000.0, mu));
     while (body.time < 1.0) {
       const StepReport step = implicit_step(body, ExactBingham{}, flowing());
       ASSERT_TRUE(step.converged);
@@ -57,7 +57,7 @@ TEST(SpaceExtremes, TwoGigapascalsKeepTheVolume) {
   double reach[3];
   const double K[] = {1e7, 2e9, 2e9}, most_band_operations[] = {1e9, 1e9, 0.0};
   for (int k = 0; k < 3; ++k) {
-    Body<ThreeD> body = column(concrete(500.0, 1.0, K[k]));
+    ImplicitBody<ThreeD> body = column(concrete(500.0, 1.0, K[k]));
     StepSettings settings = flowing();
     settings.admm.most_band_operations = most_band_operations[k];
     const double volume = width * width * height;
@@ -86,7 +86,7 @@ double energy_of(const Points<3>& points) {
 // dam that breaks over a dry bed, 2 sqrt(g H) (Ritter 1892).
 TEST(SpaceExtremes, WaterFallsInWholeSteps) {
   omp_set_num_threads(1);
-  Body<ThreeD> body = column(concrete(1.0, 0.01));
+  ImplicitBody<ThreeD> body = column(concrete(1.0, 0.01));
   const StepSettings settings = flowing();
   const double at_start = energy_of(body.points), front = 2.0 * std::sqrt(g * height);
   const double shortest = 0.25 * settings.cfl * 0.02 / std::sqrt(2.0 * g * height);

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "libmpm/step/implicit_step.hpp"
-#include "tests/libmpm/bodies.hpp"
+#include "libmpm/implicit/step.hpp"
+#include "apparatus/verification/references/bodies.hpp"
 #include "tests/peak_memory.hpp"
 
 namespace tremie {
@@ -11,7 +11,7 @@ namespace {
 
 /// Two steps of a thixotropic block of n^3 full cells, 8 points each, that slumps on a floor.
 bool slumps(int n) {
-  Body<ThreeD> body;
+  ImplicitBody<ThreeD> body;
   body.mix = test::concrete(54.0, 35.8, 1e6);
   body.gravity[2] = -9.81;
   const double h = 0.3 / n;

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include "tests/libmpm/bodies.hpp"
+#include "apparatus/verification/references/bodies.hpp"
 
 namespace tremie {
 namespace {
@@ -27,7 +27,7 @@ struct Holes {
         for (int k = 0; k < extent[2]; ++k)
           if (std::sin(12.9 * i + 78.2 * j + 37.7 * k) < 0.6)
             add_point<3>(points, Vec<3>(i + 0.4, j + 0.5, k + 0.7), 1.0, 1.0, 0.0);
-    activate(grid, points);
+    activate(grid, points.x);
     lay_out_quadrature<ThreeD>(grid, points, 1.0, 1.0, quadrature);
   }
 };
@@ -146,11 +146,11 @@ TEST(PressurePreconditioner, IsTheInverse) {
 
 // A product with the system counts each closed contact with a moving wall once: stiffness times N N' n n'.
 TEST(SpaceSystem, ProductsKnowClosedContacts) {
-  Body<ThreeD> body;
+  ImplicitBody<ThreeD> body;
   body.mix = concrete(54.0, 35.8);
   for (Axis& a : body.grid.axes) a.h = 0.02;
   fill_box(body, Vec<3>(Vec<3>::Zero()), Vec<3>(0.6, 0.2, 0.16), 2);
-  activate(body.grid, body.points);
+  activate(body.grid, body.points.x);
   point_to_grid(body.grid, body.points, body.nodes);
   lay_out_quadrature<ThreeD>(body.grid, body.points, body.mix.tau_0, body.mix.K, body.quadrature);
   const RigidWall<3> wall = [](const Vec<3>& x, double) -> std::optional<WallView<3>> {

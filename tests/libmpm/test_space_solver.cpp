@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include "tests/libmpm/bodies.hpp"
+#include "apparatus/verification/references/bodies.hpp"
 
 namespace tremie {
 namespace {
@@ -18,8 +18,8 @@ StepSettings by_iteration(double tolerance) {
 }
 
 /// A block of concrete on the floor between two planes of symmetry, free to slump.
-Body<ThreeD> block(double K, const Vec<3>& size = Vec<3>(0.06, 0.08, 0.09)) {
-  Body<ThreeD> body;
+ImplicitBody<ThreeD> block(double K, const Vec<3>& size = Vec<3>(0.06, 0.08, 0.09)) {
+  ImplicitBody<ThreeD> body;
   body.mix = concrete(54.0, 35.8, K);
   body.gravity[2] = -9.81;
   for (int d = 0; d < 2; ++d) body.grid.axes[d] = {.h = 0.02, .low = FaceKind::free_slip};
@@ -40,7 +40,7 @@ double difference(const Points<3>& a, const Points<3>& b) {
 TEST(SpaceSolver, AgreesWithTheFactorisedSystem) {
   omp_set_num_threads(1);
   for (double K : {33e3, 1e6, 2e9}) {
-    Body<ThreeD> direct = block(K), iterated = block(K);
+    ImplicitBody<ThreeD> direct = block(K), iterated = block(K);
     StepSettings exact = by_iteration(1e-5), tight = exact;
     exact.admm.max_iterations = tight.admm.max_iterations = 4000;
     exact.admm.direct_below = 1'000'000;
@@ -62,9 +62,9 @@ TEST(SpaceSolver, AgreesWithTheFactorisedSystem) {
 // A body of some hundred nodes is solved without a matrix by default, where a factor costs ten times as much;
 // a few cells are factorised, which keeps their momentum to round-off.
 TEST(SpaceSolver, TakesSmallBodiesToo) {
-  Body<ThreeD> few = block(1e6), small = block(1e6);
+  ImplicitBody<ThreeD> few = block(1e6), small = block(1e6);
   fill_box(small, Vec<3>(0.06, 0.0, 0.0), Vec<3>(0.24, 0.08, 0.09), 2);
-  activate(few.grid, few.points), activate(small.grid, small.points);
+  activate(few.grid, few.points.x), activate(small.grid, small.points.x);
   EXPECT_LE(small.grid.n_nodes(), 800);
   EXPECT_TRUE(detail::by_iteration(small, StepSettings{}));
   EXPECT_FALSE(detail::by_iteration(few, StepSettings{}));
@@ -81,7 +81,7 @@ TEST(SpaceSolver, BitsDoNotDependOnTheThreads) {
     return WallView<3>{0.32 - x[1], Vec<3>(0.0, -1.0, 0.0), Vec<3>::Zero()};
   };
   for (const auto& [K, most_band_operations] : {std::pair{1e6, 1e9}, {1e6, 0.0}, {2e9, 1e9}}) {
-    Body<ThreeD> one = block(K, some_strips), two = block(K, some_strips);
+    ImplicitBody<ThreeD> one = block(K, some_strips), two = block(K, some_strips);
     StepSettings settings = by_iteration(1e-3);
     settings.admm.most_band_operations = most_band_operations;
     settings.even_out.on = true;
@@ -109,7 +109,7 @@ TEST(SpaceSolver, StiffBulkCostsNoMore) {
   omp_set_num_threads(1);
   long long products[2];
   for (int i = 0; i < 2; ++i) {
-    Body<ThreeD> body = block(i == 0 ? 33e3 : 1e6);
+    ImplicitBody<ThreeD> body = block(i == 0 ? 33e3 : 1e6);
     StepSettings settings = by_iteration(1e-3);
     settings.even_out.on = true;
     for (int step = 0; step < 5; ++step) EXPECT_TRUE(implicit_step(body, ExactBingham{}, settings).converged);
@@ -123,8 +123,8 @@ TEST(SpaceSolver, StiffBulkCostsNoMore) {
 // away.
 TEST(SpaceSolver, GradientsAndTheirAdjoint) {
   omp_set_num_threads(1);
-  Body<ThreeD> body = block(1e6, some_strips);
-  activate(body.grid, body.points);
+  ImplicitBody<ThreeD> body = block(1e6, some_strips);
+  activate(body.grid, body.points.x);
   CellBatches batches;
   batches.lay_out(body.grid);
   const CellStrips& strips = batches.strips();
@@ -164,7 +164,7 @@ TEST(SpaceSolver, GradientsAndTheirAdjoint) {
 TEST(SpaceSolver, BallCollapsesSymmetrically) {
   omp_set_num_threads(1);
   const double R = 0.06;
-  Body<ThreeD> body;
+  ImplicitBody<ThreeD> body;
   body.mix = concrete(0.0, 20.0);
   body.gravity[2] = -9.81;
   for (int d = 0; d < 2; ++d) body.grid.axes[d].h = 0.02;

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "libmpm/grid/active_grid.hpp"
-#include "libmpm/space/polar.hpp"
+#include "libmpm/geometry/polar.hpp"
 #include "libmpm/transfer/apic.hpp"
 
 namespace tremie {
@@ -204,7 +204,7 @@ TEST(Transfer, MomentumOnShortPeriodicAxes) {
       mass += points.mass.back();
       momentum += points.mass.back() * points.v.back();
     }
-    activate(grid, points);
+    activate(grid, points.x);
     NodalState<2> nodes;
     point_to_grid(grid, points, nodes);
     double node_mass = 0.0;
@@ -234,7 +234,7 @@ TEST(Transfer, UniformVelocityOnShortPeriodicAxes) {
       add_point<2>(points, {0.1 * n * (p + 0.5) / 10.0, 0.05 + 0.017 * p}, 1.0, 1e-3, 0.0);
       points.v.back() = {3.0, -1.0};
     }
-    activate(grid, points);
+    activate(grid, points.x);
     NodalState<2> nodes;
     point_to_grid(grid, points, nodes);
     for (const Vec<2>& v : nodes.v) EXPECT_LE((v - Vec<2>(3.0, -1.0)).norm(), 1e-13);

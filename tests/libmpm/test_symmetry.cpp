@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include "tests/libmpm/bodies.hpp"
+#include "apparatus/verification/references/bodies.hpp"
 
 namespace tremie {
 namespace {
@@ -11,8 +11,8 @@ namespace {
 using namespace test;
 
 /// A block on the floor, free to slump; the whole of it, or the quarter between two planes of symmetry.
-Body<ThreeD> slumping(bool quarter, FaceKind floor) {
-  Body<ThreeD> body;
+ImplicitBody<ThreeD> slumping(bool quarter, FaceKind floor) {
+  ImplicitBody<ThreeD> body;
   body.mix = concrete(54.0, 35.8, 1e6);
   body.gravity[2] = -9.81;
   for (int d = 0; d < 2; ++d)
@@ -40,7 +40,7 @@ double difference(const Points<D>& part, const Points<D>& start, const Points<D>
 }
 
 template <class Space>
-double difference_after(int steps, Body<Space> part, Body<Space> whole, const StepSettings& settings) {
+double difference_after(int steps, ImplicitBody<Space> part, ImplicitBody<Space> whole, const StepSettings& settings) {
   omp_set_num_threads(1);
   const auto part_start = part.points, whole_start = whole.points;
   for (int i = 0; i < steps; ++i) {
@@ -74,7 +74,7 @@ TEST(Symmetry, QuarterIsTheWholeByIteration) {
   settings.admm.tolerance = 1e-5;
   const double symmetric =
       difference_after(3, slumping(true, FaceKind::no_slip), slumping(false, FaceKind::no_slip), settings);
-  Body<ThreeD> walled = slumping(true, FaceKind::no_slip);
+  ImplicitBody<ThreeD> walled = slumping(true, FaceKind::no_slip);
   for (int d = 0; d < 2; ++d) walled.grid.axes[d].low = FaceKind::free_slip;
   const double slippery =
       difference_after(3, std::move(walled), slumping(false, FaceKind::no_slip), settings);
@@ -87,8 +87,8 @@ TEST(Symmetry, QuarterIsTheWholeByIteration) {
 TEST(Symmetry, HalfIsTheWholeInAPlane) {
   for (const YieldMethod method : {YieldMethod::admm, YieldMethod::newton})
     for (const bool at_high_end : {false, true}) {
-      Body<PlaneStrain> half, whole;
-      for (Body<PlaneStrain>* body : {&half, &whole}) {
+      ImplicitBody<PlaneStrain> half, whole;
+      for (ImplicitBody<PlaneStrain>* body : {&half, &whole}) {
         body->mix = concrete(54.0, 35.8, 1e6);
         body->gravity[1] = -9.81;
         body->grid.axes[0] = {.h = 0.02};
@@ -111,7 +111,7 @@ TEST(Symmetry, HalfIsTheWholeInAPlane) {
 TEST(Symmetry, PressuresByIterationAgreeWithTheFactor) {
   omp_set_num_threads(1);
   for (const double K : {33e3, 1e6}) {
-    Body<ThreeD> factorised = slumping(true, FaceKind::no_slip), iterated = slumping(true, FaceKind::no_slip);
+    ImplicitBody<ThreeD> factorised = slumping(true, FaceKind::no_slip), iterated = slumping(true, FaceKind::no_slip);
     factorised.mix.K = iterated.mix.K = K;
     const auto start = factorised.points;
     StepSettings settings = settings_with(0), by_iteration = settings;

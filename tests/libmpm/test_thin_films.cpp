@@ -2,15 +2,15 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/libmpm/bodies.hpp"
+#include "apparatus/verification/references/bodies.hpp"
 
 namespace tremie {
 namespace {
 
 constexpr double rho_g = 2400.0 * 9.81, tau_0 = 50.0, mu = 30.0;
 
-Body<PlaneStrain> film_on_a_wall(double thickness) {
-  Body<PlaneStrain> body;
+ImplicitBody<PlaneStrain> film_on_a_wall(double thickness) {
+  ImplicitBody<PlaneStrain> body;
   body.mix = test::concrete(tau_0, mu);
   body.gravity = {0.0, -9.81};
   body.grid.axes[0] = {.h = 0.01, .low = FaceKind::no_slip};
@@ -47,7 +47,7 @@ TEST(ThinFilm, HoldsAndSlidesInPartOfACell) {
 /// A tilted pool of a viscous fluid in a box 0.4 m long, after 40 steps of a second: how much deeper the left
 /// quarter is than the right one, over the mean depth.
 double tilt_after_long_steps(bool moving_surface) {
-  Body<PlaneStrain> body;
+  ImplicitBody<PlaneStrain> body;
   body.mix = test::concrete(0.0, mu);
   body.gravity = {0.0, -9.81};
   body.grid.axes[0] = {.h = 0.02, .low = FaceKind::no_slip, .high = FaceKind::no_slip, .n_cells = 20};

@@ -6,8 +6,8 @@
 #include <chrono>
 #include <thread>
 
-#include "libmpm/grid/lay_tiles.hpp"
-#include "libmpm/grid/passes.hpp"
+#include "libmpm/explicit/tile_layout.hpp"
+#include "libmpm/explicit/passes.hpp"
 
 namespace tremie {
 namespace {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "libmpm/step/two_ended_cholesky.hpp"
+#include "libmpm/linear/twisted_cholesky.hpp"
 
 namespace tremie {
 namespace {

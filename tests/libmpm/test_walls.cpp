@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include "tests/libmpm/bodies.hpp"
+#include "apparatus/verification/references/bodies.hpp"
 
 namespace tremie {
 namespace {
@@ -14,8 +14,8 @@ constexpr double coefficient = 0.4, g = 9.81;
 
 /// A block 0.2 m long and 0.1 m high with a yield stress of twenty times its weight, on a floor with friction
 /// in a gravity field tilted by theta.
-Body<PlaneStrain> block_on_a_slope(double theta) {
-  Body<PlaneStrain> body;
+ImplicitBody<PlaneStrain> block_on_a_slope(double theta) {
+  ImplicitBody<PlaneStrain> body;
   body.mix = concrete(5e4, 100.0);
   body.gravity = {g * std::sin(theta), -g * std::cos(theta)};
   body.grid.axes[0] = {.h = 0.025};
@@ -67,7 +67,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, Friction, testing::Values(YieldMethod::admm, Y
 // together), stops, and the block goes on by itself with all its momentum: walls push, they do not pull.
 TEST(RigidWalls, PushAndSeparate) {
   omp_set_num_threads(1);
-  Body<PlaneStrain> body;
+  ImplicitBody<PlaneStrain> body;
   body.mix = concrete(5e4, 100.0);
   body.grid.axes[0] = {.h = 0.025};
   body.grid.axes[1] = {.h = 0.025, .low = FaceKind::free_slip};
@@ -97,12 +97,12 @@ TEST(RigidWalls, PushAndSeparate) {
 
 /// One point of 10 mm under the pressure p, `gap` from a wall at x = 0 that stands still.
 ContactPoint<2> contact_of_one(double gap, double p, double dt) {
-  Body<PlaneStrain> body;
+  ImplicitBody<PlaneStrain> body;
   body.mix = concrete(0.0, 100.0);
   for (int d = 0; d < 2; ++d) body.grid.axes[d] = {.h = 0.02};
   const double ln_J = ln_J_under(p, body.mix.K), V = 1e-4;
   add_point<2>(body.points, {0.1 + gap, 0.1}, body.mix.density * V, V * std::exp(-ln_J), ln_J);
-  activate(body.grid, body.points);
+  activate(body.grid, body.points.x);
   const RigidWall<2> wall = [](const Vec<2>& x, double) -> std::optional<WallView<2>> {
     return WallView<2>{x[0] - 0.1, Vec<2>(1.0, 0.0), Vec<2>(0.0, 0.0)};
   };

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "libmpm/law/yield_law.hpp"
+#include "libmpm/constitutive/yield_law.hpp"
 
 namespace tremie {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "rheometer/fit.hpp"
+#include "rheometer/fits/fit.hpp"
 #include "tests/rheometer/synthetic_record.hpp"
 
 namespace tremie {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "rheometer/statistics.hpp"
+#include "rheometer/fits/statistics.hpp"
 #include "tests/verification/fit_coverage.hpp"
 
 namespace tremie::study {

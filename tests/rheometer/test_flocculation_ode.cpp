@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "rheometer/flocculation_ode.hpp"
+#include "rheometer/reference/flocculation_ode.hpp"
 
 namespace tremie {
 namespace {

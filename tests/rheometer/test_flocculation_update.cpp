@@ -1,4 +1,4 @@
-// The per-point updates of lambda (libmpm/law/flocculation.hpp, flocculation_along.hpp) against closed forms
+// The per-point updates of lambda (libmpm/constitutive/flocculation.hpp, flocculation_along.hpp) against closed forms
 // and against CVODE.
 
 #include <gtest/gtest.h>
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "libmpm/law/flocculation_along.hpp"
-#include "rheometer/flocculation_ode.hpp"
+#include "libmpm/constitutive/flocculation_history.hpp"
+#include "rheometer/reference/flocculation_ode.hpp"
 
 namespace tremie {
 namespace {

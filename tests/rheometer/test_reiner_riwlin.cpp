@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "rheometer/reiner_riwlin.hpp"
+#include "rheometer/reference/reiner_riwlin.hpp"
 
 namespace tremie {
 namespace {

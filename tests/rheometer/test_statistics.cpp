@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "rheometer/statistics.hpp"
+#include "rheometer/fits/statistics.hpp"
 
 namespace tremie {
 namespace {

@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "rheometer/flocculation_ode.hpp"
-#include "rheometer/thixotropic_couette.hpp"
+#include "rheometer/reference/flocculation_ode.hpp"
+#include "rheometer/reference/thixotropic_couette.hpp"
 
 namespace tremie {
 namespace {

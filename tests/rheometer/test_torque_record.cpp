@@ -6,7 +6,7 @@
 #include <numbers>
 #include <string>
 
-#include "rheometer/torque_record.hpp"
+#include "rheometer/records/torque_record.hpp"
 
 namespace tremie {
 namespace {

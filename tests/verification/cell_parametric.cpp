@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "apparatus/cell/cell.hpp"
-#include "tests/verification/study_output.hpp"
+#include "apparatus/verification/references/study_output.hpp"
 
 namespace tremie::study {
 namespace {

@@ -6,8 +6,8 @@
 
 #include <numbers>
 
-#include "libmpm/step/explicit_step.hpp"
-#include "tests/libmpm/bodies.hpp"
+#include "libmpm/explicit/step.hpp"
+#include "apparatus/verification/references/bodies.hpp"
 
 namespace tremie {
 namespace {

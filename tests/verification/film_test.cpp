@@ -1,11 +1,11 @@
-// Rung 4: a Bingham film down an inclined plane and plane Poiseuille flow (tests/verification/film.hpp), at
+// Rung 4: a Bingham film down an inclined plane and plane Poiseuille flow (apparatus/verification/references/film.hpp), at
 // exact yield and with Papanastasiou's m = 100 s.
 
-#include "tests/verification/film.hpp"
+#include "apparatus/verification/references/film.hpp"
 
 #include <gtest/gtest.h>
 
-#include "tests/verification/ladder/rung.hpp"
+#include "apparatus/verification/case.hpp"
 
 namespace tremie {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "rheometer/fit.hpp"
+#include "rheometer/fits/fit.hpp"
 #include "tests/rheometer/synthetic_record.hpp"
 
 namespace tremie::study {

@@ -3,7 +3,7 @@
 // it in the middle too), forward Euler, CVODE and ARKODE.
 //
 //   d lambda/dt = A_thix/tau_0 - alpha lambda gamma_dot(t), and the gated form of it
-//   (libmpm/law/flocculation.hpp, flocculation_along.hpp)
+//   (libmpm/constitutive/flocculation.hpp, flocculation_along.hpp)
 //
 // Reference: CVODE at 1e-13. Error: the largest of |lambda - reference| over the comparison times, over the
 // largest lambda. CPU time: the smallest of nine means, each over as many repetitions as fill 4 ms, in three
@@ -20,8 +20,8 @@
 #include <iostream>
 #include <sstream>
 
-#include "tests/verification/flocculation_methods.hpp"
-#include "tests/verification/study_output.hpp"
+#include "apparatus/verification/references/flocculation_methods.hpp"
+#include "apparatus/verification/references/study_output.hpp"
 
 namespace tremie::study {
 namespace {

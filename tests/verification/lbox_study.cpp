@@ -10,8 +10,8 @@
 #include <map>
 #include <string>
 
-#include "tests/verification/lbox_case.hpp"
-#include "tests/verification/study_output.hpp"
+#include "apparatus/verification/references/lbox_case.hpp"
+#include "apparatus/verification/references/study_output.hpp"
 
 namespace {
 
@@ -193,7 +193,7 @@ int main(int argc, char** argv) {
         row({.tau_0 = tau_0, .cell_mm = 20.0, .side_walls = side_walls, .points = points}, md, csv, profiles);
   md << "\n## Without the viscosity against velocities that alternate from node to node\n\n15 Pa, plane, 20 "
         "mm "
-        "(libmpm/step/yield_problem.hpp); 100 μ is the default above.\n\n"
+        "(libmpm/implicit/problem/yield_problem.hpp); 100 μ is the default above.\n\n"
      << head;
   for (double zeta : {0.0, 100.0})
     row({.tau_0 = 15.0, .cell_mm = 20.0, .alternating_viscosity = zeta}, md, csv, profiles);

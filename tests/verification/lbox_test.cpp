@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/verification/lbox_case.hpp"
+#include "apparatus/verification/references/lbox_case.hpp"
 
 namespace tremie {
 namespace {

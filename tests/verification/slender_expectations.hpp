@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/verification/slender.hpp"
+#include "apparatus/verification/references/slender.hpp"
 
 namespace tremie::verification {
 

@@ -1,7 +1,7 @@
 // The long runs: the slender case on fine cells, Mix A to its rest, a fluid that levels in the L-box.
 
 #include "apparatus/slump_flow/slump_flow.hpp"
-#include "tests/verification/lbox_case.hpp"
+#include "apparatus/verification/references/lbox_case.hpp"
 #include "tests/verification/slender_expectations.hpp"
 
 namespace tremie {

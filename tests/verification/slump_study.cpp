@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/verification/finite_elements.hpp"
-#include "tests/verification/study_output.hpp"
+#include "apparatus/verification/references/finite_elements.hpp"
+#include "apparatus/verification/references/study_output.hpp"
 
 namespace {
 

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/verification/finite_elements.hpp"
-#include "tests/verification/lubrication.hpp"
+#include "apparatus/verification/references/finite_elements.hpp"
+#include "apparatus/verification/references/lubrication.hpp"
 
 namespace tremie {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/verification/huppert.hpp"
+#include "apparatus/verification/references/huppert.hpp"
 #include "tests/verification/slender_expectations.hpp"
 
 namespace tremie {

@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "tests/verification/ladder/document.hpp"
-#include "tests/verification/ladder/extremes.hpp"
-#include "tests/verification/ladder/rung.hpp"
+#include "apparatus/verification/document.hpp"
+#include "apparatus/verification/extremes.hpp"
+#include "apparatus/verification/case.hpp"
 
 namespace tremie::verification {
 namespace {

@@ -7,11 +7,11 @@
 #include <numbers>
 
 #include "apparatus/icar_vane/icar_vane.hpp"
-#include "libmpm/law/yield_law.hpp"
-#include "libmpm/points/seed.hpp"
-#include "libmpm/step/implicit_step.hpp"
-#include "rheometer/reiner_riwlin.hpp"
-#include "tests/verification/vane_finite_elements.hpp"
+#include "libmpm/constitutive/yield_law.hpp"
+#include "libmpm/particles/seeding.hpp"
+#include "libmpm/implicit/step.hpp"
+#include "rheometer/reference/reiner_riwlin.hpp"
+#include "apparatus/verification/references/vane_finite_elements.hpp"
 
 namespace tremie::icar_vane {
 namespace {
@@ -34,7 +34,7 @@ Scene plane(double tau_0, double duration = 1.0) {
 /// Torque [N m] on a solid cylinder, in polar cells of size h: a quarter of the gap, steady.
 double cylinder_torque(double tau_0, double h) {
   const Vane vane;
-  Body<Polar> body;
+  ImplicitBody<Polar> body;
   body.mix.tau_0 = tau_0;
   body.mix.mu = mu;
   const int n = static_cast<int>(std::lround((vane.container_radius - vane.radius) / h)), around = 8;

@@ -1,0 +1,191 @@
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "apparatus/cell/cell.hpp"
+#include "apparatus/scene/document.hpp"
+#include "apparatus/scene/input_error.hpp"
+#include "apparatus/scene/load.hpp"
+#include "apparatus/scene/resolved.hpp"
+#include "apparatus/common/shared_keys.hpp"
+#include "rheometer/records/torque_record.hpp"
+
+namespace tremie::cell {
+
+namespace {
+
+using scene::Dimension;
+using scene::Kind;
+using scene::Section;
+using scene::Values;
+
+const scene::Words<YieldKind> yield_words{{"exact", YieldKind::exact},
+                                          {"papanastasiou", YieldKind::papanastasiou},
+                                          {"bi_viscous", YieldKind::bi_viscous}};
+
+Section top_section() {
+  return {
+      .name = "",
+      .help = "",
+      .keys = {
+          {.name = "history",
+           .kind = Kind::text,
+           .example = "history.csv",
+           .help = "a CSV of time_s,shear_rate_per_s beside the scene, in place of the tables [[history]]"}}};
+}
+
+Section history_section() {
+  Section section{
+      .name = "history", .help = "A piece of the shear rate's history, linear in time.", .repeated = true};
+  section.keys = {
+      {.name = "duration",
+       .dimension = Dimension::time,
+       .range = scene::positive,
+       .required = true,
+       .example = "100 s"},
+      {.name = "from", .dimension = Dimension::rate, .range = scene::not_negative, .fallback = "0 1/s"},
+      {.name = "to",
+       .dimension = Dimension::rate,
+       .range = scene::not_negative,
+       .example = "0 1/s",
+       .help = "without it the rate stays"}};
+  return section;
+}
+
+Section test_section() {
+  return {
+      .name = "test",
+      .help = "Before the history.",
+      .keys = {
+          {.name = "rest", .dimension = Dimension::time, .range = scene::not_negative, .fallback = "0 s"}}};
+}
+
+Section model_section() {
+  Section section{.name = "model", .help = "How it is computed."};
+  section.keys = {
+      {.name = "yield", .kind = Kind::choice, .words = scene::names(yield_words), .fallback = "exact"},
+      {.name = "regularisation",
+       .dimension = Dimension::time,
+       .range = scene::positive,
+       .fallback = "5 s",
+       .only_with = scene::Condition{"yield", {"papanastasiou"}},
+       .help = "m"},
+      {.name = "critical_shear_rate",
+       .dimension = Dimension::rate,
+       .range = scene::positive,
+       .fallback = "0.01 1/s",
+       .only_with = scene::Condition{"yield", {"bi_viscous"}},
+       .help = "gamma_c of the yield law"},
+      {.name = "time_step",
+       .dimension = Dimension::time,
+       .range = scene::positive,
+       .words = {"auto"},
+       .fallback = "auto",
+       .help = "of the flocculation's update; auto: about 2000 over the history"}};
+  return section;
+}
+
+/// The rows of the CSV as the tables that they stand for, so that the resolved scene needs no other file.
+void inline_csv(Values& values, const std::filesystem::path& folder) {
+  const scene::Origin origin = values.at("history").origin;
+  const std::string path = (folder / values.word("history")).string();
+  std::vector<ShearSegment> segments;
+  try {
+    segments = parse_shear_history(read_text_file(path), path);
+  } catch (const RecordError& error) {
+    throw scene::InputError(error.what());
+  }
+  values.drop("history");
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    const std::string place = fmt::format("history[{}]", i);
+    values.sections[place] = origin;
+    const auto put = [&](const char* key, double value) {
+      values.set_number(place + "." + key, value, origin.layer, "");
+      values.entries[place + "." + key].origin = origin;
+    };
+    put("duration", segments[i].duration);
+    put("from", segments[i].from);
+    put("to", segments[i].to);
+  }
+}
+
+std::vector<ShearSegment> read_history(const Values& values) {
+  std::vector<ShearSegment> history;
+  for (std::size_t i = 0; i < values.count("history"); ++i) {
+    const std::string place = fmt::format("history[{}].", i);
+    const double from = values.number(place + "from");
+    history.push_back({values.number(place + "duration"), from,
+                       values.has(place + "to") ? values.number(place + "to") : from});
+  }
+  return history;
+}
+
+Scene build(scene::Loaded loaded) {
+  Values& values = loaded.values;
+  if (values.has("history")) inline_csv(values, std::filesystem::path(loaded.path).parent_path());
+  Scene scene;
+  scene.name = loaded.name;
+  scene.cell.mix = scene::read_mix(values);
+  scene.cell.rest = values.number("test.rest");
+  scene.cell.history = read_history(values);
+  if (scene.cell.history.empty())
+    throw scene::InputError(
+        loaded.path +
+        ": history: missing; give tables [[history]] with duration, from and to, or history = "
+        "\"file.csv\" above the first table");
+  scene.cell.time_step = values.number_unless("model.time_step", "auto");
+  scene.yield = values.choice("model.yield", yield_words);
+  if (values.has("model.regularisation")) scene.regularisation = values.number("model.regularisation");
+  if (values.has("model.critical_shear_rate"))
+    scene.critical_shear_rate = values.number("model.critical_shear_rate");
+  scene.resolved = scene::write_resolved(loaded.schema, values);
+  return scene;
+}
+
+}  // namespace
+
+scene::ApparatusKeys keys() {
+  scene::ApparatusKeys keys{.name = "cell",
+                            .help = "One material cell at a prescribed shear rate: tremie cell.",
+                            .schema = {top_section()},
+                            .presets = {},
+                            .settle = scene::settle_mix};
+  for (const Section& section : scene::mix_sections()) keys.schema.push_back(section);
+  keys.schema.push_back(test_section());
+  keys.schema.push_back(history_section());
+  keys.schema.push_back(model_section());
+  return keys;
+}
+
+bool is_cell(const std::filesystem::path& path) {
+  const scene::Node document = scene::parse_file(path);
+  const scene::Node* node = scene::find(document, "apparatus");
+  const auto* name = node ? std::get_if<std::string>(&node->value) : nullptr;
+  return name && *name == "cell";
+}
+
+Scene read(const std::filesystem::path& path, const std::vector<std::string>& overrides) {
+  return build(load({path, overrides, {}}, std::vector{keys()}));
+}
+
+Scene read_text(const std::string& text, const std::string& name, const std::vector<std::string>& overrides) {
+  return build(load({name, overrides, text}, std::vector{keys()}));
+}
+
+CellResult run(const Scene& scene) {
+  try {
+    switch (scene.yield) {
+      case YieldKind::papanastasiou:
+        return run_cell(scene.cell, Papanastasiou{scene.regularisation});
+      case YieldKind::bi_viscous:
+        return run_cell(scene.cell, BiViscous{scene.critical_shear_rate});
+      case YieldKind::exact:
+        break;
+    }
+    return run_cell(scene.cell, ExactBingham{});
+  } catch (const std::invalid_argument& error) {
+    throw scene::InputError(scene.name + ": " + error.what());
+  }
+}
+
+}  // namespace tremie::cell

@@ -1,0 +1,93 @@
+// tremie verify: how wrong is it, for how much run time?
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+
+#include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/program.hpp"
+#include "apparatus/report/run_folder.hpp"
+#include "apparatus/scene/input_error.hpp"
+#include "apparatus/verification/document.hpp"
+#include "apparatus/verification/suite.hpp"
+
+namespace tremie::cli {
+namespace {
+
+struct Options {
+  std::vector<std::string> rungs;
+  std::string out = "runs/verification";
+  bool quick = false, full = false, force = false;
+};
+
+std::string known_rungs() {
+  std::string text;
+  for (const auto& step : verification::ladder())
+    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", step.name, step.number);
+  return text;
+}
+
+/// The steps asked for by name or number, all without any, in the ladder's order.
+std::vector<verification::Step> chosen(const std::vector<std::string>& rungs) {
+  const auto ladder = verification::ladder();
+  const auto is = [](const verification::Step& step, const std::string& name) {
+    return name == step.name || name == std::to_string(step.number);
+  };
+  for (const std::string& name : rungs)
+    if (std::none_of(ladder.begin(), ladder.end(), [&](const auto& step) { return is(step, name); }))
+      throw scene::InputError(
+          fmt::format("verify: there is no rung \"{}\"; there are {}", name, known_rungs()));
+  std::vector<verification::Step> steps;
+  for (const auto& step : ladder)
+    if (rungs.empty() ||
+        std::any_of(rungs.begin(), rungs.end(), [&](const auto& name) { return is(step, name); }))
+      steps.push_back(step);
+  return steps;
+}
+
+std::string command_line(const Options& options) {
+  std::string text = "tremie verify";
+  for (const auto& rung : options.rungs) text += " " + rung;
+  return text + (options.full ? " --full" : " --quick");
+}
+
+int verify(const Options& options) {
+  const auto steps = chosen(options.rungs);
+  report::RunFolder folder(options.out, options.force);
+  const auto depth = options.full ? verification::Depth::full : verification::Depth::quick;
+  std::vector<verification::Rung> rungs;
+  for (const auto& step : steps) {
+    fmt::print("rung {}: {}\n", step.number, step.what);
+    std::fflush(stdout);
+    const double start = verification::cpu_seconds();
+    rungs.push_back(step.run(depth));
+    const bool kept = verification::all_kept({rungs.back()});
+    fmt::print("        {} in {:.1f} s of CPU\n", kept ? "all bounds kept" : "a bound is broken",
+               verification::cpu_seconds() - start);
+    std::fflush(stdout);
+  }
+  const std::string note = verification::write_document(rungs, command_line(options), folder.staging());
+  folder.publish();
+  for (const auto& line : verification::broken_bounds(rungs)) fmt::print(stderr, "not kept: {}\n", line);
+  if (!note.empty()) fmt::print("note: {}\n", note);
+  fmt::print("written to {}\n", (folder.target() / "VERIFICATION.md").string());
+  return verification::all_kept(rungs) ? done : not_to_be_trusted;
+}
+
+}  // namespace
+
+void add_command_verify(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  auto* command = app.add_subcommand(verify_command.name, verify_command.description);
+  command->add_option("rungs", options->rungs, "Rungs by name or number (default: all): " + known_rungs());
+  auto* quick =
+      command->add_flag("--quick", options->quick, "Coarser cells, under five minutes (the default)");
+  command->add_flag("--full", options->full, "All cells, under an hour")->excludes(quick);
+  command->add_option("--out", options->out, "Folder for the result")->capture_default_str();
+  command->add_flag("--force", options->force, "Replace an earlier result in the folder");
+  command->callback([options, &exit_code] { exit_code = verify(*options); });
+}
+
+}  // namespace tremie::cli

@@ -1,0 +1,14 @@
+// The program `tremie-study`: fits and verification, as `tremie fit` and `tremie verify` call it.
+
+#include <CLI/CLI.hpp>
+
+#include "apparatus/cli/study/command_fit.hpp"
+#include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/program.hpp"
+
+int main(int argc, char** argv) {
+  return tremie::cli::run_program(argc, argv, [](CLI::App& app, int& exit_code) {
+    tremie::cli::add_command_fit(app, exit_code);
+    tremie::cli::add_command_verify(app, exit_code);
+  });
+}

@@ -1,0 +1,27 @@
+#include "apparatus/common/outcome.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tremie::scene {
+
+ResultValue number(std::optional<double> value, double factor) {
+  if (!value || !std::isfinite(*value)) return std::monostate{};
+  return *value * factor;
+}
+
+const ResultValue* find_result(const Outcome& outcome, const std::string& name) {
+  const auto found = std::find_if(outcome.results.begin(), outcome.results.end(),
+                                  [&](const Result& r) { return r.name == name; });
+  return found == outcome.results.end() ? nullptr : &found->value;
+}
+
+const std::vector<Column>& columns_of(const Chart& chart, const Outcome& outcome) {
+  static const std::vector<Column> none;
+  if (chart.table.empty()) return outcome.series;
+  const auto found = std::find_if(outcome.tables.begin(), outcome.tables.end(),
+                                  [&](const ResultTable& t) { return t.file == chart.table; });
+  return found == outcome.tables.end() ? none : found->columns;
+}
+
+}  // namespace tremie::scene

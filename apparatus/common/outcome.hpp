@@ -1,0 +1,105 @@
+#pragma once
+
+// A result in the one form that the writers, the charts and the screen understand, whatever the apparatus.
+// Each apparatus states once which of its numbers go under which name.
+
+#include <atomic>
+#include <functional>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "apparatus/common/model.hpp"
+
+namespace tremie::scene {
+
+struct Result;
+
+/// null (does not apply), a number in the unit that the name says, a word, a truth, or named results below
+/// it.
+using ResultValue = std::variant<std::monostate, double, std::string, bool, std::vector<Result>>;
+
+/// One entry of summary.json's "results".
+struct Result {
+  std::string name;
+  ResultValue value;
+};
+
+/// A number, or null where there is none or where it is not finite.
+ResultValue number(std::optional<double> value, double factor = 1.0);
+
+/// One column of timeseries.csv and of results.h5. Not-a-number stands for no value and is written as an
+/// empty field.
+struct Column {
+  std::string name;  ///< with its unit: "spread_mm"
+  std::vector<double> values;
+};
+
+/// A horizontal line in the chart: what was measured on the real concrete, in the chart's unit.
+struct Reference {
+  std::string label;
+  double value = 0.0, tolerance = 0.0;
+};
+
+/// A chart of columns over the first column.
+struct Chart {
+  std::string file;  ///< "spread.svg"
+  std::string title, x_label, y_label;
+  std::vector<std::string> columns;  ///< their names
+  std::vector<Reference> references;
+  std::vector<std::string> labels = {};  ///< of the columns, where there are several
+  std::string table = {};                ///< file of the table that the columns are in; empty: the series
+};
+
+/// Columns over something else than the series' time, in a file of its own and in results.h5.
+struct ResultTable {
+  std::string file;  ///< "profile.csv"
+  std::vector<Column> columns;
+};
+
+/// Discretisation error of a result: half the width of a bar about it, in the unit of its name.
+struct ErrorBar {
+  std::string name;
+  double error = 0.0;
+};
+struct ErrorEstimate {
+  std::vector<ErrorBar> bars;
+  std::string basis;  ///< how they were found, or why there are none
+  double cpu = 0.0;   ///< that they cost [s]
+};
+
+struct Outcome {
+  std::string apparatus;
+  Status status = Status::completed;
+  std::vector<Result> results;
+  Checks checks;
+  Cost cost;
+  std::vector<Column> series;
+  std::vector<Chart> charts;
+  std::vector<std::string> lines;  ///< the result for a person, a line each
+  bool axisymmetric = false;       ///< points lie in the plane (r, 0, z) of a body of revolution
+  bool pictured = true;            ///< tremie-picture has a way to draw it
+  std::vector<ResultTable> tables = {};
+  std::optional<ErrorEstimate> error = {};  ///< where it was asked for
+};
+
+/// The value of a result by its name; nullptr where there is none.
+const ResultValue* find_result(const Outcome& outcome, const std::string& name);
+
+/// The columns that a chart draws from; empty where the outcome has no such table.
+const std::vector<Column>& columns_of(const Chart& chart, const Outcome& outcome);
+
+/// What a caller may want to see while a run goes on. Every member may be empty.
+struct Progress {
+  double time = 0.0, duration = 0.0;  ///< [s] simulated, and at most
+  double time_step = 0.0;             ///< [s]
+  std::string reading;                ///< "spread 412 mm"
+};
+struct Observer {
+  std::function<void(const Progress&)> on_progress;
+  std::function<void(const Frame&)> on_frame;
+  const std::atomic<bool>* interrupted = nullptr;
+};
+
+}  // namespace tremie::scene

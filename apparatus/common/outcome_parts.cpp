@@ -1,0 +1,44 @@
+#include "apparatus/common/outcome_parts.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+namespace tremie::scene {
+
+double or_nan(std::optional<double> value) {
+  return value.value_or(std::numeric_limits<double>::quiet_NaN());
+}
+
+std::string seconds_or(std::optional<double> value, const char* otherwise) {
+  return value ? fmt::format("{:.2f} s", *value) : otherwise;
+}
+
+void add_flocculation_line(std::optional<double> start, std::optional<double> end,
+                           std::vector<std::string>& lines) {
+  if (start && end)
+    lines.push_back(fmt::format("flocculation    {:.3g} at the start, {:.3g} at the end", *start, *end));
+}
+
+std::string flocculation_use(const Mix& mix) {
+  return mix.thixotropy ? "flocculation: stored and updated at every point"
+                        : "flocculation: left out (no [mix.thixotropy]): not stored, not computed";
+}
+
+void add_model_uses(const Model& model, std::vector<std::string>& lines) {
+  lines.push_back(model.yield == YieldKind::exact ? "regularisation: left out (model.yield = \"exact\")"
+                                                  : "regularisation: of the yield law");
+  lines.push_back(model.transfer == TransferKind::flip ? "FLIP blend: in the transfer"
+                                                       : "FLIP blend: left out (model.transfer = \"apic\")");
+  if (model.scheme != SchemeKind::implicit)
+    lines.push_back(model.precision == PrecisionKind::single_sums
+                        ? "sums between points and grid: in single precision; points in double"
+                        : "sums between points and grid: in double precision");
+}
+
+ResultValue word_or_null(const std::string& word) {
+  if (word.empty()) return std::monostate{};
+  return word;
+}
+
+}  // namespace tremie::scene

@@ -1,0 +1,41 @@
+#pragma once
+
+// What the outcomes of several apparatus are made of.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apparatus/common/outcome.hpp"
+#include "libmpm/constitutive/mix.hpp"
+
+namespace tremie::scene {
+
+inline constexpr double mm = 1e3;  ///< millimetres in a metre
+
+/// Not-a-number for no value: an empty field of a table.
+double or_nan(std::optional<double> value);
+
+/// One number of every row.
+template <class Row, class Read>
+Column column(const char* name, const std::vector<Row>& rows, Read read) {
+  Column result{name, {}};
+  for (const auto& row : rows) result.values.push_back(read(row));
+  return result;
+}
+
+/// "4.20 s", or what to say without a value.
+std::string seconds_or(std::optional<double> value, const char* otherwise);
+
+/// "flocculation    5.78 at the start, 5.4 at the end"; nothing without both.
+void add_flocculation_line(std::optional<double> start, std::optional<double> end,
+                           std::vector<std::string>& lines);
+
+/// What every apparatus may carry or leave out: flocculation, regularisation, FLIP.
+std::string flocculation_use(const Mix& mix);
+void add_model_uses(const Model& model, std::vector<std::string>& lines);
+
+/// A word, or null for an empty one.
+ResultValue word_or_null(const std::string& word);
+
+}  // namespace tremie::scene

@@ -1,0 +1,321 @@
+#include "apparatus/common/shared_keys.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "libmpm/constitutive/equation_of_state.hpp"
+
+namespace tremie::scene {
+namespace {
+
+const Words<Kinetics> kinetics_words{{"gated", Kinetics::gated}, {"roussel", Kinetics::roussel}};
+const Words<ContactKind> contact_words{{"no_slip", ContactKind::no_slip},
+                                       {"friction", ContactKind::friction},
+                                       {"free_slip", ContactKind::free_slip}};
+const Words<SpaceKind> space_words{{"axisymmetric", SpaceKind::axisymmetric},
+                                   {"quarter", SpaceKind::quarter},
+                                   {"full", SpaceKind::full},
+                                   {"plane", SpaceKind::plane},
+                                   {"plane_with_side_walls", SpaceKind::plane_with_side_walls},
+                                   {"couette", SpaceKind::couette},
+                                   {"half", SpaceKind::half}};
+const Words<YieldKind> yield_words{{"exact", YieldKind::exact},
+                                   {"papanastasiou", YieldKind::papanastasiou},
+                                   {"bi_viscous", YieldKind::bi_viscous}};
+const Words<SchemeKind> scheme_words{{"implicit", SchemeKind::implicit},
+                                     {"explicit", SchemeKind::explicit_usl},
+                                     {"explicit_usf", SchemeKind::explicit_usf}};
+const Words<MethodKind> method_words{
+    {"auto", MethodKind::automatic}, {"admm", MethodKind::admm}, {"newton", MethodKind::newton}};
+const Words<ShapeKind> shape_words{{"b_spline", ShapeKind::b_spline}, {"gimp", ShapeKind::gimp}};
+const Words<PressureKind> pressure_words{{"cell", PressureKind::cell}, {"point", PressureKind::point}};
+const Words<TransferKind> transfer_words{{"apic", TransferKind::apic}, {"flip", TransferKind::flip}};
+const Words<PrecisionKind> precision_words{{"double", PrecisionKind::both_double},
+                                           {"single", PrecisionKind::single_sums}};
+
+Section material_section(const std::string& bulk_modulus) {
+  return {
+      .name = "mix",
+      .help = "The concrete. In place of the table: mix = \"mix_a\", a name from reference_data/mixes.",
+      .keys = {
+          {.name = "yield_stress",
+           .dimension = Dimension::pressure,
+           .range = not_negative,
+           .required = true,
+           .example = "54 Pa",
+           .help = "dynamic yield stress, tau_0"},
+          {.name = "plastic_viscosity",
+           .dimension = Dimension::viscosity,
+           .range = positive,
+           .required = true,
+           .example = "35.8 Pa.s",
+           .help = "mu"},
+          {.name = "density", .dimension = Dimension::density, .range = positive, .fallback = "2400 kg/m3"},
+          {.name = "bulk_modulus",
+           .dimension = Dimension::pressure,
+           .range = positive,
+           .fallback = bulk_modulus,
+           .help = "K; or youngs_modulus and poisson_ratio"},
+          {.name = "youngs_modulus",
+           .dimension = Dimension::pressure,
+           .range = positive,
+           .example = "0.01 MPa",
+           .help = "in place of bulk_modulus"},
+          {.name = "poisson_ratio",
+           .kind = Kind::number,
+           .range = {.low = -1.0, .high = 0.5, .low_open = true, .high_open = true},
+           .example = "0.45",
+           .help = "with youngs_modulus"},
+          {.name = "name", .kind = Kind::text, .help = "what people call it"},
+          {.name = "source", .kind = Kind::text, .help = "where its numbers come from"},
+          {.name = "slump_flow_0",
+           .dimension = Dimension::length,
+           .range = positive,
+           .help = "measured without rest: dashed in the chart, not used by the run"},
+          {.name = "slump_flow_240",
+           .dimension = Dimension::length,
+           .range = positive,
+           .help = "measured after 240 s of rest"},
+          {.name = "slump_flow_tolerance",
+           .dimension = Dimension::length,
+           .range = not_negative,
+           .help = "of the measured slump flows"},
+          {.name = "friction_coefficient",
+           .kind = Kind::number,
+           .range = between(0.0, 10.0),
+           .help = "of this concrete on the plate: the default of floor.coefficient"},
+      }};
+}
+
+Section thixotropy_section() {
+  return {
+      .name = "mix.thixotropy",
+      .help = "Leave the table out, and no flocculation is stored or computed.",
+      .keys =
+          {
+              {.name = "structuration_rate",
+               .dimension = Dimension::structuration,
+               .range = not_negative,
+               .required = true,
+               .example = "1.3 Pa/s",
+               .help = "A_thix, at rest"},
+              {.name = "destructuration",
+               .kind = Kind::number,
+               .range = not_negative,
+               .fallback = "0.01",
+               .help = "alpha"},
+              {.name = "kinetics", .kind = Kind::choice, .words = names(kinetics_words), .fallback = "gated"},
+              {.name = "critical_shear_rate",
+               .dimension = Dimension::rate,
+               .range = positive,
+               .fallback = "0.1 1/s",
+               .only_with = Condition{"kinetics", {"gated"}},
+               .help = "build-up below it, breakdown above"},
+              {.name = "initial_flocculation",
+               .kind = Kind::number,
+               .range = not_negative,
+               .fallback = "0",
+               .help = "lambda before the rest"},
+          },
+      .optional = true};
+}
+
+/// K by youngs_modulus and poisson_ratio, or as given; the later layer wins.
+void settle_bulk_modulus(Values& values) {
+  const char *K = "mix.bulk_modulus", *E = "mix.youngs_modulus", *nu = "mix.poisson_ratio";
+  if (!values.has(E) && !values.has(nu)) return;
+  if (!values.has(E)) values.fail(nu, "needs youngs_modulus beside it, like youngs_modulus = \"0.01 MPa\"");
+  if (!values.has(nu)) values.fail(E, "needs poisson_ratio beside it, like poisson_ratio = 0.45");
+  const Layer layer = std::max(values.layer(E), values.layer(nu));
+  if (values.given(K) && values.layer(K) == layer)
+    values.fail(K, "is given beside youngs_modulus and poisson_ratio; give one or the other");
+  if (!values.given(K) || values.layer(K) < layer) {
+    values.set_number(
+        K, bulk_modulus(values.number(E), values.number(nu)), layer,
+        fmt::format("from youngs_modulus = {} and poisson_ratio = {}",
+                    write_quantity(values.number(E), Dimension::pressure), write_number(values.number(nu))));
+  }
+  values.drop(E);
+  values.drop(nu);
+}
+
+}  // namespace
+
+Schema mix_sections(const std::string& bulk_modulus) {
+  return {material_section(bulk_modulus), thixotropy_section()};
+}
+
+void settle_mix(Values& values) {
+  settle_bulk_modulus(values);
+  if (values.has_section("mix.thixotropy") && values.number("mix.yield_stress") == 0.0) {
+    values.fail("mix.yield_stress",
+                "is 0 with [mix.thixotropy]: the flocculation state grows by A_thix/tau_0 and has no value; "
+                "give a yield "
+                "stress greater than 0 Pa, or leave [mix.thixotropy] out (thixotropy = false)");
+  }
+}
+
+Mix read_mix(const Values& values) {
+  Mix mix;
+  mix.density = values.number("mix.density");
+  mix.tau_0 = values.number("mix.yield_stress");
+  mix.mu = values.number("mix.plastic_viscosity");
+  mix.K = values.number("mix.bulk_modulus");
+  if (!values.has_section("mix.thixotropy")) return mix;
+  Thixotropy t;
+  t.A_thix = values.number("mix.thixotropy.structuration_rate");
+  t.alpha = values.number("mix.thixotropy.destructuration");
+  t.kinetics = values.choice("mix.thixotropy.kinetics", kinetics_words);
+  if (values.has("mix.thixotropy.critical_shear_rate"))
+    t.gamma_c = values.number("mix.thixotropy.critical_shear_rate");
+  t.initial_flocculation = values.number("mix.thixotropy.initial_flocculation");
+  mix.thixotropy = t;
+  return mix;
+}
+
+Measured read_measured(const Values& values) {
+  const auto text = [&](const char* key) { return values.has(key) ? values.word(key) : std::string{}; };
+  const auto length = [&](const char* key) -> std::optional<double> {
+    return values.has(key) ? std::optional(values.number(key)) : std::nullopt;
+  };
+  return {text("mix.name"), text("mix.source"), length("mix.slump_flow_0"), length("mix.slump_flow_240"),
+          length("mix.slump_flow_tolerance").value_or(0.0)};
+}
+
+Section floor_section() {
+  return {.name = "floor",
+          .help = "What the concrete flows on.",
+          .keys = {
+              {.name = "contact", .kind = Kind::choice, .words = names(contact_words), .fallback = "no_slip"},
+              {.name = "coefficient",
+               .kind = Kind::number,
+               .range = between(0.0, 10.0),
+               .fallback = "0.35",
+               .only_with = Condition{"contact", {"friction"}},
+               .help = "Coulomb's; the mix's friction_coefficient if it has one"},
+          }};
+}
+
+void settle_floor(Values& values) {
+  const char* coefficient = "floor.coefficient";
+  if (!values.has(coefficient) || values.given(coefficient) || !values.has("mix.friction_coefficient"))
+    return;
+  values.set_number(coefficient, values.number("mix.friction_coefficient"),
+                    values.layer("mix.friction_coefficient"), "the mix's friction_coefficient");
+}
+
+Floor read_floor(const Values& values) {
+  Floor floor;
+  floor.contact = values.choice("floor.contact", contact_words);
+  if (values.has("floor.coefficient")) floor.coefficient = values.number("floor.coefficient");
+  return floor;
+}
+
+Section model_section(const std::vector<std::string>& spaces, const ModelDefaults& defaults) {
+  return {.name = "model",
+          .help = "How it is computed.",
+          .keys = {
+              {.name = "space", .kind = Kind::choice, .words = spaces, .fallback = spaces.front()},
+              {.name = "yield", .kind = Kind::choice, .words = names(yield_words), .fallback = "exact"},
+              {.name = "regularisation",
+               .dimension = Dimension::time,
+               .range = positive,
+               .fallback = "5 s",
+               .only_with = Condition{"yield", {"papanastasiou"}},
+               .help = "m"},
+              {.name = "critical_shear_rate",
+               .dimension = Dimension::rate,
+               .range = positive,
+               .fallback = "0.01 1/s",
+               .only_with = Condition{"yield", {"bi_viscous"}},
+               .help = "gamma_c of the yield law"},
+              {.name = "scheme", .kind = Kind::choice, .words = names(scheme_words), .fallback = "implicit"},
+              {.name = "method",
+               .kind = Kind::choice,
+               .words = names(method_words),
+               .fallback = "auto",
+               .only_with = Condition{"scheme", {"implicit"}},
+               .help = "for the yield"},
+              {.name = "shape", .kind = Kind::choice, .words = names(shape_words), .fallback = "b_spline"},
+              {.name = "pressure",
+               .kind = Kind::choice,
+               .words = names(pressure_words),
+               .fallback = "cell",
+               .only_with = Condition{"scheme", {"explicit", "explicit_usf"}},
+               .help = "one divergence a cell, against locking, or one a point"},
+              {.name = "precision",
+               .kind = Kind::choice,
+               .words = names(precision_words),
+               .fallback = "double",
+               .only_with = Condition{"scheme", {"explicit_usf"}},
+               .help = "of the sums between points and grid and of the law; single with transfer = apic"},
+              {.name = "transfer", .kind = Kind::choice, .words = names(transfer_words), .fallback = "apic"},
+              {.name = "flip_blend",
+               .kind = Kind::number,
+               .range = between(0.0, 1.0),
+               .fallback = "0.95",
+               .only_with = Condition{"transfer", {"flip"}},
+               .help = "share of FLIP"},
+              {.name = "time_step",
+               .dimension = Dimension::time,
+               .range = positive,
+               .words = {"auto"},
+               .fallback = "auto"},
+              {.name = "cell",
+               .dimension = Dimension::length,
+               .range = positive,
+               .shape = Shape::one_or_two,
+               .fallback = defaults.cell,
+               .example = "5 mm",
+               .help = defaults.cell_help},
+              {.name = "points_per_cell",
+               .kind = Kind::integer,
+               .range = between(1, 64),
+               .shape = Shape::one_or_two,
+               .fallback = defaults.points_per_cell,
+               .help = "[across, up], or one number for each direction"},
+          }};
+}
+
+Model read_model(const Values& values) {
+  Model model;
+  model.space = values.choice("model.space", space_words);
+  model.yield = values.choice("model.yield", yield_words);
+  if (values.has("model.regularisation")) model.regularisation = values.number("model.regularisation");
+  if (values.has("model.critical_shear_rate"))
+    model.critical_shear_rate = values.number("model.critical_shear_rate");
+  model.scheme = values.choice("model.scheme", scheme_words);
+  if (values.has("model.method")) model.method = values.choice("model.method", method_words);
+  model.shape = values.choice("model.shape", shape_words);
+  if (values.has("model.pressure")) model.pressure = values.choice("model.pressure", pressure_words);
+  if (values.has("model.precision")) model.precision = values.choice("model.precision", precision_words);
+  model.transfer = values.choice("model.transfer", transfer_words);
+  if (values.has("model.flip_blend")) model.flip_blend = values.number("model.flip_blend");
+  model.time_step = values.number_unless("model.time_step", "auto");
+  const auto cell = values.numbers("model.cell"), points = values.numbers("model.points_per_cell");
+  model.cell = {cell.front(), cell.back()};
+  model.points_per_cell = {static_cast<int>(points.front()), static_cast<int>(points.back())};
+  return model;
+}
+
+Section output_section() {
+  return {
+      .name = "output",
+      .help = "What is written beside the result.",
+      .keys = {
+          {.name = "frames",
+           .kind = Kind::boolean,
+           .fallback = "true",
+           .help = "the points over time, for ParaView"},
+          {.name = "frame_interval", .dimension = Dimension::time, .range = positive, .fallback = "0.5 s"},
+      }};
+}
+
+Output read_output(const Values& values) {
+  return {values.number("output.frame_interval"), values.boolean("output.frames")};
+}
+
+}  // namespace tremie::scene

@@ -1,0 +1,56 @@
+#pragma once
+
+// The sections that several apparatus share, and how their values become the library's plain data.
+
+#include <optional>
+#include <string>
+
+#include "apparatus/common/model.hpp"
+#include "apparatus/scene/keys.hpp"
+#include "apparatus/scene/values.hpp"
+#include "libmpm/constitutive/mix.hpp"
+
+namespace tremie::scene {
+
+/// [mix] and [mix.thixotropy], with the default of K.
+Schema mix_sections(const std::string& bulk_modulus = "1 MPa");
+
+/// Rules of the mix: one way to give K, yield stress with thixotropy. Call it from ApparatusKeys::settle.
+void settle_mix(Values& values);
+
+Mix read_mix(const Values& values);
+
+/// What was measured on the real concrete, where the mix says so: for charts, never for the run.
+struct Measured {
+  std::string name, source;
+  std::optional<double> slump_flow_0, slump_flow_240;  ///< [m], without and with 240 s of rest
+  double tolerance = 0.0;                              ///< of both [m]
+};
+Measured read_measured(const Values& values);
+
+/// [floor].
+Section floor_section();
+/// A friction floor takes its coefficient from the mix where the scene gives none.
+void settle_floor(Values& values);
+Floor read_floor(const Values& values);
+
+/// The defaults of [model] that differ from apparatus to apparatus, as in TOML.
+struct ModelDefaults {
+  std::string cell = "[\"10 mm\", \"5 mm\"]";  ///< empty: settled by the apparatus
+  std::string points_per_cell = "[4, 4]";
+  std::string cell_help = "[across, up], or one length";
+};
+
+/// [model], with the spaces that an apparatus has; the first is its default.
+Section model_section(const std::vector<std::string>& spaces, const ModelDefaults& defaults = {});
+Model read_model(const Values& values);
+
+/// [output].
+Section output_section();
+struct Output {
+  double frame_interval = 0.5;  ///< [s]
+  bool frames = true;
+};
+Output read_output(const Values& values);
+
+}  // namespace tremie::scene

@@ -1,0 +1,239 @@
+#include "apparatus/icar_vane/keys.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <numbers>
+
+#include "apparatus/common/shared_keys.hpp"
+
+namespace tremie::scene {
+namespace {
+
+constexpr double two_pi = 2.0 * std::numbers::pi;
+constexpr double most_points = 1e8;
+constexpr const char* speeds_key = "test.speeds";
+
+/// A key of a flow curve. Its default is set by settle(), where there is a flow curve.
+struct CurveKey {
+  const char* name;
+  Dimension dimension;
+  const char* fallback;
+  const char* help;
+};
+constexpr std::array curve_keys{
+    CurveKey{"pre_shear_speed", Dimension::rotation, "0.5 rev/s", "with speeds: before the first of them"},
+    CurveKey{"pre_shear_time", Dimension::time, "20 s", "with speeds"},
+    CurveKey{"hold_time", Dimension::time, "5 s", "with speeds: of each"},
+    CurveKey{"average_time", Dimension::time, "2 s",
+             "with speeds: the last part of each, for the mean torque"}};
+
+Section vane_section() {
+  return {
+      .name = "vane",
+      .help = "The vane and its container; the defaults are the ICAR's. End effects are neglected.",
+      .keys = {{.name = "radius", .range = positive, .fallback = "63.5 mm", .help = "of the blades' tips"},
+               {.name = "height", .range = positive, .fallback = "127 mm"},
+               {.name = "container_radius", .range = positive, .fallback = "143 mm"},
+               {.name = "blades",
+                .kind = Kind::integer,
+                .range = between(2, 12),
+                .fallback = "4",
+                .help = "in the plane; a Couette section has a solid cylinder"},
+               {.name = "blade_thickness", .range = positive, .fallback = "3 mm", .help = "in the plane"},
+               {.name = "shaft_radius",
+                .range = positive,
+                .fallback = "10 mm",
+                .help = "in the plane: about which the blades stand; concrete there turns with them"}}};
+}
+
+Section test_section() {
+  Section section{.name = "test",
+                  .help = "The schedule: one constant speed, or with `speeds` a flow curve.",
+                  .keys = {{.name = "rest",
+                            .dimension = Dimension::time,
+                            .range = not_negative,
+                            .fallback = "0 s",
+                            .help = "before the vane turns"},
+                           {.name = "speed",
+                            .dimension = Dimension::rotation,
+                            .fallback = "0.25 rev/s",
+                            .help = "constant; negative turns the other way"},
+                           {.name = "duration",
+                            .dimension = Dimension::time,
+                            .range = positive,
+                            .fallback = "20 s",
+                            .help = "at the constant speed"},
+                           {.name = "speeds",
+                            .dimension = Dimension::rotation,
+                            .range = positive,
+                            .shape = Shape::list,
+                            .example = R"(["0.5 rev/s", "0.3 rev/s", "0.1 rev/s"])",
+                            .help = "a flow curve, in place of speed and duration"}}};
+  for (const CurveKey& key : curve_keys)
+    section.keys.push_back({.name = key.name,
+                            .dimension = key.dimension,
+                            .range = key.dimension == Dimension::time ? not_negative : positive,
+                            .example = key.fallback,
+                            .help = key.help});
+  section.keys.push_back({.name = "orientation",
+                          .dimension = Dimension::angle,
+                          .fallback = "0 deg",
+                          .help = "of the blades against the points, in the plane"});
+  return section;
+}
+
+/// The layer of a key as the user gave it; that of the defaults for a key without a value.
+Layer layer_of(const Values& values, const std::string& key) {
+  return values.has(key) ? values.layer(key) : Layer::fallback;
+}
+
+/// One constant speed or a flow curve: what a later layer says wins.
+void settle_schedule(Values& values) {
+  for (const char* key : {"test.speed", "test.duration"})
+    if (values.has(speeds_key) && layer_of(values, key) > values.layer(speeds_key))
+      values.drop_beside(speeds_key, key, "");
+  if (values.has(speeds_key)) {
+    for (const char* key : {"test.speed", "test.duration"})
+      values.drop_beside(key, speeds_key,
+                         "has no meaning beside test.speeds, a flow curve (pre_shear_speed, pre_shear_time, "
+                         "hold_time, average_time); give one or the other");
+  }
+  for (const CurveKey& key : curve_keys) {
+    const std::string full = std::string("test.") + key.name;
+    if (!values.has(speeds_key))
+      values.drop_beside(full, "test.speed",
+                         "needs test.speeds beside it, like speeds = [\"0.5 rev/s\", \"0.1 rev/s\"]");
+    else if (!values.has(full))
+      values.set_number(full, parse_quantity(key.fallback, key.dimension), Layer::fallback, "");
+  }
+}
+
+void check_schedule(const Values& values) {
+  if (!values.has(speeds_key)) {
+    if (values.number("test.speed") == 0.0)
+      values.fail("test.speed",
+                  "is 0: the vane would not turn; allowed: any other speed, like \"0.25 rev/s\"");
+    return;
+  }
+  if (values.number("test.hold_time") <= 0.0)
+    values.fail("test.hold_time", "is 0; it must be greater than 0 s");
+  const double average = values.number("test.average_time"), hold = values.number("test.hold_time");
+  if (average <= 0.0 || average > hold)
+    values.fail("test.average_time",
+                fmt::format("is not within the hold; allowed: greater than 0 s and at most hold_time, \"{}\"",
+                            write_quantity(hold, Dimension::time)));
+}
+
+void check_vane(const Values& values) {
+  const double radius = values.number("vane.radius"), container = values.number("vane.container_radius");
+  if (radius >= container && values.layer("vane.radius") > values.layer("vane.container_radius"))
+    values.fail("vane.radius", fmt::format("does not fit; allowed: less than vane.container_radius, \"{}\"",
+                                           write_quantity(container, Dimension::length)));
+  if (radius >= container)
+    values.fail("vane.container_radius",
+                fmt::format("does not hold the vane; allowed: greater than vane.radius, \"{}\"",
+                            write_quantity(radius, Dimension::length)));
+  if (values.number("vane.shaft_radius") >= radius)
+    values.fail("vane.shaft_radius", fmt::format("leaves no blades; allowed: less than vane.radius, \"{}\"",
+                                                 write_quantity(radius, Dimension::length)));
+  const double n = values.number("vane.blades");
+  const double widest = two_pi * radius / n;
+  if (values.number("vane.blade_thickness") >= widest)
+    values.fail("vane.blade_thickness",
+                fmt::format("leaves no room between {:g} blades; allowed: less than \"{}\"", n,
+                            write_quantity(widest, Dimension::length)));
+}
+
+void settle_cell(Values& values) {
+  if (values.has("model.cell")) return;
+  const bool couette = values.word("model.space") == "couette";
+  values.set_number("model.cell", couette ? 0.001 : 0.005, Layer::fallback, "");
+}
+
+void settle(Values& values) {
+  settle_mix(values);
+  settle_schedule(values);
+  settle_cell(values);
+  check_schedule(values);
+  check_vane(values);
+}
+
+/// Cells must resolve the gap, and the points must fit into a computer.
+void check_cells(const Values& values, const icar_vane::Scene& scene) {
+  const double R = scene.vane.container_radius, gap = R - scene.vane.radius;
+  const auto [across, up] = scene.model.cell;
+  const bool couette = scene.model.space == SpaceKind::couette;
+  if (across > gap || (!couette && up > gap))
+    values.fail("model.cell",
+                fmt::format("is larger than the gap between vane and container; allowed: at most \"{}\"",
+                            write_quantity(gap, Dimension::length)));
+  const auto [n_across, n_up] = scene.model.points_per_cell;
+  const double points =
+      couette ? gap / across * n_across
+              : R / across * n_across * two_pi * scene.vane.radius / scene.vane.blades / up * n_up;
+  if (points > most_points)
+    values.fail("model.cell",
+                fmt::format("makes about {:.0e} points; allowed: at most {:.0e}, by larger cells or fewer "
+                            "points_per_cell",
+                            points, most_points));
+}
+
+/// rad/s as rev/s, in the digits that a person would have written where those mean the same: "0.1 rev/s"
+/// stays 0.1.
+double revolutions(double omega) {
+  const double exact = omega / two_pi;
+  const double short_one = std::strtod(fmt::format("{:.15g}", exact).c_str(), nullptr);
+  return short_one * two_pi == omega ? short_one : exact;
+}
+
+void read_schedule(const Values& values, icar_vane::Scene& scene) {
+  scene.rest = values.number("test.rest");
+  if (!values.has(speeds_key)) {
+    scene.speed = revolutions(values.number("test.speed"));
+    scene.duration = values.number("test.duration");
+    return;
+  }
+  for (const double omega : values.numbers(speeds_key)) scene.speeds.push_back(revolutions(omega));
+  scene.pre_shear_speed = revolutions(values.number("test.pre_shear_speed"));
+  scene.pre_shear_time = values.number("test.pre_shear_time");
+  scene.hold_time = values.number("test.hold_time");
+  scene.average_time = values.number("test.average_time");
+}
+
+}  // namespace
+
+ApparatusKeys icar_vane_keys() {
+  ApparatusKeys keys{.name = "icar_vane",
+                     .help = "The ICAR vane rheometer: a vane turning in a container of concrete.",
+                     .schema = mix_sections(),
+                     .presets = {},
+                     .settle = settle};
+  keys.schema.push_back(vane_section());
+  keys.schema.push_back(test_section());
+  keys.schema.push_back(model_section(
+      {"couette", "plane"}, {.cell = "",
+                             .points_per_cell = "3",
+                             .cell_help = "1 mm for \"couette\", 5 mm for \"plane\", if left out; in the "
+                                          "plane [along the radius, around at the tips]"}));
+  keys.schema.push_back(output_section());
+  return keys;
+}
+
+icar_vane::Scene icar_vane_scene(const Values& values) {
+  icar_vane::Scene scene;
+  scene.mix = read_mix(values);
+  scene.vane = {values.number("vane.radius"),           values.number("vane.height"),
+                values.number("vane.container_radius"), static_cast<int>(values.integer("vane.blades")),
+                values.number("vane.blade_thickness"),  values.number("vane.shaft_radius")};
+  read_schedule(values, scene);
+  scene.orientation = values.number("test.orientation");
+  scene.model = read_model(values);
+  scene.frame_interval = values.number("output.frame_interval");
+  check_cells(values, scene);
+  return scene;
+}
+
+}  // namespace tremie::scene

@@ -1,0 +1,87 @@
+#include "apparatus/icar_vane/lines.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "libmpm/constitutive/flocculation.hpp"
+
+namespace tremie::scene {
+namespace {
+
+constexpr double torques_must_agree = 0.01;  ///< relative to the torque on the blades
+
+/// One row of the comparison: "yield stress, dynamic    54 Pa    57.2 Pa   +5.9 %".
+std::string row(const char* what, double input, std::optional<double> read, const char* unit) {
+  const std::string left = fmt::format("{:<26}{:>12}", what, fmt::format("{:.4g} {}", input, unit));
+  if (!read || !std::isfinite(*read)) return left + fmt::format("{:>16}", "-");
+  const std::string right = fmt::format("{}{:>16}", left, fmt::format("{:.4g} {}", *read, unit));
+  return input == 0.0 ? right : right + fmt::format("   {:+.1f} %", 100.0 * (*read / input - 1.0));
+}
+
+void add_comparison(const icar_vane::Scene& scene, const icar_vane::Results& r,
+                    std::vector<std::string>& lines) {
+  const VaneInput in = vane_input(scene);
+  lines.push_back(fmt::format("{:<26}{:>12}{:>16}", "", "input", "instrument"));
+  if (r.reiner_riwlin) {
+    lines.push_back(row("yield stress", in.yield_stress, r.reiner_riwlin->yield_stress, "Pa"));
+    lines.push_back(
+        row("plastic viscosity", in.plastic_viscosity, r.reiner_riwlin->plastic_viscosity, "Pa.s"));
+  }
+  if (r.static_yield_stress_apparent)
+    lines.push_back(row("static yield stress", in.static_yield_stress, r.static_yield_stress_apparent, "Pa"));
+  if (r.dynamic_yield_stress_apparent)
+    lines.push_back(row("dynamic yield stress", in.yield_stress, r.dynamic_yield_stress_apparent, "Pa"));
+  if (in.flocculation)
+    lines.push_back(row("flocculation at the start", *in.flocculation, r.flocculation_apparent_start, ""));
+  if (in.alpha) lines.push_back(row("alpha", *in.alpha, r.alpha_apparent, ""));
+}
+
+/// Torque on the blades, on the container and from the power, which must agree but for the rate of angular
+/// momentum.
+void add_agreement(const icar_vane::Outcome& outcome, std::vector<std::string>& lines) {
+  const icar_vane::Results& r = outcome.results;
+  const double momentum = outcome.series.empty() ? 0.0 : outcome.series.back().momentum_rate;
+  const double scale = std::abs(r.torque_end) > 0.0 ? std::abs(r.torque_end) : 1.0;
+  const double wall = (r.torque_wall_end + momentum) / scale - r.torque_end / scale;
+  const double power = (r.torque_power_end - r.torque_end) / scale;
+  lines.push_back(fmt::format(
+      "on the wall     {:.4g} N.m ({:+.2f} % with the rate of angular momentum)   power/speed {:.4g} "
+      "N.m ({:+.2f} %)",
+      r.torque_wall_end, 100.0 * wall, r.torque_power_end, 100.0 * power));
+  if (std::max(std::abs(wall), std::abs(power)) > torques_must_agree)
+    lines.push_back(
+        "                the three torques differ by more than 1 %: not steady, or cells too large");
+}
+
+}  // namespace
+
+VaneInput vane_input(const icar_vane::Scene& scene) {
+  VaneInput in;
+  in.yield_stress = in.static_yield_stress = scene.mix.tau_0;
+  in.plastic_viscosity = scene.mix.mu;
+  if (!scene.mix.thixotropy) return in;
+  const Thixotropy& t = *scene.mix.thixotropy;
+  in.flocculation = flocculation_after_rest(t.initial_flocculation, t, scene.mix.tau_0, scene.rest);
+  in.static_yield_stress = (1.0 + *in.flocculation) * scene.mix.tau_0;
+  in.alpha = t.alpha;
+  return in;
+}
+
+std::vector<std::string> vane_lines(const icar_vane::Scene& scene, const icar_vane::Outcome& outcome) {
+  const icar_vane::Results& r = outcome.results;
+  std::vector<std::string> lines{fmt::format("torque          {:.4g} N.m at its peak, {:.4g} N.m at the end",
+                                             r.torque_peak, r.torque_end)};
+  add_agreement(outcome, lines);
+  if (r.torque_couette_reference)
+    lines.push_back(fmt::format("cylinder        {:.4g} N.m by Reiner-Riwlin: the torque is {:.3f} of it",
+                                *r.torque_couette_reference, r.torque_end / *r.torque_couette_reference));
+  add_comparison(scene, r, lines);
+  if (r.alpha_apparent)
+    lines.push_back(
+        fmt::format("                apparent alpha over {:.3g} s, with the nominal shear rate {:.4g} 1/s",
+                    r.alpha_window, r.shear_rate_nominal));
+  return lines;
+}
+
+}  // namespace tremie::scene

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "apparatus/icar_vane/icar_vane.hpp"
+#include "apparatus/common/outcome.hpp"
+
+namespace tremie::scene {
+
+/// Runs the vane test and names its numbers. Without `all_frames` the observer sees the last frame alone.
+Outcome run_icar_vane(const icar_vane::Scene& scene, bool all_frames, const Observer& observer);
+
+/// What this scene carries and what it leaves out, a line each.
+std::vector<std::string> icar_vane_uses(const icar_vane::Scene& scene);
+
+}  // namespace tremie::scene

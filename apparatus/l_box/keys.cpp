@@ -1,0 +1,120 @@
+#include "apparatus/l_box/keys.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "apparatus/common/shared_keys.hpp"
+
+namespace tremie::scene {
+namespace {
+
+constexpr double most_points = 1e8;
+
+Section box_section() {
+  return {
+      .name = "box",
+      .help = "Inner dimensions; the defaults are EN 12350-10's. The channel begins at the gate.",
+      .keys = {{.name = "column_length", .range = positive, .fallback = "100 mm", .help = "along the flow"},
+               {.name = "column_height", .range = positive, .fallback = "600 mm"},
+               {.name = "channel_length", .range = positive, .fallback = "700 mm"},
+               {.name = "channel_height", .range = positive, .fallback = "150 mm", .help = "of the gate"},
+               {.name = "width", .range = positive, .fallback = "200 mm", .help = "between the side walls"}}};
+}
+
+Section test_section() {
+  return {.name = "test",
+          .help = "The schedule.",
+          .keys = {{.name = "rest",
+                    .dimension = Dimension::time,
+                    .range = not_negative,
+                    .fallback = "60 s",
+                    .help = "in the column, before the gate is lifted"},
+                   {.name = "duration",
+                    .dimension = Dimension::time,
+                    .range = positive,
+                    .fallback = "180 s",
+                    .help = "at most; a flow that has come to rest ends earlier"},
+                   {.name = "gate_speed",
+                    .dimension = Dimension::speed,
+                    .range = positive,
+                    .words = {"instant"},
+                    .fallback = "30 cm/s",
+                    .help = "of the lift"},
+                   {.name = "bars",
+                    .kind = Kind::integer,
+                    .range = between(0, 3),
+                    .fallback = "0",
+                    .help = "0, or 2 or 3 of 12 mm in front of the gate (three dimensions alone)"}}};
+}
+
+bool in_the_plane(const Values& values) { return values.word("model.space").starts_with("plane"); }
+
+void settle(Values& values) {
+  settle_mix(values);
+  const auto bars = values.integer("test.bars");
+  if (bars == 1) values.fail("test.bars", "1 is not allowed; allowed: 0, 2 (class PL1) or 3 (class PL2)");
+  if (bars > 0 && in_the_plane(values))
+    values.fail("test.bars", fmt::format("{} bars need three dimensions, model.space = \"half\" or \"full\"; "
+                                         "in the plane the box has none (bars = 0)",
+                                         bars));
+  if (values.number("box.channel_height") > values.number("box.column_height"))
+    values.fail("box.channel_height",
+                fmt::format("is above the column's top; allowed: at most column_height, \"{}\"",
+                            write_quantity(values.number("box.column_height"), Dimension::length)));
+}
+
+/// Cells must resolve the column and the gate, and the points must fit into a computer.
+void check_cells(const Values& values, const l_box::Scene& scene) {
+  const auto [across, up] = scene.model.cell;
+  const l_box::Box& box = scene.box;
+  if (across > box.column_length || up > box.channel_height) {
+    values.fail("model.cell",
+                fmt::format("is larger than the column or the gate; allowed: at most [\"{}\", \"{}\"]",
+                            write_quantity(box.column_length, Dimension::length),
+                            write_quantity(box.channel_height, Dimension::length)));
+  }
+  const auto [n_across, n_up] = scene.model.points_per_cell;
+  const double section = box.column_length / across * n_across * box.column_height / up * n_up;
+  const double points = in_the_plane(values) ? section : section * box.width / across * n_up;
+  if (points > most_points) {
+    values.fail("model.cell",
+                fmt::format("makes about {:.0e} points; allowed: at most {:.0e}, by larger cells or fewer "
+                            "points_per_cell",
+                            points, most_points));
+  }
+}
+
+}  // namespace
+
+ApparatusKeys l_box_keys() {
+  ApparatusKeys keys{.name = "l_box",
+                     .help = "The L-box test of EN 12350-10.",
+                     .schema = mix_sections("5 MPa"),
+                     .presets = {},
+                     .settle = settle};
+  keys.schema.push_back(box_section());
+  keys.schema.push_back(test_section());
+  keys.schema.push_back(model_section({"plane", "plane_with_side_walls", "half", "full"},
+                                      {.cell = "10 mm", .points_per_cell = "[16, 4]"}));
+  keys.schema.push_back(output_section());
+  return keys;
+}
+
+l_box::Scene l_box_scene(const Values& values) {
+  l_box::Scene scene;
+  scene.mix = read_mix(values);
+  scene.box = {values.number("box.column_length"), values.number("box.column_height"),
+               values.number("box.channel_length"), values.number("box.channel_height"),
+               values.number("box.width")};
+  scene.rest = values.number("test.rest");
+  scene.duration = values.number("test.duration");
+  scene.gate_speed = values.number_unless("test.gate_speed", "instant");
+  scene.bars = static_cast<int>(values.integer("test.bars"));
+  scene.model = read_model(values);
+  scene.frame_interval = values.number("output.frame_interval");
+  check_cells(values, scene);
+  return scene;
+}
+
+}  // namespace tremie::scene

@@ -1,0 +1,159 @@
+#include "apparatus/l_box/outcome.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "apparatus/common/outcome_parts.hpp"
+
+namespace tremie::scene {
+namespace {
+
+constexpr const char* time_label = "time since the start of the lift / s";
+
+std::string class_of(const l_box::Scene& scene, const l_box::Results& r) {
+  return r.passing_ratio ? l_box::passing_class(*r.passing_ratio, scene.bars) : "";
+}
+
+std::vector<Result> results_of(const l_box::Scene& scene, const l_box::Results& r) {
+  return {{"h1_mm", number(r.h1, mm)},
+          {"h2_mm", number(r.h2, mm)},
+          {"passing_ratio", number(r.passing_ratio)},
+          {"t200_s", number(r.t200)},
+          {"t400_s", number(r.t400)},
+          {"class_en12350_10", word_or_null(class_of(scene, r))},
+          {"stopped_at_s", number(r.stopped_at)},
+          {"flocculation_mean_start", number(r.flocculation_mean_start)},
+          {"flocculation_mean_end", number(r.flocculation_mean_end)},
+          {"volume_in_channel_m3", number(r.volume_in_channel)},
+          {"bars", number(static_cast<double>(scene.bars))}};
+}
+
+std::vector<Column> series_of(const std::vector<l_box::Sample>& s, bool thixotropic) {
+  using Sample = l_box::Sample;
+  std::vector<Column> columns{
+      column("time_s", s, [](const Sample& x) { return x.time; }),
+      column("front_mm", s, [](const Sample& x) { return x.front * mm; }),
+      column("h1_mm", s, [](const Sample& x) { return x.h1 * mm; }),
+      column("h2_mm", s, [](const Sample& x) { return or_nan(x.h2) * mm; }),
+      column("max_speed_m_per_s", s, [](const Sample& x) { return x.max_speed; }),
+      column("shear_rate_mean_per_s", s, [](const Sample& x) { return x.shear_rate_mean; })};
+  if (thixotropic)
+    columns.push_back(
+        column("flocculation_mean", s, [](const Sample& x) { return or_nan(x.flocculation_mean); }));
+  columns.push_back(column("volume_change", s, [](const Sample& x) { return x.volume_change; }));
+  columns.push_back(column("time_step_s", s, [](const Sample& x) { return x.time_step; }));
+  columns.push_back(
+      column("iterations", s, [](const Sample& x) { return static_cast<double>(x.iterations); }));
+  return columns;
+}
+
+ResultTable profile_of(const l_box::Results& r) {
+  using Place = std::array<double, 2>;
+  return {"profile.csv",
+          {column("distance_mm", r.profile, [](const Place& p) { return p[0] * mm; }),
+           column("depth_mm", r.profile, [](const Place& p) { return p[1] * mm; })}};
+}
+
+std::vector<Chart> charts_of(bool thixotropic) {
+  std::vector<Chart> charts{
+      {"front.svg", "Front", time_label, "distance from the gate / mm", {"front_mm"}, {}},
+      {"depths.svg",
+       "Depths",
+       time_label,
+       "depth / mm",
+       {"h1_mm", "h2_mm"},
+       {},
+       {"H1, behind the gate", "H2, at the channel's end"}},
+      {"profile.svg",
+       "Profile at the end",
+       "distance from the gate / mm",
+       "depth / mm",
+       {"depth_mm"},
+       {},
+       {},
+       "profile.csv"}};
+  if (thixotropic)
+    charts.push_back({"flocculation.svg",
+                      "Flocculation",
+                      time_label,
+                      "volume mean of the flocculation state",
+                      {"flocculation_mean"},
+                      {}});
+  return charts;
+}
+
+std::string ratio_text(const l_box::Scene& scene, const l_box::Results& r) {
+  if (!r.passing_ratio) return "passing ratio   none";
+  const std::string cls = class_of(scene, r);
+  const char* without = scene.bars == 0 ? "none without bars" : "none: below 0.80";
+  return fmt::format("passing ratio   {:.2f}   class {}", *r.passing_ratio, cls.empty() ? without : cls);
+}
+
+std::vector<std::string> lines_for(const l_box::Scene& scene, const l_box::Results& r) {
+  const std::string h2 = r.h2 ? fmt::format("{:.0f} mm   at the channel's end", *r.h2 * mm)
+                              : "none: the channel's end was never reached";
+  std::vector<std::string> lines{
+      fmt::format("H1              {:.0f} mm   behind the gate", r.h1 * mm),
+      "H2              " + h2,
+      ratio_text(scene, r),
+      fmt::format("t200            {}", seconds_or(r.t200, "never reached")),
+      fmt::format("t400            {}", seconds_or(r.t400, "never reached")),
+      fmt::format("stopped at      {}", seconds_or(r.stopped_at, "still moving at the end")),
+      fmt::format("in the channel  {:.2f} l", r.volume_in_channel * 1e3)};
+  add_flocculation_line(r.flocculation_mean_start, r.flocculation_mean_end, lines);
+  return lines;
+}
+
+l_box::Observer observe(const l_box::Scene& scene, bool all_frames, const Observer& observer) {
+  l_box::Observer result;
+  result.interrupted = observer.interrupted;
+  if (all_frames) result.on_frame = observer.on_frame;
+  if (observer.on_progress) {
+    result.on_step = [&scene, &observer](const l_box::Sample& s) {
+      observer.on_progress(
+          {s.time, scene.duration, s.time_step, fmt::format("front {:.0f} mm", s.front * mm)});
+    };
+  }
+  return result;
+}
+
+}  // namespace
+
+Outcome run_l_box(const l_box::Scene& scene, bool all_frames, const Observer& observer) {
+  l_box::Outcome raw = l_box::run(scene, observe(scene, all_frames, observer));
+  if (!all_frames && observer.on_frame) observer.on_frame(raw.final_frame);
+  const bool thixotropic = scene.mix.thixotropy.has_value();
+  Outcome outcome;
+  outcome.apparatus = "l_box";
+  outcome.status = raw.status;
+  outcome.results = results_of(scene, raw.results);
+  outcome.checks = std::move(raw.checks);
+  outcome.cost = raw.cost;
+  outcome.series = series_of(raw.series, thixotropic);
+  outcome.tables = {profile_of(raw.results)};
+  outcome.charts = charts_of(thixotropic);
+  outcome.lines = lines_for(scene, raw.results);
+  outcome.pictured = false;
+  if (!std::isfinite(raw.results.h1)) outcome.checks.reasons.push_back("H1 is not a finite number");
+  return outcome;
+}
+
+std::vector<std::string> l_box_uses(const l_box::Scene& scene) {
+  const SpaceKind space = scene.model.space;
+  std::vector<std::string> lines{flocculation_use(scene.mix)};
+  lines.push_back(scene.gate_speed ? "gate: a moving wall along which the concrete slips"
+                                   : "gate: left out (test.gate_speed = \"instant\")");
+  lines.push_back(scene.bars > 0 ? fmt::format("bars: {} of 12 mm in front of the gate", scene.bars)
+                                 : "bars: left out (test.bars = 0)");
+  lines.push_back(space == SpaceKind::plane ? "side walls: left out (model.space = \"plane\")"
+                  : space == SpaceKind::plane_with_side_walls
+                      ? "side walls: as friction, averaged over the width"
+                      : "side walls: no slip");
+  const bool plane = space == SpaceKind::plane || space == SpaceKind::plane_with_side_walls;
+  lines.push_back(plane ? "third dimension: left out (model.space)" : "third dimension: computed");
+  add_model_uses(scene.model, lines);
+  return lines;
+}
+
+}  // namespace tremie::scene

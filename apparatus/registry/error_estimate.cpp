@@ -1,0 +1,181 @@
+#include "apparatus/registry/error_estimate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+namespace tremie::scene {
+namespace {
+
+constexpr double safety = 1.25, least_share = 1e-3;
+/// Walls and free surfaces lie between the nodes: a higher order over three grids is luck.
+constexpr double highest_order = 1.0;
+/// A run's cost over the size of its cells: as many more steps, and points to the power of 1.2 in the plane.
+constexpr double cost_exponent = 3.0;
+
+/// A line of cells costs less than a plane, but hardly less where it is a little coarser: its grids lie
+/// farther apart, so that the bar costs no more.
+Coarsening coarsening_of(const Scene& scene) {
+  const bool line =
+      std::visit([](const auto& test) { return test.model.space == SpaceKind::couette; }, scene.test);
+  return line ? Coarsening{2.0, 3.0} : Coarsening{};
+}
+
+/// A number that a person looks at first. `unit` as printed; `digits` behind the point.
+struct Headline {
+  const char* name;
+  const char* word;
+  const char* unit;
+  int digits;
+};
+
+std::vector<Headline> headlines(const std::string& apparatus) {
+  if (apparatus == "icar_vane")
+    return {{"torque_end_N_m", "torque at the end", "N m", 4}, {"torque_peak_N_m", "torque peak", "N m", 4}};
+  if (apparatus == "l_box")
+    return {{"passing_ratio", "passing ratio", "", 3},
+            {"h1_mm", "H1", "mm", 0},
+            {"h2_mm", "H2", "mm", 0},
+            {"t400_s", "t400", "s", 2}};
+  return {{"spread_mm", "spread", "mm", 0}, {"height_mm", "height", "mm", 1}, {"t500_s", "t500", "s", 2}};
+}
+
+std::optional<double> number_in(const Outcome& outcome, const std::string& name) {
+  const auto* value = find_result(outcome, name);
+  if (const auto* number = value ? std::get_if<double>(value) : nullptr) return *number;
+  return {};
+}
+
+/// The order p of f = f_0 + c h^p over h, m h and c h: (c^p - m^p)/(m^p - 1) = ratio, growing with p.
+double order_from(double ratio, const Coarsening& by) {
+  double low = 0.01, high = 20.0;
+  for (int i = 0; i < 60; ++i) {
+    const double p = 0.5 * (low + high), m = std::pow(by.middle, p);
+    ((std::pow(by.coarse, p) - m) / (m - 1.0) < ratio ? low : high) = p;
+  }
+  return 0.5 * (low + high);
+}
+
+/// A coarser run shows its progress alone: its frames, and what it would be compared with, are nobody's.
+Outcome run_coarser(const Scene& scene, double factor, const Observer& observer) {
+  Observer quiet;
+  quiet.on_progress = observer.on_progress;
+  quiet.interrupted = observer.interrupted;
+  Scene coarse = coarsened(scene, factor);
+  if (auto* vane = std::get_if<icar_vane::Scene>(&coarse.test)) vane->with_reference = false;
+  return run(coarse, quiet);
+}
+
+std::string basis_of(const Headline& headline, const Extrapolation& e) {
+  return e.richardson ? fmt::format("{}: Richardson, order {:.1f}", headline.name, e.order)
+                      : fmt::format("{}: spread of three grids", headline.name);
+}
+
+}  // namespace
+
+Extrapolation extrapolate(double fine, double middle, double coarse, const Coarsening& by) {
+  const double near = fine - middle, far = middle - coarse;
+  const auto [low, high] = std::minmax({fine, middle, coarse});
+  Extrapolation e;
+  e.error = safety * (high - low);
+  if (near * far > 0.0) {
+    e.order = order_from(far / near, by);
+    e.richardson = e.order >= 0.5 && e.order <= 4.0;
+    if (e.richardson)
+      e.error = safety * std::abs(near) / (std::pow(by.middle, std::min(e.order, highest_order)) - 1.0);
+  }
+  e.error = std::max(e.error, least_share * std::abs(fine));
+  return e;
+}
+
+Scene coarsened(const Scene& scene, double factor) {
+  Scene result = scene;
+  std::visit(
+      [&](auto& test) {
+        for (double& h : test.model.cell) h *= factor;
+        if (test.model.time_step) *test.model.time_step *= factor;
+        test.model.step_scale *= factor;
+      },
+      result.test);
+  return result;
+}
+
+ErrorEstimate estimate_error(const Scene& scene, const Outcome& outcome, const Observer& observer) {
+  ErrorEstimate estimate;
+  if (outcome.status != Status::completed) {
+    estimate.basis = "none: the run did not come to its end";
+    return estimate;
+  }
+  const Coarsening by = coarsening_of(scene);
+  try {
+    const Outcome middle = run_coarser(scene, by.middle, observer);
+    const Outcome coarse = run_coarser(scene, by.coarse, observer);
+    estimate.cpu = middle.cost.cpu + coarse.cost.cpu;
+    if (middle.status != Status::completed || coarse.status != Status::completed) {
+      estimate.basis = "none: a coarser run did not come to its end";
+      return estimate;
+    }
+    for (const Headline& headline : headlines(outcome.apparatus)) {
+      const auto f = number_in(outcome, headline.name), m = number_in(middle, headline.name),
+                 c = number_in(coarse, headline.name);
+      if (!f || !m || !c) continue;
+      const Extrapolation e = extrapolate(*f, *m, *c, by);
+      estimate.bars.push_back({headline.name, e.error});
+      estimate.basis += (estimate.basis.empty() ? "" : "; ") + basis_of(headline, e);
+    }
+    if (estimate.bars.empty()) estimate.basis = "none: a coarser run does not reach what this one reads";
+  } catch (const InputError& error) {
+    estimate.basis = fmt::format("none: {}", error.what());
+  }
+  return estimate;
+}
+
+Choice choose_cells(const Scene& scene, double accuracy, const Observer& observer) {
+  std::array<Outcome, 3> pilots;
+  Choice choice;
+  for (std::size_t i = 0; i < 3; ++i) {
+    pilots[i] = run_coarser(scene, 2.0 + static_cast<double>(i), observer);
+    choice.pilot_cpu += pilots[i].cost.cpu;
+  }
+  const auto headline = headlines(pilots[0].apparatus).front();
+  std::array<double, 3> value{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto number = number_in(pilots[i], headline.name);
+    if (!number)
+      throw InputError(fmt::format("--accuracy: coarser cells give no {}: set model.cell", headline.word));
+    value[i] = *number;
+  }
+  // 2 h, 3 h and 4 h are to each other as h, 1.5 h and 2 h. Where no order is seen, the first is assumed.
+  const Extrapolation e = extrapolate(value[0], value[1], value[2]);
+  const double order = e.richardson ? std::min(e.order, highest_order) : 1.0;
+  const double wanted = accuracy * std::abs(value[0]) / e.error;
+  choice.factor = std::clamp(2.0 * std::pow(wanted, 1.0 / order), 0.2, 2.0);
+  const double cost = pilots[0].cost.cpu * std::pow(2.0 / choice.factor, cost_exponent);
+  choice.cpu = 1.5 * cost;
+  return choice;
+}
+
+std::string cells_override(const Scene& scene, double factor) {
+  const auto cell = std::visit([](const auto& test) { return test.model.cell; }, scene.test);
+  const double across = 1e3 * factor * cell[0], up = 1e3 * factor * cell[1];
+  if (cell[0] == cell[1]) return fmt::format("model.cell=\"{:.4g} mm\"", across);
+  return fmt::format("model.cell=[\"{:.4g} mm\", \"{:.4g} mm\"]", across, up);
+}
+
+std::vector<std::string> error_lines(const Outcome& outcome) {
+  std::vector<std::string> lines;
+  if (!outcome.error) return lines;
+  for (const ErrorBar& bar : outcome.error->bars)
+    for (const Headline& headline : headlines(outcome.apparatus))
+      if (bar.name == headline.name)
+        lines.push_back(fmt::format("{} {:.{}f} ± {:.{}f} {}", headline.word,
+                                    number_in(outcome, bar.name).value_or(0.0), headline.digits, bar.error,
+                                    headline.digits, headline.unit));
+  lines.push_back(fmt::format("by {}; {:.2f} s of CPU", outcome.error->basis, outcome.error->cpu));
+  return lines;
+}
+
+}  // namespace tremie::scene

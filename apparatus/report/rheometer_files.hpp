@@ -1,0 +1,45 @@
+#pragma once
+
+// What the commands of the rheometer write beside what a run writes.
+
+#include <signal.h>
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "apparatus/common/outcome.hpp"
+
+namespace tremie::cli {
+
+/// The blocks of summary.json that every apparatus has, null where a rheometer has no such thing (points
+/// lost, cells).
+nlohmann::ordered_json summary_of(const scene::Outcome& outcome);
+
+/// CPU time of this process [s], wall clock [s], largest memory [bytes]: for Cost.
+class Stopwatch {
+ public:
+  Stopwatch();
+  void stop(Cost& cost) const;
+
+ private:
+  double cpu_, wall_;
+};
+
+/// While it lives, an interrupt waits: files are written to their end, or their folder taken away, in less
+/// than a second or two. It ends the program where the hold ends.
+class HeldInterrupts {
+ public:
+  HeldInterrupts();
+  ~HeldInterrupts();
+  HeldInterrupts(const HeldInterrupts&) = delete;
+  HeldInterrupts& operator=(const HeldInterrupts&) = delete;
+
+ private:
+  sigset_t before_;
+};
+
+/// Runs a gnuplot script in the folder. A note for a person where it could not.
+std::string draw(const std::filesystem::path& folder, const std::string& script);
+
+}  // namespace tremie::cli

@@ -1,0 +1,142 @@
+#include "apparatus/slump_flow/keys.hpp"
+
+#include <fmt/format.h>
+
+#include "apparatus/common/shared_keys.hpp"
+
+namespace tremie::scene {
+namespace {
+
+/// What the paper used, where its text or its code's defaults say so (reference_data/published.toml). 15 mm
+/// cells of 2 points a direction give its 13,000 points.
+constexpr const char* paper_preset = R"([mix]
+youngs_modulus = "0.01 MPa"
+poisson_ratio  = 0.45
+[test]
+duration   = "20 s"
+lift_speed = "15 cm/s"
+[floor]
+contact = "friction"
+[model]
+space           = "full"
+yield           = "papanastasiou"
+regularisation  = "5 s"
+scheme          = "explicit_usf"
+shape           = "gimp"
+pressure        = "cell"
+precision       = "single"
+time_step       = "1e-4 s"
+cell            = "15 mm"
+points_per_cell = 2
+)";
+
+constexpr double most_points = 1e8;
+
+Section cone_section() {
+  return {.name = "cone",
+          .help = "Inner dimensions; the defaults are the Abrams cone's.",
+          .keys = {{.name = "top_radius", .range = positive, .fallback = "50 mm"},
+                   {.name = "bottom_radius", .range = positive, .fallback = "100 mm"},
+                   {.name = "height", .range = positive, .fallback = "300 mm"}}};
+}
+
+Section test_section() {
+  return {.name = "test",
+          .help = "The schedule.",
+          .keys = {{.name = "rest",
+                    .dimension = Dimension::time,
+                    .range = not_negative,
+                    .fallback = "0 s",
+                    .help = "before the lift"},
+                   {.name = "duration",
+                    .dimension = Dimension::time,
+                    .range = positive,
+                    .fallback = "30 s",
+                    .help = "at most; a flow that has come to rest ends earlier"},
+                   {.name = "lift_speed",
+                    .dimension = Dimension::speed,
+                    .range = positive,
+                    .words = {"instant"},
+                    .fallback = "15 cm/s",
+                    .help = "of the cone"}}};
+}
+
+/// Three dimensions start from cells and points that a desk computer carries; a scene that gives one of the
+/// two is taken at its word.
+void settle_model(Values& values) {
+  if (values.word("model.space") == "axisymmetric") return;
+  const char* note = "the default in three dimensions";
+  if (!values.given("model.cell")) values.set_number("model.cell", 0.015, Layer::fallback, note);
+  if (!values.given("model.points_per_cell"))
+    values.set_number("model.points_per_cell", 2, Layer::fallback, note);
+}
+
+/// FLIP sums in double precision alone.
+void settle_precision(Values& values) {
+  if (!values.has("model.precision") || values.word("model.precision") != "single") return;
+  if (values.word("model.transfer") == "flip")
+    values.drop_beside("model.precision", "model.transfer",
+                       "is \"single\", which goes with model.transfer = \"apic\" alone");
+}
+
+void settle(Values& values) {
+  settle_model(values);
+  settle_precision(values);
+  settle_mix(values);
+  settle_floor(values);
+}
+
+/// Cells must resolve the cone, and the points must fit into a computer.
+void check_cells(const Values& values, const slump_flow::Scene& scene) {
+  const auto [across, up] = scene.model.cell;
+  if (across > scene.cone.bottom_radius || up > scene.cone.height) {
+    values.fail("model.cell", fmt::format("is larger than the cone; allowed: at most [\"{}\", \"{}\"]",
+                                          write_quantity(scene.cone.bottom_radius, Dimension::length),
+                                          write_quantity(scene.cone.height, Dimension::length)));
+  }
+  const auto [n_across, n_up] = scene.model.points_per_cell;
+  const bool axisymmetric = scene.model.space == SpaceKind::axisymmetric;
+  const double columns = scene.cone.bottom_radius / across * n_across;
+  const double share = scene.model.space == SpaceKind::quarter ? 0.25 : 1.0;
+  const double points =
+      (axisymmetric ? columns : share * 3.1416 * columns * columns) * scene.cone.height / up * n_up;
+  if (points > most_points) {
+    values.fail("model.cell",
+                fmt::format("makes about {:.0e} points; allowed: at most {:.0e}, by larger cells or fewer "
+                            "points_per_cell",
+                            points, most_points));
+  }
+}
+
+}  // namespace
+
+ApparatusKeys slump_flow_keys() {
+  ApparatusKeys keys{.name = "slump_flow",
+                     .help = "The slump-flow test of EN 12350-8.",
+                     .schema = mix_sections(),
+                     .presets = {{"paper", paper_preset}},
+                     .settle = settle};
+  keys.schema.push_back(cone_section());
+  keys.schema.push_back(test_section());
+  keys.schema.push_back(floor_section());
+  keys.schema.push_back(model_section({"axisymmetric", "quarter", "full"}));
+  keys.schema.push_back(output_section());
+  return keys;
+}
+
+slump_flow::Scene slump_flow_scene(const Values& values) {
+  slump_flow::Scene scene;
+  scene.mix = read_mix(values);
+  scene.cone = {values.number("cone.top_radius"), values.number("cone.bottom_radius"),
+                values.number("cone.height")};
+  scene.floor = read_floor(values);
+  scene.rest = values.number("test.rest");
+  scene.duration = values.number("test.duration");
+  scene.lift_speed = values.number_unless("test.lift_speed", "instant");
+  scene.model = read_model(values);
+  scene.frame_interval = values.number("output.frame_interval");
+  check_cells(values, scene);
+  return scene;
+}
+
+}  // namespace tremie::scene

@@ -1,0 +1,37 @@
+#include "apparatus/verification/case.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <limits>
+
+namespace tremie::verification {
+
+double observed_order(const Series& series) {
+  double n = 0.0, sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0;
+  for (const Run& run : series.runs) {
+    if (!(run.error > 0.0) || !(run.h > 0.0)) continue;
+    const double x = std::log(run.h), y = std::log(run.error);
+    n += 1.0, sx += x, sy += y, sxx += x * x, sxy += x * y;
+  }
+  if (n < 2.0) return std::numeric_limits<double>::quiet_NaN();
+  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+}
+
+double cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+bool all_kept(const std::vector<Rung>& rungs) {
+  const auto kept = [](const auto& one) {
+    return std::all_of(one.bounds.begin(), one.bounds.end(), [](const Bound& b) { return b.kept(); });
+  };
+  return std::all_of(rungs.begin(), rungs.end(), [&](const Rung& rung) {
+    return std::all_of(rung.cases.begin(), rung.cases.end(), kept) &&
+           std::all_of(rung.tables.begin(), rung.tables.end(), kept);
+  });
+}
+
+}  // namespace tremie::verification

@@ -1,0 +1,77 @@
+// Rung 10: stiff and extreme scenes.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "apparatus/verification/extremes.hpp"
+#include "apparatus/verification/suite.hpp"
+
+namespace tremie::verification {
+namespace {
+
+const char* word_of(Ending ending) {
+  switch (ending) {
+    case Ending::right:
+      return "right";
+    case Ending::marked:
+      return "exit 3";
+    case Ending::no_meaning:
+      return "exit 2";
+    case Ending::too_slow:
+      return "stopped";
+    case Ending::silent_wrong:
+      break;
+  }
+  return "**silent**";
+}
+
+/// One line without what a table cannot hold.
+std::string in_a_table(std::string text) {
+  if (const auto end = text.find('\n'); end != std::string::npos) text.resize(end);
+  std::replace(text.begin(), text.end(), '|', '/');
+  return text;
+}
+
+}  // namespace
+
+Rung extremes_rung(Depth depth) {
+  const double limit = depth == Depth::full ? 120.0 : 2.0;
+  std::vector<Extreme> cases = extremes();
+  if (depth == Depth::quick) {  // every seventh
+    std::vector<Extreme> some;
+    for (std::size_t i = 0; i < cases.size(); i += 7) some.push_back(cases[i]);
+    cases = std::move(some);
+  }
+  std::vector<Verdict> verdicts;
+  for (const Extreme& one : cases) verdicts.push_back(judge(one, limit));
+  judge_monotony(cases, verdicts);
+  Table table{.name = "Stiff and extreme scenes",
+              .text = "",
+              .columns = {"family", "case", "ends", "reading", "CPU s", "why"},
+              .rows = {}};
+  std::map<Ending, int> count;
+  double cpu = 0.0;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const Verdict& v = verdicts[i];
+    ++count[v.ending];
+    cpu += v.cpu;
+    table.rows.push_back({cases[i].family, cases[i].name, word_of(v.ending),
+                          v.reading ? fmt::format("{:.4g}", *v.reading) : "", fmt::format("{:.2f}", v.cpu),
+                          in_a_table(v.why)});
+  }
+  table.text = fmt::format(
+      "{} scenes in {:.0f} s of CPU: {} right, {} marked as not to be trusted (exit 3), {} refused (exit 2), "
+      "{} "
+      "stopped after {:g} s, {} wrong without saying so. The reading is the spread in mm or the torque in N "
+      "m.",
+      cases.size(), cpu, count[Ending::right], count[Ending::marked], count[Ending::no_meaning],
+      count[Ending::too_slow], limit, count[Ending::silent_wrong]);
+  table.bounds = {{.what = "scenes wrong without saying so",
+                   .value = static_cast<double>(count[Ending::silent_wrong]),
+                   .limit = 0.0}};
+  return {10, "Stiff and extreme scenes", {}, {table}};
+}
+
+}  // namespace tremie::verification

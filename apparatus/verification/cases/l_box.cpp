@@ -1,0 +1,50 @@
+// Rung 7: the L-box at rest, against the thin-layer closed form.
+
+#include <fmt/format.h>
+
+#include "apparatus/verification/suite.hpp"
+#include "apparatus/verification/references/lbox_case.hpp"
+
+namespace tremie::verification {
+namespace {
+
+Run at_rest(double cell, bool side_walls) {
+  const l_box::Scene scene = lbox_reference::scene_of(50.0, cell, side_walls);
+  const double start = cpu_seconds();
+  const l_box::Outcome outcome = l_box::run(scene);
+  return {fmt::format("{:g} mm", 1e3 * cell), cell, lbox_reference::compare(scene, outcome).error.worst,
+          cpu_seconds() - start,
+          outcome.checks.unconverged_steps
+              ? fmt::format("{} unconverged steps", outcome.checks.unconverged_steps)
+              : ""};
+}
+
+}  // namespace
+
+Rung l_box_rung(Depth depth) {
+  Case one{
+      .name = "l_box_at_rest",
+      .title = "The profile of the L-box at rest",
+      .equation = "50 Pa, 30 Pa·s, gate at 30 cm/s, 180 s",
+      .reference =
+          "F(h) − F(h2) = (τ0/ρg)(L − x) from 100 mm behind the gate on, at the volume there; F = h²/2, or "
+          "with side walls (W/2)[h − (W/2) ln(1 + 2h/W)]",
+      .norm = "largest mean of h / h_exact − 1 over 100 mm",
+      .series = {{"plane", {}}, {"plane with side walls", {}}},
+      .bounds = {},
+      .notes = {"Within a depth of the gate concrete falls from the column's walls, and a bed at its yield "
+                "stress bears it: lbox_study.md has how high."}};
+  for (Series& series : one.series) {
+    const bool side_walls = &series != &one.series.front();
+    for (double cell : {0.02, 0.01, 0.005})
+      if (cell > 0.005 || depth == Depth::full) series.runs.push_back(at_rest(cell, side_walls));
+    one.bounds.push_back(
+        {.what = series.scheme + ": error at 10 mm", .value = series.runs[1].error, .limit = 0.03});
+    if (depth == Depth::full)
+      one.bounds.push_back(
+          {.what = series.scheme + ": error at 5 mm", .value = series.runs[2].error, .limit = 0.03});
+  }
+  return {7, "The L-box at rest", {one}};
+}
+
+}  // namespace tremie::verification

@@ -1,0 +1,42 @@
+#pragma once
+
+// A body of concrete on its grid: plain data, whatever the scheme that steps it.
+
+#include <array>
+#include <vector>
+
+#include "libmpm/boundary/boundary_points.hpp"
+#include "libmpm/constitutive/mix.hpp"
+#include "libmpm/transfer/apic.hpp"
+
+namespace tremie {
+
+/// Velocities of the low and the high wall of each axis [m/s]; the normal component must be zero.
+template <int D>
+struct WallVelocities {
+  std::array<std::array<Vec<D>, 2>, D> v;
+  WallVelocities() {
+    for (auto& axis : v) axis.fill(Vec<D>::Zero());
+  }
+};
+
+/// A body of one mix on its grid: everything that a step reads and writes.
+template <class Space>
+struct Body {
+  static constexpr int D = Space::dim;
+  Mix mix;
+  Vec<D> gravity = Vec<D>::Zero();  ///< [m/s^2]
+  Points<D> points;
+  ActiveGrid<D> grid;
+  Motion<Space> motion{};                  ///< of the points
+  WallVelocities<D> walls{};               ///< of the walls at the ends of the axes
+  std::vector<BoundaryPoint<D>> boundary;  ///< walls inside the grid
+  double time = 0.0, dt = 0.0;             ///< [s]; dt of the last step
+
+  NodalState<D> nodes;    ///< of the last step, velocities at its start
+  std::vector<Vec<D>> v;  ///< nodal velocities at the end of the last step [m/s]
+  double dissipation = 0.0;          ///< power of the stresses in the last step [W], if asked for
+  std::vector<Vec<D>> wall_force;    ///< of the flat walls on each node in the last step [N], if asked for
+};
+
+}  // namespace tremie

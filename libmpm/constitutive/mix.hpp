@@ -1,0 +1,18 @@
+#pragma once
+
+#include <optional>
+
+#include "libmpm/constitutive/flocculation.hpp"
+
+namespace tremie {
+
+/// A fresh concrete as a continuum, SI units.
+struct Mix {
+  double density = 2400.0;  ///< rho [kg/m^3]
+  double tau_0 = 0.0;       ///< dynamic yield stress [Pa]
+  double mu = 0.0;          ///< plastic viscosity [Pa s]
+  double K = 1e6;           ///< bulk modulus [Pa]
+  std::optional<Thixotropy> thixotropy;
+};
+
+}  // namespace tremie

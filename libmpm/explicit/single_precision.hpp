@@ -1,0 +1,197 @@
+#pragma once
+
+// The pass over the points with shape functions, sums, the law and stresses in single precision: sixteen
+// points at once, two groups of eight. Places, ln J and flocculation stay in double precision.
+
+#include <span>
+
+#include "libmpm/explicit/pass.hpp"
+
+namespace tremie::detail {
+
+/// Two groups of eight side by side; the second is the first again, with no point of its own, at a tile's
+/// end.
+struct GroupPair {
+  std::size_t g[2];
+  int n[2];  ///< real points
+  std::size_t real() const { return static_cast<std::size_t>(n[0] + n[1]); }
+};
+
+/// What a quantity is at the points of a pair.
+inline Singles in_single(const std::vector<Octet>& of, const GroupPair& pair) {
+  return to_single(of[pair.g[0]], of[pair.g[1]]);
+}
+
+/// Updates the state of a pair, gives its pressures to their cells and its stress back. The stress has the
+/// pressure where that does not go by the cell.
+template <Pass pass, class Space, class Law>
+LaneStress<Space::dim, Singles> press_pair(TilePass<pass, Space, Law, SingleNode>& in, const GroupPair& pair,
+                                           const SingleFields<Space::dim>& read) {
+  constexpr int D = Space::dim;
+  auto& points = in.points;
+  const GroupCells cell[2] = {cells_of_group(in, pair.g[0]), cells_of_group(in, pair.g[1])};
+  const auto rate = strain_rate<Space, Singles>(read.along, read.value[0], in_single(points.x[0], pair));
+  Octet gamma_dot[2], tau_y[2], pressure[2];
+  for (int half = 0; half < 2; ++half) {
+    gamma_dot[half] = to_double(rate.gamma_dot, half), tau_y[half] = pressure[half] = Octet{};
+    if (pair.n[half] == 0) continue;
+    const std::size_t g = pair.g[half];
+    tau_y[half] = update_yield_stress<D>(in.mix, in.input.dt, gamma_dot[half], points, g, in.reduced);
+    points.ln_J[g] += in.input.dt * divergence_of_group(in, to_double(rate.divergence, half), cell[half]);
+  }
+  const Singles volume = in_single(points.V0, pair) * exp(in_single(points.ln_J, pair));
+  for (int half = 0; half < 2 && pair.n[half] > 0; ++half) {
+    const Octet of_half = to_double(volume, half);
+    in.reduced.volume += of_half, in.reduced.volume_rate += of_half * gamma_dot[half];
+    pressure[half] = of_half * (-in.mix.K * points.ln_J[pair.g[half]]);
+  }
+  Singles held = volume;
+  if (in.held) held *= look_up<sizeof(HeldCell<D>)>(&in.held->front().hold, cell[0], cell[1]);
+  const Singles viscosity =
+      held * viscosity_of(in.mix, in.law, rate.gamma_dot, to_single(tau_y[0], tau_y[1]));
+  if (!in.cells) return stress_of<Space, Singles>(rate, viscosity, to_single(pressure[0], pressure[1]));
+  for (int half = 0; half < 2 && pair.n[half] > 0; ++half)
+    in.pressed.push(cell[half], pair.n[half], in.input.impulse_dt * pressure[half]);
+  return stress_of<Space, Singles>(rate, viscosity, Singles{});
+}
+
+/// Moves a pair with what it read; the moments become its affine velocities.
+template <Pass pass, class Space, class Law>
+void move_pair(TilePass<pass, Space, Law, SingleNode>& in, const GroupPair& pair,
+               const SingleWeights<Space::dim>& weights, SingleFields<Space::dim>& read) {
+  constexpr int D = Space::dim;
+  const std::array<Singles, D> inverse = inverse_inertia<D>(in.frame, weights.inertia);
+  for (int b = 0; b < D; ++b)
+    for (int a = 0; a < D; ++a) read.along[b][a] *= inverse[b];
+  for (int half = 0; half < 2 && pair.n[half] > 0; ++half) {
+    const std::size_t g = pair.g[half];
+    Octet v[D];
+    for (int d = 0; d < D; ++d) in.points.v[d][g] = v[d] = to_double(read.value[d], half);
+    move_places<D>(in.state.grid.axes, in.frame, in.input.dt, v, in.points, g, in.reduced);
+    for (int b = 0; b < D && !in.points.C[0].empty(); ++b)
+      for (int a = 0; a < D; ++a) in.points.C[a * D + b][g] = to_double(read.along[b][a], half);
+  }
+}
+
+/// Velocities and affine velocities of a pair as they are kept.
+template <int D>
+SingleFields<D> kept_motion(const LanePoints<D>& points, const GroupPair& pair) {
+  SingleFields<D> motion;
+  for (int i = 0; i < D; ++i) {
+    motion.value[i] = in_single(points.v[i], pair);
+    for (int j = 0; j < D; ++j) motion.along[j][i] = in_single(points.C[i * D + j], pair);
+  }
+  return motion;
+}
+
+/// Mass and momentum of a pair to the controls.
+template <ShapeFunctions kind, int D>
+Reached scatter_motion(const SingleWeights<D>& weights, const SingleFields<D>& motion, const GroupPair& pair,
+                       const LanePoints<D>& points, SingleNode* sums) {
+  SingleMomenta<D> momenta;
+  const Singles mass = momenta.value[D] = in_single(points.mass, pair);
+  for (int i = 0; i < D; ++i) {
+    momenta.value[i] = mass * motion.value[i];
+    for (int j = 0; j < D; ++j) {
+      momenta.moment[j][i] = mass * motion.along[j][i];
+      momenta.value[i] += momenta.moment[j][i] * weights.middle[j];
+    }
+  }
+  return scatter_momenta<kind, D>(weights, momenta, pair.real(), sums);
+}
+
+/// Impulses of a pair's stresses to the controls; x_0: its first coordinates.
+template <class Space>
+Reached scatter_stress(double impulse_dt, const SingleWeights<Space::dim>& weights,
+                       const LaneStress<Space::dim, Singles>& stress, const GroupPair& pair,
+                       const Singles& x_0, SingleNode* sums) {
+  constexpr int D = Space::dim;
+  constexpr bool hooped = std::is_same_v<Space, Axisymmetric>;
+  const auto dt = static_cast<float>(impulse_dt);
+  SingleImpulses<D> impulses;
+  for (int i = 0; i < D; ++i) {
+    for (int j = 0; j < D; ++j) impulses.slope[j][i] = -dt * stress.sigma[i][j];
+    if constexpr (hooped) impulses.value[i] = i == 0 ? -dt * stress.hoop / x_0 : Singles{};
+  }
+  return scatter_impulses<D, hooped>(weights, impulses, pair.real(), sums);
+}
+
+template <ShapeFunctions kind, WeighedFor use, int D>
+void weigh_pair(const StencilFrame<D>& frame, const LanePoints<D>& points, const GroupPair& pair,
+                SingleWeights<D>& weights) {
+  weigh_single<kind, use, D>(frame, {places_of<D>(points, pair.g[0]), places_of<D>(points, pair.g[1])},
+                             weights);
+}
+
+/// Pairs that go through a pass side by side, from part to part: what one of them waits for (a root, a
+/// quotient, an exponential) the others fill.
+inline constexpr std::size_t pairs_at_once = 2;
+using Batch = std::span<const GroupPair>;
+
+/// A pass with stress over a batch.
+template <ShapeFunctions kind, Pass pass, class Space, class Law>
+void press_batch(TilePass<pass, Space, Law, SingleNode>& in, Batch batch) {
+  constexpr int D = Space::dim;
+  static_assert(pass.gather && !pass.move);
+  SingleWeights<D> weights[pairs_at_once];
+  SingleFields<D> read[pairs_at_once];
+  LaneStress<D, Singles> stress[pairs_at_once];
+  for (std::size_t i = 0; i < batch.size(); ++i)
+    weigh_pair<kind, WeighedFor::stress>(in.frame, in.points, batch[i], weights[i]);
+  for (std::size_t i = 0; i < batch.size(); ++i)
+    gather_slopes<D, std::is_same_v<Space, Axisymmetric>>(in.v.data(), weights[i], batch[i].real(), read[i]);
+  for (std::size_t i = 0; i < batch.size(); ++i) stress[i] = press_pair(in, batch[i], read[i]);
+  for (std::size_t i = 0; i < batch.size(); ++i)
+    in.count(scatter_stress<Space>(in.input.impulse_dt, weights[i], stress[i], batch[i],
+                                   in_single(in.points.x[0], batch[i]), in.sums.data()));
+}
+
+/// A pass with motion over a batch.
+template <ShapeFunctions kind, Pass pass, class Space, class Law>
+void move_batch(TilePass<pass, Space, Law, SingleNode>& in, Batch batch) {
+  constexpr int D = Space::dim;
+  static_assert(pass.move && !pass.stress);
+  SingleWeights<D> weights[pairs_at_once];
+  SingleFields<D> motion[pairs_at_once];
+  if constexpr (pass.gather) {
+    for (std::size_t i = 0; i < batch.size(); ++i)
+      weigh_pair<kind, WeighedFor::reading>(in.frame, in.points, batch[i], weights[i]);
+    for (std::size_t i = 0; i < batch.size(); ++i)
+      gather_moments<kind, D>(in.v.data(), weights[i], batch[i].real(), motion[i]);
+    for (std::size_t i = 0; i < batch.size(); ++i) move_pair(in, batch[i], weights[i], motion[i]);
+  } else {
+    for (std::size_t i = 0; i < batch.size(); ++i) motion[i] = kept_motion<D>(in.points, batch[i]);
+  }
+  for (std::size_t i = 0; i < batch.size(); ++i)
+    weigh_pair<kind, WeighedFor::giving>(in.frame, in.points, batch[i], weights[i]);
+  for (std::size_t i = 0; i < batch.size(); ++i)
+    in.count(scatter_motion<kind, D>(weights[i], motion[i], batch[i], in.points, in.sums.data()));
+}
+
+/// All groups of a tile, two by two. With the stress first a pass has either stress or motion.
+template <ShapeFunctions kind, Pass pass, class Space, class Law>
+void visit_groups_as(TilePass<pass, Space, Law, SingleNode>& in) {
+  constexpr int D = Space::dim;
+  const auto last = static_cast<std::size_t>(in.tile.last_group);
+  for (auto g = static_cast<std::size_t>(in.tile.first_group); g < last;) {
+    std::array<GroupPair, pairs_at_once> pairs;
+    std::size_t n = 0;
+    for (; n < pairs_at_once && g < last; ++n, g += 2) {
+      pairs[n] = {{g, g}, {filled<D>(in.points, g), 0}};
+      if (g + 1 < last) pairs[n].g[1] = g + 1, pairs[n].n[1] = filled<D>(in.points, g + 1);
+    }
+    if constexpr (pass.stress)
+      press_batch<kind>(in, Batch(pairs.data(), n));
+    else
+      move_batch<kind>(in, Batch(pairs.data(), n));
+  }
+}
+template <Pass pass, class Space, class Law>
+void visit_groups(TilePass<pass, Space, Law, SingleNode>& in) {
+  if (in.frame.kind == ShapeFunctions::gimp)
+    visit_groups_as<ShapeFunctions::gimp>(in);
+  else
+    visit_groups_as<ShapeFunctions::b_spline>(in);
+}
+
+}  // namespace tremie::detail

@@ -1,0 +1,326 @@
+#pragma once
+
+// Material points for the explicit steps: sorted by tile and cell, eight side by side, each quantity an array
+// of its own.
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include "libmpm/explicit/tile_layout.hpp"
+#include "libmpm/parallel/buffers.hpp"
+#include "libmpm/parallel/simd.hpp"
+#include "libmpm/particles/particles.hpp"
+
+namespace tremie {
+
+/// What a material does not have is an empty array. A group may be filled up with points without mass, whose
+/// id is -1.
+template <int D>
+struct LanePoints {
+  std::array<std::vector<Octet>, D> x, v;  ///< [m], [m/s]
+  std::array<std::vector<Octet>, D * D>
+      C;                              ///< affine velocity, row by row [1/s]; empty where nobody reads it
+  std::vector<Octet> mass, V0, ln_J;  ///< [kg], [m^3], ln(V/V0)
+  std::vector<Octet> lambda;          ///< empty without thixotropy
+  std::vector<Octet> gamma_dot;       ///< [1/s]; empty where neither thixotropy nor a frame needs them
+  std::vector<std::array<std::int32_t, octet_size>> id;  ///< place in the Points that it came from
+  std::size_t n = 0;                                     ///< number of real points
+
+  std::size_t groups() const { return mass.size(); }
+  bool thixotropic() const { return !lambda.empty(); }
+};
+
+template <int D>
+std::array<Octet, D> places_of(const LanePoints<D>& points, std::size_t group) {
+  std::array<Octet, D> x;
+  for (int d = 0; d < D; ++d) x[d] = points.x[d][group];
+  return x;
+}
+
+/// Number of real points in a group; they come first.
+template <int D>
+int filled(const LanePoints<D>& points, std::size_t group) {
+  int n = octet_size;
+  while (n > 0 && points.id[group][static_cast<std::size_t>(n - 1)] < 0) --n;
+  return n;
+}
+
+namespace detail {
+
+/// The k-th double of what a point has of one quantity; matrices row by row.
+inline double& entry(double& value, int) { return value; }
+template <int D>
+double& entry(Vec<D>& value, int k) {
+  return value[k];
+}
+template <int D>
+double& entry(Mat<D, D>& value, int k) {
+  return value(k / D, k % D);
+}
+
+/// Visits the quantities that both kinds of points have, each with its arrays here and its array there.
+template <int D, class Visit>
+void for_each_quantity(LanePoints<D>& lanes, Points<D>& points, Visit visit) {
+  const auto one = [](std::vector<Octet>& array) { return std::span<std::vector<Octet>>(&array, 1); };
+  visit(std::span<std::vector<Octet>>(lanes.x), points.x);
+  visit(std::span<std::vector<Octet>>(lanes.v), points.v);
+  visit(std::span<std::vector<Octet>>(lanes.C), points.C);
+  visit(one(lanes.mass), points.mass);
+  visit(one(lanes.V0), points.V0);
+  visit(one(lanes.ln_J), points.ln_J);
+  visit(one(lanes.lambda), points.lambda);
+  visit(one(lanes.gamma_dot), points.gamma_dot);
+}
+
+}  // namespace detail
+
+/// Writes the state of the points to where they came from; what is not kept of them stays empty there.
+template <int D>
+void write_back(LanePoints<D>& lanes, const std::array<Axis, D>& axes, Points<D>& points) {
+  detail::for_each_quantity<D>(lanes, points, [&](std::span<std::vector<Octet>> from, auto& to) {
+    if (from.front().empty()) return;
+    to.resize(lanes.n);
+    for (std::size_t g = 0; g < lanes.groups(); ++g)
+      for (int l = 0; l < octet_size; ++l) {
+        const std::int32_t id = lanes.id[g][static_cast<std::size_t>(l)];
+        if (id < 0) break;  // the rest fills up the group
+        for (std::size_t k = 0; k < from.size(); ++k)
+          detail::entry(to[static_cast<std::size_t>(id)], static_cast<int>(k)) = from[k][g][l];
+      }
+  });
+  for (int d = 0; d < D; ++d) {
+    const Axis& a = axes[d];
+    if (!a.periodic) continue;
+    for (auto& x : points.x) x[d] -= a.length() * std::floor((x[d] - a.origin) / a.length());
+  }
+}
+
+/// Takes over the points, eight by eight as they come: to be sorted. One array after the other is given back:
+/// there is no room for both in a large body. `rates`: keeps shear rates for a mix without thixotropy, too.
+template <int D>
+void take_points(Points<D>& points, bool affine, bool rates, LanePoints<D>& lanes) {
+  const std::size_t n = points.size(), groups = (n + octet_size - 1) / octet_size;
+  points.C.resize(affine ? n : 0, Mat<D, D>::Zero());  // none were brought back to points that start anew
+  if (rates) points.gamma_dot.resize(n, 0.0);
+  lanes.n = n;
+  detail::for_each_quantity<D>(lanes, points, [&](std::span<std::vector<Octet>> to, auto& from) {
+    for (std::size_t k = 0; k < to.size() && !from.empty(); ++k) {
+      to[k].reserve(groups + groups / 4);  // sorting fills groups up
+      to[k].assign(groups, Octet{});
+      for (std::size_t p = 0; p < n; ++p)
+        to[k][p / octet_size][p % octet_size] = detail::entry(from[p], static_cast<int>(k));
+    }
+    give_back(from);
+  });
+  lanes.id.assign(groups, {});
+  for (std::size_t p = 0; p < groups * octet_size; ++p)
+    lanes.id[p / octet_size][p % octet_size] = p < n ? static_cast<std::int32_t>(p) : -1;
+}
+
+namespace detail {
+
+/// Where a point is sorted to (tiles in their order, and the cells of each) and where it was (eight times its
+/// group plus its lane), in one number: half of the memory that two would take.
+struct SortKey {
+  std::uint64_t both;
+
+  SortKey(std::uint64_t cell, std::size_t slot) : both(cell << 32 | slot) {}
+  std::uint64_t cell() const { return both >> 32; }
+  std::int32_t slot() const { return static_cast<std::int32_t>(both & 0xffffffffU); }
+  auto operator<=>(const SortKey&) const = default;
+};
+
+/// The tiles' positions are those of cells in a box that holds all points.
+template <int D>
+struct TileBox {
+  Index<D> low, size;
+  std::uint64_t number(const Index<D>& tile) const {
+    std::uint64_t n = 0;
+    for (int d = 0; d < D; ++d)
+      n = n * static_cast<std::uint64_t>(size[d]) + static_cast<std::uint64_t>(tile[d] - low[d]);
+    return n;
+  }
+  Index<D> tile(std::uint64_t number) const {
+    Index<D> at;
+    for (int d = D - 1; d >= 0; --d) {
+      const auto n = static_cast<std::uint64_t>(size[d]);
+      at[d] = low[d] + static_cast<int>(number % n);
+      number /= n;
+    }
+    return at;
+  }
+};
+
+/// Tile of a cell on an axis.
+inline int tile_of(const Axis& axis, int cell) {
+  return wrapped(axis, (cell >= 0 ? cell : cell - tile_cells + 1) / tile_cells);
+}
+
+/// Keys of all points in their order. Within a tile the last direction of the cells runs fastest, or slowest.
+template <int D>
+TileBox<D> sort_keys(const std::array<Axis, D>& axes, double stencil_shift, const LanePoints<D>& lanes,
+                     bool last_slowest, std::vector<SortKey>& keys) {
+  const auto cell_of = [&](int d, std::size_t g, std::size_t l) {
+    return static_cast<int>(std::floor((lanes.x[d][g][l] - axes[d].origin) / axes[d].h + stencil_shift));
+  };
+  TileBox<D> box;
+  Index<D> high;
+  box.low.fill(std::numeric_limits<int>::max()), high.fill(std::numeric_limits<int>::min());
+  const auto each = [&](auto visit) {
+    for (std::size_t g = 0; g < lanes.groups(); ++g)
+      for (std::size_t l = 0; l < octet_size && lanes.id[g][l] >= 0; ++l) visit(g, l);
+  };
+  each([&](std::size_t g, std::size_t l) {
+    for (int d = 0; d < D; ++d) {
+      const int tile = tile_of(axes[d], cell_of(d, g, l));
+      box.low[d] = std::min(box.low[d], tile), high[d] = std::max(high[d], tile);
+    }
+  });
+  for (int d = 0; d < D; ++d) box.size[d] = high[d] - box.low[d] + 1;
+  std::uint64_t cells = power(tile_cells, D);
+  for (int d = 0; d < D; ++d) cells *= static_cast<std::uint64_t>(box.size[d]);
+  if (cells >> 32 != 0) throw std::length_error("the points lie further apart than 4e9 cells can tell");
+  keys.reserve(lanes.groups() * octet_size);
+  each([&](std::size_t g, std::size_t l) {
+    Index<D> tile;
+    std::uint64_t cell = 0;
+    for (int i = 0; i < D; ++i) {
+      const int d = last_slowest ? (i + D - 1) % D : i, c = cell_of(d, g, l);
+      tile[d] = tile_of(axes[d], c);
+      cell = cell * tile_cells + static_cast<std::uint64_t>(((c % tile_cells) + tile_cells) % tile_cells);
+    }
+    keys.emplace_back(box.number(tile) * power(tile_cells, D) + cell, g * octet_size + l);
+  });
+  std::sort(keys.begin(), keys.end());
+  return box;
+}
+
+/// What is left of a cell's points after groups of eight makes a group of its own from here on; fewer are put
+/// together with those of other cells of the tile.
+inline constexpr std::size_t own_group = 5;
+
+/// Slots that make up each group, -1 for what fills it up.
+using GroupSlots = std::array<std::int32_t, octet_size>;
+
+/// Groups of one cell's points first, of several cells' points at the end. Returns how many the latter are.
+/// Those of `packed` points are full but for the last, whatever cells they hold, and are not counted.
+inline std::size_t form_groups(const SortKey* first, const SortKey* last, bool packed,
+                               std::vector<GroupSlots>& groups) {
+  std::vector<std::int32_t> left;
+  const auto add = [&](const auto* from, std::size_t n, auto slot) {
+    GroupSlots group;
+    group.fill(-1);
+    for (std::size_t l = 0; l < n; ++l) group[l] = slot(from[l]);
+    groups.push_back(group);
+  };
+  const auto of_key = [](const SortKey& key) { return key.slot(); };
+  for (; packed && first != last; first += std::min<std::ptrdiff_t>(octet_size, last - first))
+    add(first, static_cast<std::size_t>(std::min<std::ptrdiff_t>(octet_size, last - first)), of_key);
+  while (first != last) {
+    const SortKey* end =
+        std::find_if(first, last, [&](const SortKey& key) { return key.cell() != first->cell(); });
+    for (std::size_t n;
+         (n = std::min<std::size_t>(octet_size, static_cast<std::size_t>(end - first))) >= own_group;
+         first += n)
+      add(first, n, of_key);
+    for (; first != end; ++first) left.push_back(of_key(*first));
+  }
+  const std::size_t before = groups.size();
+  for (std::size_t i = 0; i < left.size(); i += octet_size)
+    add(&left[i], std::min<std::size_t>(octet_size, left.size() - i), [](std::int32_t slot) { return slot; });
+  return groups.size() - before;
+}
+
+/// Brings what an array keeps of the points into the groups. What fills up a group stands where its first
+/// point does, so that its weights are finite. `scratch` has the old array afterwards.
+inline void permute(const std::vector<GroupSlots>& groups, bool zero_filled, std::vector<Octet>& array,
+                    std::vector<Octet>& scratch) {
+  if (array.empty()) return;
+  scratch.reserve(array.capacity());
+  scratch.resize(groups.size());
+  for (std::size_t g = 0; g < groups.size(); ++g)
+    for (std::size_t l = 0; l < octet_size; ++l) {
+      const bool real = groups[g][l] >= 0;
+      const auto slot = static_cast<std::size_t>(groups[g][real ? l : 0]);
+      scratch[g][l] = real || !zero_filled ? array[slot / octet_size][slot % octet_size] : 0.0;
+    }
+  array.swap(scratch);
+}
+
+template <int D>
+void permute_points(const std::vector<GroupSlots>& groups, LanePoints<D>& lanes) {
+  std::vector<std::vector<Octet>*> arrays;
+  Points<D> none;
+  for_each_quantity<D>(lanes, none, [&](std::span<std::vector<Octet>> of_quantity, auto&) {
+    for (std::vector<Octet>& array : of_quantity) arrays.push_back(&array);
+  });
+  constexpr std::size_t many = 20000;  // below, waking OpenMP's threads takes longer
+#pragma omp parallel if (groups.size() > many)
+  {
+    std::vector<Octet> scratch;
+#pragma omp for schedule(dynamic)
+    for (std::size_t i = 0; i < arrays.size(); ++i)
+      permute(groups, arrays[i] == &lanes.mass || arrays[i] == &lanes.V0, *arrays[i], scratch);
+  }
+  std::vector<std::array<std::int32_t, octet_size>> id(groups.size());
+  for (std::size_t g = 0; g < groups.size(); ++g)
+    for (std::size_t l = 0; l < octet_size; ++l) {
+      const std::int32_t slot = groups[g][l];
+      id[g][l] = slot < 0 ? -1
+                          : lanes.id[static_cast<std::size_t>(slot) / octet_size]
+                                    [static_cast<std::size_t>(slot) % octet_size];
+    }
+  lanes.id = std::move(id);
+}
+
+/// Brings the points back into a periodic axis.
+template <int D>
+void wrap_points(const std::array<Axis, D>& axes, LanePoints<D>& lanes) {
+  for (int d = 0; d < D; ++d)
+    if (axes[d].periodic)
+      for (Octet& x : lanes.x[d]) x -= axes[d].length() * floor((x - axes[d].origin) / axes[d].length());
+}
+
+}  // namespace detail
+
+/// Tiles of the points, and how many of their groups are of points of several cells.
+template <int D>
+struct SortedTiles {
+  std::vector<Tile<D>> tiles;
+  std::int64_t mixed = 0;
+};
+
+/// Sorts the points by tile and cell into groups of eight. `stencil_shift`: 0 where a point's stencil begins
+/// with its cell, 1/2 where it is that of the nearest corner (GIMP). `packed`: groups need not be of one
+/// cell, and the last direction of a tile's cells runs slowest.
+template <int D>
+SortedTiles<D> sort_into_tiles(const std::array<Axis, D>& axes, double stencil_shift, LanePoints<D>& lanes,
+                               bool packed = false) {
+  detail::wrap_points<D>(axes, lanes);
+  std::vector<detail::SortKey> keys;
+  const auto box = detail::sort_keys<D>(axes, stencil_shift, lanes, packed, keys);
+  SortedTiles<D> sorted;
+  std::vector<detail::GroupSlots> groups;
+  groups.reserve(lanes.groups() + lanes.groups() / 4);
+  const auto tile_number = [](const detail::SortKey& key) { return key.cell() / power(tile_cells, D); };
+  for (const detail::SortKey *first = keys.data(), *last = first + keys.size(); first != last;) {
+    const std::uint64_t number = tile_number(*first);
+    const detail::SortKey* end =
+        std::find_if(first, last, [&](const detail::SortKey& key) { return tile_number(key) != number; });
+    Tile<D> tile{.at = box.tile(number), .first_group = static_cast<int>(groups.size())};
+    tile.mixed_groups = static_cast<int>(detail::form_groups(first, end, packed, groups));
+    tile.last_group = static_cast<int>(groups.size());
+    sorted.mixed += tile.mixed_groups;
+    sorted.tiles.push_back(tile);
+    first = end;
+  }
+  keys = {};
+  detail::permute_points<D>(groups, lanes);
+  return sorted;
+}
+
+}  // namespace tremie

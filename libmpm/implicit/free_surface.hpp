@@ -1,0 +1,54 @@
+#pragma once
+
+// The head that a free surface gains or loses by its own motion in a step.
+//
+// A step finds its velocities with gravity where the concrete is at its start. A surface that sinks by dt v
+// loses the head rho g dt v within the step; left out, a long step carries a viscous fluid past its level,
+// and the next one back further: waves that never die, however viscous it is, as soon as dt exceeds about 10
+// mu/(rho g H). With the surface where the step leaves it,
+//
+//   1/2 rho g dt int_surface v_up^2 dx
+//
+// joins the step's energy (the free-surface stabilisation of Kaus, Muehlhaus and May 2010, fully implicit):
+// levelling is then stable for every step.
+
+#include "libmpm/implicit/state.hpp"
+
+namespace tremie::detail {
+
+/// Surface of what stands on the floor of a section (its lowest cells): from there up, where a cell is less
+/// than half full. What hangs on a wall higher up has none.
+template <class Space>
+std::vector<BoundPoint<Space::dim>> surface_of_pool(const ImplicitBody<Space>& body, double dt) {
+  constexpr int D = Space::dim, up = Space::up;
+  static_assert(D == 2, "a section has one direction across");
+  std::vector<BoundPoint<D>> surface;
+  const auto& grid = body.grid;
+  const double section = grid.axes[0].h * grid.axes[1].h;
+  const auto fill = [&](int c) { return body.quadrature.V_cell[c] / section; };
+  for (int c = 0; c < grid.n_cells(); ++c) {
+    Index<D> at = grid.cell_index[c];
+    if (at[up] != 0) continue;
+    int top = c;
+    while (fill(top) >= 0.5) {
+      ++at[up];
+      const int next = grid.cell_map.at(at);
+      if (next < 0) break;
+      top = next;
+    }
+    for (const Vec<D>& across : {gauss_place<D>(0), gauss_place<D>(power(2, D) - 1)}) {
+      Vec<D> s = across;
+      s[up] = std::min(1.0, fill(top));
+      BoundPoint<D> point;
+      point.cell = top;
+      point.N = stencil<D>(grid.axes, grid.cell_index[top], s).N;
+      point.velocity.setZero();
+      point.stiffness.setZero();
+      point.stiffness(up, up) = -0.5 * body.mix.density * body.gravity[up] * grid.axes[1 - up].h * dt;
+      surface.push_back(point);
+    }
+  }
+  return surface;
+}
+
+}  // namespace tremie::detail

@@ -1,0 +1,367 @@
+#pragma once
+
+// The linear system of a step in space, by preconditioned conjugate gradients without a matrix.
+
+#include <vector>
+
+#include "libmpm/boundary/friction.hpp"
+#include "libmpm/linear/conjugate_gradients.hpp"
+#include "libmpm/implicit/schur/preconditioner.hpp"
+#include "libmpm/implicit/problem/yield_problem.hpp"
+
+namespace tremie {
+
+/// Adds what walls inside the grid do to the field x.
+template <class Vector>
+void add_bound_products(const std::vector<BoundPoint<3>>& bound,
+                        const std::vector<std::array<int, 27>>& cell_nodes, const Vector& x, Vector& out) {
+  using Scalar = typename Vector::Scalar;
+  constexpr int stride = node_stride<Scalar>;
+  for (const BoundPoint<3>& b : bound) {
+    Vec<3> u = Vec<3>::Zero();
+    for (int k = 0; k < 27; ++k)
+      u += b.N[k] * x.template segment<3>(stride * cell_nodes[b.cell][k]).template cast<double>();
+    u = b.stiffness * u;
+    for (int k = 0; k < 27; ++k)
+      out.template segment<3>(stride * cell_nodes[b.cell][k]) += (b.N[k] * u).template cast<Scalar>();
+  }
+}
+
+/// Adds the force f at a contact to its nodes; four numbers a node.
+template <class Scalar>
+void add_at_contact(const ContactPoint<3>& c, const std::array<int, 27>& nodes, double f, Scalar* to) {
+  using Four = Eigen::Matrix<Scalar, 4, 1>;
+  Four force;
+  force << (f * c.normal).cast<Scalar>(), Scalar(0);
+  for (std::size_t i = 0, k = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) {
+      const Four line = static_cast<Scalar>(c.one[0][i] * c.one[1][j]) * force;
+      for (std::size_t l = 0; l < 3; ++l, ++k)
+        Eigen::Map<Four>(to + 4 * static_cast<std::ptrdiff_t>(nodes[k])) +=
+            static_cast<Scalar>(c.one[2][l]) * line;
+    }
+}
+
+/// Normal velocity at a contact of the field x, four numbers a node.
+inline double normal_velocity(const ContactPoint<3>& c, const std::array<int, 27>& nodes, const float* x) {
+  Eigen::Vector4f u = Eigen::Vector4f::Zero();
+  for (std::size_t i = 0, k = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) {
+      Eigen::Vector4f line = Eigen::Vector4f::Zero();
+      for (std::size_t l = 0; l < 3; ++l, ++k)
+        line += static_cast<float>(c.one[2][l]) *
+                Eigen::Map<const Eigen::Vector4f>(x + 4 * static_cast<std::ptrdiff_t>(nodes[k]));
+      u += static_cast<float>(c.one[0][i] * c.one[1][j]) * line;
+    }
+  return c.normal.dot(u.head<3>().cast<double>());
+}
+
+/// Calls use(contact) for the closed ones with a moving wall in a strip of cells; they are in the cells'
+/// order.
+template <class Use>
+void for_each_contact(const std::vector<ContactPoint<3>>& contact, const CellStrips& strips, int strip,
+                      Use use) {
+  auto c = std::lower_bound(contact.begin(), contact.end(), strips.first_cell(strip),
+                            [](const ContactPoint<3>& one, int cell) { return one.cell < cell; });
+  for (; c != contact.end() && c->cell < strips.last_cell(strip); ++c)
+    if (c->active) use(*c);
+}
+
+inline void add_bound_blocks(const std::vector<BoundPoint<3>>& bound,
+                             const std::vector<std::array<int, 27>>& cell_nodes,
+                             std::vector<Mat<3, 3>>& blocks) {
+  for (const BoundPoint<3>& b : bound)
+    for (int k = 0; k < 27; ++k) blocks[cell_nodes[b.cell][k]] += b.N[k] * b.N[k] * b.stiffness;
+}
+
+/// Inverts node blocks in place; what a wall prescribes becomes zero.
+inline void invert_blocks(const std::vector<char>& fixed, std::vector<Mat<3, 3>>& G) {
+#pragma omp parallel for schedule(static)
+  for (std::size_t i = 0; i < G.size(); ++i) {
+    for (std::size_t d = 0; d < 3; ++d)
+      if (fixed[3 * i + d]) {
+        const auto e = static_cast<Eigen::Index>(d);
+        G[i].row(e).setZero(), G[i].col(e).setZero(), G[i](e, e) = 1.0;
+      }
+    G[i] = G[i].inverse().eval();
+    for (std::size_t d = 0; d < 3; ++d)
+      if (fixed[3 * i + d]) G[i](static_cast<Eigen::Index>(d), static_cast<Eigen::Index>(d)) = 0.0;
+  }
+}
+
+/// Strain rate q at place k as ThreeD has it, and the divergence.
+template <class Scalar>
+void strain_at(const PlaceTensors<Scalar>& G, int k, Lanes<Scalar> (&q)[5], Lanes<Scalar>& div) {
+  const Lanes<Scalar>&xx = G.g[0][0][k], &yy = G.g[1][1][k], &zz = G.g[2][2][k];
+  const Lanes<Scalar> plane = xx + yy;
+  q[0] = xx - yy;
+  q[1] = (plane - Scalar(2) * zz) * static_cast<Scalar>(inv_sqrt3);
+  q[2] = G.g[0][1][k] + G.g[1][0][k];
+  q[3] = G.g[1][2][k] + G.g[2][1][k];
+  q[4] = G.g[0][2][k] + G.g[2][0][k];
+  div = plane + zz;
+}
+
+/// The tensor whose adjoint is that of the deviatoric stress s, with a pull p in all directions: T = s + p I.
+template <class Scalar>
+void stress_at(const Lanes<Scalar> (&s)[5], const Lanes<Scalar>& p, int k, PlaceTensors<Scalar>& T) {
+  const Lanes<Scalar> half = s[1] * static_cast<Scalar>(inv_sqrt3);
+  T.g[0][0][k] = p + half + s[0];
+  T.g[1][1][k] = p + half - s[0];
+  T.g[2][2][k] = p - Scalar(2) * half;
+  T.g[0][1][k] = T.g[1][0][k] = s[2];
+  T.g[1][2][k] = T.g[2][1][k] = s[3];
+  T.g[0][2][k] = T.g[2][0][k] = s[4];
+}
+
+/// Volumes of a batch of cells, lane by lane; 0 where a lane has no cell.
+template <class Scalar>
+struct BatchVolumes {
+  Lanes<Scalar> V[8], inverse_cell;
+};
+
+inline BatchVolumes<double> batch_volumes(const Quadrature<ThreeD>& quad, int batch) {
+  BatchVolumes<double> own;
+  for (int l = 0; l < batch_size; ++l) {
+    const std::size_t c = static_cast<std::size_t>(batch) * batch_size + static_cast<std::size_t>(l);
+    const bool there = c < quad.V.size();
+    for (std::size_t k = 0; k < 8; ++k) own.V[k][l] = there ? quad.V[c][k] : 0.0;
+    own.inverse_cell[l] = there && quad.V_cell[c] > 0.0 ? 1.0 / quad.V_cell[c] : 0.0;
+  }
+  return own;
+}
+
+class SpaceSystem {
+ public:
+  /// Lays out the cells.
+  void set_up(YieldProblem<ThreeD>& problem, double most_band_operations);
+  /// Everything that does not change within a step, and the preconditioner; `eta` is the viscosity of the
+  /// system's deviatoric part [Pa s]. False where it is not definite.
+  bool prepare(YieldProblem<ThreeD>& problem, double eta);
+
+  /// A x in single precision, four numbers a node. Prescribed components of x are zero, and those of the
+  /// result too.
+  void multiply(const YieldProblem<ThreeD>& problem, const Eigen::VectorXf& x, Eigen::VectorXf& out);
+  /// Adds A^-1 R to v as conjugate_gradients() does it, (r, P^-1 r) in watts.
+  double solve(const YieldProblem<ThreeD>& problem, const Eigen::VectorXd& R, const SolveGoal& goal,
+               std::vector<Vec<3>>& v);
+  /// Mean shear rate of every cell over its places, and the volume mean of all [1/s].
+  void shear_rates(const YieldProblem<ThreeD>& problem, const std::vector<Vec<3>>& v,
+                   std::vector<double>& of_cell, double& mean) const;
+
+  /// Gives back the room of a large body until the next set_up(); false if it is none.
+  bool give_back() {
+    if (!preconditioner.give_back()) return false;
+    batches = {};
+    forces = {};
+    tremie::give_back(weights_);
+    free_.resize(0), free_diagonal_.resize(0);
+    return true;
+  }
+
+  CellBatches batches;
+  StripRoom forces;                       ///< room for what strips of cells give their nodes
+  PressurePreconditioner preconditioner;  ///< of the last prepare(); free for others between solves
+  long long products = 0;
+
+ private:
+  /// What add_friction_stiffness_admm() adds to.
+  struct Diagonal {
+    Eigen::VectorXd& value;
+    void add_diagonal(int node, int d, double x) { value[3 * node + d] += x; }
+  };
+  std::vector<Mat<3, 3>> node_blocks(const YieldProblem<ThreeD>& problem,
+                                     const Eigen::VectorXd& diagonal) const;
+
+  double eta_ = 0.0;
+  Eigen::VectorXf free_,
+      free_diagonal_;  ///< 1 and the diagonal where nothing is prescribed, else 0; by fours
+  std::vector<BatchVolumes<float>> weights_;
+};
+
+inline void SpaceSystem::set_up(YieldProblem<ThreeD>& problem, double most_band_operations) {
+  const auto& quad = problem.quadrature;
+  batches.lay_out(problem.grid);
+  preconditioner.lay_out(problem.grid, most_band_operations);
+  make_room(weights_, static_cast<std::size_t>(batches.n_batches()));
+  batches.strips().make_room(forces);
+#pragma omp parallel for schedule(static)
+  for (int b = 0; b < batches.n_batches(); ++b) {
+    const BatchVolumes<double> own = batch_volumes(quad, b);
+    for (int k = 0; k < 8; ++k) weights_[b].V[k] = own.V[k].cast<float>();
+    weights_[b].inverse_cell = own.inverse_cell.cast<float>();
+  }
+}
+
+inline bool SpaceSystem::prepare(YieldProblem<ThreeD>& problem, double eta) {
+  eta_ = eta;
+  const int n = problem.grid.n_nodes();
+  double trace = 0.0;
+  for (double m : problem.nodes.mass) trace = std::max(trace, 1e-12 * m);
+  Eigen::VectorXd diagonal(3 * n);
+#pragma omp parallel for schedule(static)
+  for (int i = 0; i < n; ++i)
+    diagonal.segment<3>(3 * i).setConstant(std::max(trace, problem.nodes.mass[i]) / problem.dt +
+                                           (problem.drag.empty() ? 0.0 : problem.drag[i]));
+  if (!problem.friction.empty()) {
+    std::vector<double> V(n, 0.0);
+    for (int c = 0; c < problem.grid.n_cells(); ++c)
+      for (int i : problem.grid.cell_nodes[c]) V[i] += problem.quadrature.V_cell[c] / 27;
+    fold_mirrors<3>(problem.grid, V);
+    Diagonal to{diagonal};
+    add_friction_stiffness_admm<3>(problem.grid, V, eta, problem.friction, to);
+  }
+  free_.resize(4 * n), free_diagonal_.resize(4 * n);
+#pragma omp parallel for schedule(static)
+  for (int i = 0; i < n; ++i) {
+    auto free = free_.segment<4>(4 * i);
+    for (int d = 0; d < 3; ++d) free[d] = problem.fixed[3 * i + d] ? 0.0f : 1.0f;
+    free[3] = 0.0f;
+    free_diagonal_.segment<4>(4 * i) << free.head<3>().cwiseProduct(diagonal.segment<3>(3 * i).cast<float>()),
+        0.0f;
+  }
+  // What a product gives a node behind a plane of symmetry is kept until it is mirrored.
+  for (const MirrorNode<3>& m : problem.grid.mirrors)
+    free_.segment<4>(4 * m.node) = free_.segment<4>(4 * m.of);
+  std::vector<double> stiffness(problem.grid.n_cells());
+  for (int c = 0; c < problem.grid.n_cells(); ++c)
+    stiffness[c] = problem.quadrature.V_cell[c] * problem.K * problem.dt;
+  return preconditioner.build(problem.grid, batches, problem.quadrature, node_blocks(problem, diagonal),
+                              stiffness, problem.K * problem.dt / eta);
+}
+
+/// Inverse blocks of D at the nodes. A node's own viscous block is V eta (|g|^2 I + g g'/3) with its gradient
+/// g.
+inline std::vector<Mat<3, 3>> SpaceSystem::node_blocks(const YieldProblem<ThreeD>& problem,
+                                                       const Eigen::VectorXd& diagonal) const {
+  const auto& grid = problem.grid;
+  using Symmetric = Eigen::Matrix<double, 8, 1>;  // xx, yy, zz, xy, yz, xz and two zeros, for whole vectors
+  std::array<std::array<std::array<Symmetric, 27>, 8>, 64> viscous;
+  std::array<bool, 64> done{};
+  std::vector<unsigned char> kind(grid.n_cells());
+  for (int c = 0; c < grid.n_cells(); ++c) {
+    kind[c] = cell_kind<3>(grid.axes, grid.cell_index[c]);
+    if (done[kind[c]]) continue;
+    done[kind[c]] = true;
+    for (int k = 0; k < 8; ++k) {
+      const Stencil<3> st = stencil<3>(grid.axes, grid.cell_index[c], gauss_place<3>(k));
+      for (int i = 0; i < 27; ++i) {
+        const Mat<3, 3> own =
+            eta_ * (st.g[i].squaredNorm() * Mat<3, 3>::Identity() + st.g[i] * st.g[i].transpose() / 3.0);
+        viscous[kind[c]][k][i] << own.diagonal(), own(1, 0), own(2, 1), own(2, 0), 0.0, 0.0;
+      }
+    }
+  }
+  std::vector<Mat<3, 3>> G(grid.n_nodes());
+#pragma omp parallel for schedule(static)
+  for (int i = 0; i < grid.n_nodes(); ++i) {
+    Symmetric sum = Symmetric::Zero();
+    sum.head<3>() = diagonal.segment<3>(3 * i);
+    for (const int* e = batches.entries_begin(i); e != batches.entries_end(i); ++e) {
+      const int c = CellBatches::cell_of(*e), local = CellBatches::local_of(*e);
+      for (int k = 0; k < 8; ++k) sum += problem.quadrature.V[c][k] * viscous[kind[c]][k][local];
+    }
+    G[i] << sum[0], sum[3], sum[5], sum[3], sum[1], sum[4], sum[5], sum[4], sum[2];
+  }
+  for (const ContactPoint<3>& c : problem.contact) {
+    if (!c.active) continue;
+    const auto N = c.shape();
+    for (int k = 0; k < 27; ++k)
+      G[grid.cell_nodes[c.cell][k]] += c.stiffness * N[k] * N[k] * c.normal * c.normal.transpose();
+  }
+  add_bound_blocks(problem.bound, grid.cell_nodes, G);
+  fold_mirrors(grid, G);
+  invert_blocks(problem.fixed, G);
+  return G;
+}
+
+inline void SpaceSystem::multiply(const YieldProblem<ThreeD>& problem, const Eigen::VectorXf& x,
+                                  Eigen::VectorXf& out) {
+  const auto bulk = static_cast<float>(problem.K * problem.dt), eta = static_cast<float>(eta_);
+  ++products;
+  out.resize(x.size());
+  const auto give_batch = [&](int b, float* to) {
+    PlaceTensors<float> G;
+    batches.gradients(b, x.data(), G);
+    const BatchVolumes<float>& v = weights_[b];
+    Lanes<float> mean = Lanes<float>::Zero();
+    for (int k = 0; k < 8; ++k) mean += v.V[k] * (G.g[0][0][k] + G.g[1][1][k] + G.g[2][2][k]);
+    mean *= bulk * v.inverse_cell;
+    for (int k = 0; k < 8; ++k) {
+      Lanes<float> q[5], div;
+      strain_at(G, k, q, div);
+      const Lanes<float> w = eta * v.V[k];
+      for (Lanes<float>& s : q) s *= w;
+      stress_at<float>(q, v.V[k] * mean, k, G);
+    }
+    batches.scatter(b, G, to);
+  };
+  const auto give = [&](int strip, float* to) {
+    for (int b = batches.first_batch(strip); b < batches.last_batch(strip); ++b) give_batch(b, to);
+    for_each_contact(problem.contact, batches.strips(), strip, [&](const ContactPoint<3>& c) {
+      const auto& nodes = problem.grid.cell_nodes[c.cell];
+      add_at_contact(c, nodes, c.stiffness * normal_velocity(c, nodes, x.data()), to);
+    });
+  };
+#pragma omp parallel
+  batches.strips().sweep_in_region<float>(forces, give, [&](int i) {
+    out.segment<4>(4 * i) =
+        free_diagonal_.segment<4>(4 * i).cwiseProduct(x.segment<4>(4 * i)) +
+        free_.segment<4>(4 * i).cwiseProduct(batches.strips().sum_at<float, 4>(i, forces));
+  });
+  if (!problem.bound.empty()) {
+    add_bound_products(problem.bound, problem.grid.cell_nodes, x, out);
+    for_each_block(out.size(), [&](Eigen::Index i, Eigen::Index size) {
+      out.segment(i, size) = out.segment(i, size).cwiseProduct(free_.segment(i, size));
+    });
+  }
+  fold_mirrors<3, 4>(problem.grid, out);
+}
+
+inline double SpaceSystem::solve(const YieldProblem<ThreeD>& problem, const Eigen::VectorXd& R,
+                                 const SolveGoal& goal, std::vector<Vec<3>>& v) {
+  const int n = problem.grid.n_nodes();
+  Eigen::VectorXf r(4 * n), x;
+#pragma omp parallel for schedule(static)
+  for (int i = 0; i < n; ++i) r.segment<4>(4 * i) << R.segment<3>(3 * i).cast<float>(), 0.0f;
+  const double left =
+      conjugate_gradients([&](const Eigen::VectorXf& p, Eigen::VectorXf& Ap) { multiply(problem, p, Ap); },
+                          [&](const Eigen::VectorXf& rest, Eigen::VectorXf& z) {
+                            preconditioner.apply(batches, problem.grid, rest, forces, z);
+                          },
+                          goal, r, x);
+#pragma omp parallel for schedule(static)
+  for (int i = 0; i < n; ++i) v[i] += x.segment<3>(4 * i).cast<double>();
+  fill_mirrors<3>(problem.grid, v);
+  return left;
+}
+
+inline void SpaceSystem::shear_rates(const YieldProblem<ThreeD>& problem, const std::vector<Vec<3>>& v,
+                                     std::vector<double>& of_cell, double& mean) const {
+  of_cell.resize(batches.n_cells());
+  std::vector<double> sum(batches.n_batches()), volume(batches.n_batches());
+#pragma omp parallel for schedule(static)
+  for (int b = 0; b < batches.n_batches(); ++b) {
+    PlaceTensors<double> G;
+    batches.gradients(b, v.data()->data(), G);
+    const BatchVolumes<double> volumes = batch_volumes(problem.quadrature, b);
+    Lanes<double> total = Lanes<double>::Zero(), weighted = total, V = total;
+    for (int k = 0; k < 8; ++k) {
+      Lanes<double> q[5], div;
+      strain_at(G, k, q, div);
+      const Lanes<double> rate = detail::norm(q);
+      total += rate;
+      weighted += volumes.V[k] * rate;
+      V += volumes.V[k];
+    }
+    for (int c = b * batch_size; c < std::min((b + 1) * batch_size, batches.n_cells()); ++c)
+      of_cell[c] = total[c % batch_size] / 8.0;
+    sum[b] = weighted.sum();
+    volume[b] = V.sum();
+  }
+  double all = 0.0, V = 0.0;
+  for (int b = 0; b < batches.n_batches(); ++b) all += sum[b], V += volume[b];
+  mean = V > 0.0 ? all / V : 0.0;
+}
+
+}  // namespace tremie

@@ -1,0 +1,104 @@
+#pragma once
+
+// The duals of ADMM in space, in the room of one of them.
+//
+// Stress s and rate d of a place come out of one vector, a = s + r (rho q + (1 - rho) d) before them:
+//
+//   d = prox(|a|) a/|a|,   s = a - r d,
+//
+// so that a is kept, with the yield stress and the penalty that belong to it, and the two are made again
+// where they are used. By batches of cells, as the solver goes through them.
+
+#include <cmath>
+#include <vector>
+
+#include "libmpm/grid/active_grid.hpp"
+#include "libmpm/implicit/matrix_free/cell_simd.hpp"
+
+namespace tremie {
+
+struct SpaceDuals {
+  struct Batch {
+    Lanes<double> a[8][5], tau_y[8];
+  };
+  std::vector<Batch> batch;
+  double r = 1.0;  ///< the penalty of a [Pa s]
+
+  bool empty() const { return batch.empty(); }
+};
+
+namespace detail {
+
+template <class Scalar>
+Lanes<Scalar> norm(const Lanes<Scalar> (&q)[5]) {
+  Lanes<Scalar> n = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] + q[4] * q[4];
+  for (int l = 0; l < batch_size; ++l) n[l] = std::sqrt(n[l]);
+  return n;
+}
+
+// GCC takes what AVX-512 leaves unset on purpose for a mistake of Eigen's.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wuninitialized"
+inline double sum_of(const Lanes<double>& lanes) { return lanes.sum(); }
+#pragma GCC diagnostic pop
+
+/// Stress and rate that a stands for.
+template <class Law>
+void split_dual(const Law& law, const Lanes<double> (&a)[5], const Lanes<double>& tau_y, double r,
+                Lanes<double> (&s)[5], Lanes<double> (&d)[5]) {
+  const Lanes<double> size = norm(a);
+  Lanes<double> factor;
+  for (int l = 0; l < batch_size; ++l)
+    factor[l] = size[l] > 0.0 ? law.prox(size[l], tau_y[l], r) / size[l] : 0.0;
+  for (int j = 0; j < 5; ++j) {
+    d[j] = factor * a[j];
+    s[j] = a[j] - r * d[j];
+  }
+}
+
+/// Unstressed duals of so many cells.
+inline SpaceDuals no_duals(int n_cells) {
+  SpaceDuals duals;
+  duals.batch.resize(static_cast<std::size_t>((n_cells + batch_size - 1) / batch_size));
+  for (SpaceDuals::Batch& b : duals.batch)
+    for (int k = 0; k < 8; ++k) {
+      b.tau_y[k].setZero();
+      for (Lanes<double>& a : b.a[k]) a.setZero();
+    }
+  return duals;
+}
+
+/// Duals of cells that were active before go on from where they were; new cells start unstressed.
+inline SpaceDuals carried(const IndexMap<3>& old_map, const ActiveGrid<3>& grid, const SpaceDuals& old) {
+  SpaceDuals now = no_duals(grid.n_cells());
+  now.r = old.r;
+  if (old.empty()) return now;
+#pragma omp parallel for schedule(static)
+  for (int c = 0; c < grid.n_cells(); ++c) {
+    const int from = old_map.at(grid.cell_index[c]);
+    if (from < 0) continue;
+    const SpaceDuals::Batch& b = old.batch[from / batch_size];
+    SpaceDuals::Batch& to = now.batch[c / batch_size];
+    const int l = from % batch_size, lane = c % batch_size;
+    for (int k = 0; k < 8; ++k) {
+      to.tau_y[k][lane] = b.tau_y[k][l];
+      for (int j = 0; j < 5; ++j) to.a[k][j][lane] = b.a[k][j][l];
+    }
+  }
+  return now;
+}
+
+/// The stress at place k of cell c.
+template <class Law>
+Vec<5> stress_of(const Law& law, const SpaceDuals& duals, int c, int k) {
+  const SpaceDuals::Batch& b = duals.batch[c / batch_size];
+  const int l = c % batch_size;
+  Vec<5> a;
+  for (int j = 0; j < 5; ++j) a[j] = b.a[k][j][l];
+  const double size = a.norm();
+  return size > 0.0 ? Vec<5>(a - duals.r * law.prox(size, b.tau_y[k][l], duals.r) / size * a) : a;
+}
+
+}  // namespace detail
+
+}  // namespace tremie

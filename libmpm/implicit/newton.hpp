@@ -1,0 +1,141 @@
+#pragma once
+
+// Primal-dual Newton for the yield problem. With the dual stress s of each Gauss place, |s| <= f, the tangent
+//
+//   T = (mu + secant) I + slope/secant sym(s q')          (s = secant q at the solution: the exact tangent)
+//
+// stays positive and does not collapse where the law is nearly a kink (Chan, Golub and Mulet 1999 for total
+// variation). The dual takes the full step, the velocities an Armijo step on the energy.
+
+#include <algorithm>
+#include <cmath>
+
+#include "libmpm/boundary/friction.hpp"
+#include "libmpm/implicit/problem/yield_problem.hpp"
+
+namespace tremie {
+
+struct NewtonSettings {
+  double tolerance = 1e-4;  ///< residual force, relative to the weight and inertia of the concrete
+  int max_iterations = 80;
+  double armijo = 1e-4;
+};
+
+namespace detail {
+
+template <class Space, class Law>
+double energy(const YieldProblem<Space>& problem, const Law& law, const std::vector<Vec<Space::dim>>& v) {
+  const auto& quad = problem.quadrature;
+  double sum = 0.0;
+  for (int i = 0; i < problem.grid.n_nodes(); ++i)
+    sum += 0.5 * problem.nodes.mass[i] / problem.dt * (v[i] - problem.nodes.v[i]).squaredNorm();
+  for (int c = 0; c < problem.grid.n_cells(); ++c) {
+    const double div = divergence(problem, v, c);
+    sum += quad.V_cell[c] * div * (0.5 * problem.K * problem.dt * div - problem.offset(c));
+    for (int k = 0; k < power(2, Space::dim); ++k) {
+      const auto q = strain_rate(problem, v, c, k);
+      const double gamma_dot = q.norm(), excess = excess_divergence<Space>(q, div);
+      sum +=
+          quad.V[c][k] * (0.5 * problem.mu * gamma_dot * gamma_dot +
+                          law.potential(gamma_dot, quad.tau_y[c][k]) + 0.5 * problem.zeta * excess * excess);
+    }
+  }
+  for (std::size_t i = 0; i < problem.drag.size(); ++i) sum += 0.5 * problem.drag[i] * v[i].squaredNorm();
+  return sum + bound_energy<Space::dim>(problem.bound, problem.grid.cell_nodes, v) +
+         bound_energy<Space::dim>(problem.surface, problem.grid.cell_nodes, v) +
+         contact_energy<Space::dim>(problem.contact, problem.grid.cell_nodes, v) +
+         friction_energy<Space::dim>(problem.friction, v);
+}
+
+/// The dual's share of the tangent, kept inside |s| <= f so that the tangent stays positive.
+template <class Law, int N>
+Mat<N, N> primal_dual_tangent(const Law& law, double mu, double tau_y, const Vec<N>& q, const Vec<N>& s) {
+  const double gamma_dot = q.norm(), secant = law.secant(gamma_dot, tau_y);
+  const double factor = secant > 0.0 ? law.slope(gamma_dot, tau_y) / secant : 0.0;
+  return (mu + secant) * Mat<N, N>::Identity() + 0.5 * factor * (s * q.transpose() + q * s.transpose());
+}
+
+/// Full Newton step of the duals along dv, projected to the largest stress the yield part can carry.
+template <class Space, class Law>
+void step_duals(const YieldProblem<Space>& problem, const Law& law, const std::vector<Vec<Space::dim>>& v,
+                const std::vector<Vec<Space::dim>>& dv, Duals<Space>& duals) {
+#pragma omp parallel for schedule(static)
+  for (int c = 0; c < problem.grid.n_cells(); ++c)
+    for (int k = 0; k < power(2, Space::dim); ++k) {
+      const double tau_y = problem.quadrature.tau_y[c][k];
+      const auto q = strain_rate(problem, v, c, k), dq = strain_rate(problem, dv, c, k);
+      const double gamma_dot = q.norm(), secant = law.secant(gamma_dot, tau_y);
+      const double factor = secant > 0.0 ? law.slope(gamma_dot, tau_y) / secant : 0.0;
+      auto& s = duals.stress[c][k];
+      s = secant * (q + dq) + factor * q.dot(dq) * s;
+      const double size = s.norm();
+      if (size > tau_y) s *= tau_y / size;
+    }
+}
+
+/// Brings the duals that are carried over from the last step inside what this one can carry: beyond it the
+/// tangent is not positive.
+template <class Space>
+void project_duals(YieldProblem<Space>& problem, Duals<Space>& duals) {
+  const auto inside = [](auto& s, double limit) {
+    const double size = s.norm();
+    if (size > limit) s *= limit / size;
+  };
+  for (int c = 0; c < problem.grid.n_cells(); ++c)
+    for (int k = 0; k < power(2, Space::dim); ++k) inside(duals.stress[c][k], problem.quadrature.tau_y[c][k]);
+  for (auto& f : problem.friction) inside(f.force, f.limit);
+}
+
+}  // namespace detail
+
+/// Solves the yield problem by primal-dual Newton from the guesses v and duals, which it overwrites.
+template <class Space, class Law>
+SolveReport solve_newton(YieldProblem<Space>& problem, const Law& law, const NewtonSettings& settings,
+                         double force_scale, BlockSystem<Space::dim>& system, std::vector<Vec<Space::dim>>& v,
+                         Duals<Space>& duals) {
+  constexpr int D = Space::dim;
+  const auto stress = [&](int c, int k, const Vec<Space::n_strain>& q) -> Vec<Space::n_strain> {
+    return (problem.mu + law.secant(q.norm(), problem.quadrature.tau_y[c][k])) * q;
+  };
+  SolveReport report;
+  detail::project_duals(problem, duals);
+  std::vector<Vec<D>> step(v.size()), trial(v.size());
+  for (; report.iterations < settings.max_iterations; ++report.iterations) {
+    update_active<D>(problem.contact, problem.grid.cell_nodes, v);
+    Eigen::VectorXd R = residual(problem, v, stress);
+    add_friction_forces<D>(problem.friction, v, R);
+    mask(problem.fixed, R);
+    report.converged = R.lpNorm<1>() <= settings.tolerance * force_scale;
+    if (report.converged) break;
+
+    assemble(
+        problem,
+        [&](int c, int k) {
+          return detail::primal_dual_tangent<Law, Space::n_strain>(
+              law, problem.mu, problem.quadrature.tau_y[c][k], strain_rate(problem, v, c, k),
+              duals.stress[c][k]);
+        },
+        system);
+    for (const FrictionNode<D>& f : problem.friction)
+      system.add_node_block(f.node, friction_tangent<D>(f, sliding(f, v)));
+    system.fix(problem.fixed);
+    if (!system.factorise()) return report;
+    const Eigen::VectorXd dv = system.solve(R);
+    for (std::size_t i = 0; i < v.size(); ++i) step[i] = dv.segment<D>(static_cast<Eigen::Index>(i) * D);
+    fill_mirrors<D>(problem.grid, step);
+    detail::step_duals(problem, law, v, step, duals);
+    update_friction_newton<D>(problem.friction, v, dv);
+
+    const double slope = R.dot(dv), start = detail::energy(problem, law, v);
+    for (double t = 1.0; t > 1e-6; t *= 0.5) {
+      for (std::size_t i = 0; i < v.size(); ++i) trial[i] = v[i] + t * step[i];
+      if (detail::energy(problem, law, trial) <=
+          start - settings.armijo * t * slope + 1e-14 * std::abs(start))
+        break;
+    }
+    v.swap(trial);
+  }
+  return report;
+}
+
+}  // namespace tremie

@@ -1,0 +1,272 @@
+#pragma once
+
+// Where the stresses of an implicit step are integrated.
+//
+// A yield stress fluid has no memory of strain: its deviatoric stress follows from the velocity gradient of
+// the moment and from lambda. So the stresses are integrated at 2^D Gauss places a cell instead of at the
+// points, each weighted with the volume of the points around it. The cost of a solve then does not depend on
+// the number of points, and more points a cell make the weights smoother without making the solver slower.
+
+#include <array>
+#include <type_traits>
+#include <vector>
+
+#include "libmpm/grid/active_grid.hpp"
+#include "libmpm/constitutive/equation_of_state.hpp"
+#include "libmpm/particles/particles.hpp"
+#include "libmpm/implicit/problem/cut_cell_rule.hpp"
+
+namespace tremie {
+
+/// Strain rows of every cell: one entry a cell, or, where they are the same in all cells but for the splines
+/// at walls, one a kind of cell.
+template <class Rows, bool by_kind>
+class CellRows {
+ public:
+  void resize(std::size_t n) {
+    make_room(kind_, by_kind ? n : 0);
+    make_room(rows_, by_kind ? 64 : n);
+  }
+  const Rows& operator[](std::size_t c) const { return rows_[by_kind ? kind_[c] : c]; }
+  Rows& entry(std::size_t c) { return rows_[c]; }
+  void set_kind(std::size_t c, unsigned char kind) { kind_[c] = kind; }
+
+ private:
+  std::vector<unsigned char> kind_;
+  std::vector<Rows> rows_;
+};
+
+/// Which walls a cell touches, as six bits: its splines follow from that.
+template <int D>
+unsigned char cell_kind(const std::array<Axis, D>& axes, const Index<D>& cell) {
+  unsigned kind = 0;
+  for (int d = 0; d < D; ++d) {
+    if (axes[d].clamped_low() && cell[d] == 0) kind |= 1u << (2 * d);
+    if (axes[d].clamped_high() && cell[d] == axes[d].n_cells - 1) kind |= 2u << (2 * d);
+  }
+  return static_cast<unsigned char>(kind);
+}
+
+/// Which ends of the axes a cell touches, walls or planes of symmetry, as six bits: what its controls are
+/// follows from that.
+template <int D>
+unsigned char cell_ends(const std::array<Axis, D>& axes, const Index<D>& cell) {
+  unsigned ends = 0;
+  for (int d = 0; d < D; ++d) {
+    if (axes[d].wall_low() && cell[d] == 0) ends |= 1u << (2 * d);
+    if (axes[d].wall_high() && cell[d] == axes[d].n_cells - 1) ends |= 2u << (2 * d);
+  }
+  return static_cast<unsigned char>(ends);
+}
+
+template <class Space>
+struct Quadrature {
+  static constexpr int D = Space::dim, n_strain = Space::n_strain;
+  static constexpr int n_places = power(2, D), n_local = power(3, D);
+  using StrainRows = std::array<Mat<n_strain, D>, n_local>;
+
+  using DivergenceRows = std::array<Vec<D>, n_local>;
+
+  CellRows<std::array<StrainRows, n_places>, D == 3> B;  ///< strain rows, [1/m]
+  std::vector<DivergenceRows> b;  ///< rows of the cell's mean divergence in a section [1/m]
+  CellRows<std::array<DivergenceRows, n_places>, D == 3>
+      slopes;              ///< in space: gradients of the splines [1/m]
+  std::vector<char> full;  ///< in space: whether the cell lies inside the body and counts as full
+  std::vector<std::array<double, n_places>> V;      ///< concrete volume of each place [m^3]
+  std::vector<std::array<double, n_places>> tau_y;  ///< yield stress there [Pa]
+  std::vector<double> V_cell;                       ///< sum of V [m^3]
+  std::vector<double> p;                            ///< pressure at the start of the step [Pa]
+  std::vector<std::array<Vec<D>, n_places>> place;  ///< local coordinates of the places, in a section
+
+  void resize(std::size_t n) {
+    B.resize(n), make_room(V, n), make_room(tau_y, n), make_room(V_cell, n), make_room(p, n);
+    if constexpr (D < 3)
+      make_room(b, n), make_room(place, n);
+    else
+      slopes.resize(n), make_room(full, n);
+  }
+
+  /// Rows of the mean divergence of cell c [1/m]. In space they are made when they are asked for: 648 bytes a
+  /// cell from its eight volumes.
+  std::conditional_t<D == 3, DivergenceRows, const DivergenceRows&> divergence_rows(int c) const {
+    if constexpr (D < 3) {
+      return b[c];
+    } else {
+      const auto of_place = [&](int k) {
+        return V[c][k] / V_cell[c] * Eigen::Map<const Vec<3 * n_local>>(slopes[c][k][0].data());
+      };
+      DivergenceRows sum;  // at once: it stays in registers
+      Eigen::Map<Vec<3 * n_local>>(sum[0].data()) = of_place(0) + of_place(1) + of_place(2) + of_place(3) +
+                                                    of_place(4) + of_place(5) + of_place(6) + of_place(7);
+      return sum;
+    }
+  }
+};
+
+/// Local coordinates of Gauss place k of a full cell; bit d of k set means the upper place in direction d.
+template <int D>
+Vec<D> gauss_place(int k) {
+  constexpr double offset = 0.28867513459481288;  // 1 / (2 sqrt 3)
+  Vec<D> s;
+  for (int d = 0; d < D; ++d) s[d] = 0.5 + ((k >> d) & 1 ? offset : -offset);
+  return s;
+}
+
+namespace detail {
+
+/// Shares of a point at the local coordinates s in the Gauss places of its cell: linear between them, so that
+/// the weights change continuously while points move, sum to one and keep the point's place wherever they
+/// can.
+template <int D>
+std::array<double, power(2, D)> place_shares(const Vec<D>& s) {
+  constexpr double low = 0.5 - 0.28867513459481288, high = 0.5 + 0.28867513459481288;
+  std::array<double, power(2, D)> share;
+  share.fill(1.0);
+  for (int d = 0; d < D; ++d) {
+    const double upper = std::clamp((s[d] - low) / (high - low), 0.0, 1.0);
+    for (int k = 0; k < power(2, D); ++k) share[k] *= (k >> d) & 1 ? upper : 1.0 - upper;
+  }
+  return share;
+}
+
+/// Volumes of the Gauss places of cell c, and 1 + lambda times volume where the points have lambda. A place
+/// weighs what the Gauss rule gives it in a full cell, or a uniform pressure would push: in a ring that is
+/// the points' sections times the place's own measure, not theirs.
+template <class Space>
+void add_up_points(const ActiveGrid<Space::dim>& grid, const Points<Space::dim>& points, int c,
+                   const std::array<Vec<Space::dim>, power(2, Space::dim)>& places,
+                   std::array<double, power(2, Space::dim)>& volume,
+                   std::array<double, power(2, Space::dim)>& structure) {
+  volume.fill(0.0);
+  structure.fill(0.0);
+  for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
+    const int p = grid.order[i];
+    const auto share =
+        place_shares<Space::dim>(local_coordinates<Space::dim>(grid.axes, grid.cell_index[c], points.x[p]));
+    const double section = points.volume(p) / Space::measure(points.x[p]);
+    const double factor = points.thixotropic() ? 1.0 + points.lambda[p] : 1.0;
+    for (std::size_t k = 0; k < share.size(); ++k) {
+      volume[k] += share[k] * section;
+      structure[k] += share[k] * section * factor;
+    }
+  }
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    volume[k] *= Space::measure(places[k]);
+    structure[k] *= Space::measure(places[k]);
+  }
+}
+
+/// Volumes of the Gauss places of a full cell.
+template <class Space>
+std::array<double, power(2, Space::dim)> full_volumes(
+    const std::array<Axis, Space::dim>& axes,
+    const std::array<Vec<Space::dim>, power(2, Space::dim)>& places) {
+  double section = 1.0;
+  for (const Axis& axis : axes) section *= 0.5 * axis.h;
+  std::array<double, power(2, Space::dim)> volume;
+  for (std::size_t k = 0; k < volume.size(); ++k) volume[k] = section * Space::measure(places[k]);
+  return volume;
+}
+
+inline double sum_of_volumes(const auto& V) {
+  double sum = 0.0;
+  for (double one : V) sum += one;
+  return sum;
+}
+
+/// In a section: strain rows at every place and the rows of the cell's mean divergence.
+template <class Space>
+void lay_out_rows(const std::array<Stencil<Space::dim>, power(2, Space::dim)>& st,
+                  const std::array<Vec<Space::dim>, power(2, Space::dim)>& x, int c,
+                  Quadrature<Space>& quadrature) {
+  constexpr int n = power(2, Space::dim), n_local = power(3, Space::dim);
+  for (int i = 0; i < n_local; ++i) {
+    quadrature.b[c][i].setZero();
+    for (int k = 0; k < n; ++k) {
+      quadrature.B.entry(c)[k][i] = Space::strain_rows(st[k].N[i], st[k].g[i], x[k]);
+      quadrature.b[c][i] +=
+          quadrature.V[c][k] / quadrature.V_cell[c] * Space::divergence_row(st[k].N[i], st[k].g[i], x[k]);
+    }
+  }
+}
+
+/// Volume mean of the pressures of a cell's points.
+template <int D>
+double mean_pressure(const ActiveGrid<D>& grid, const Points<D>& points, double K, int c) {
+  double sum = 0.0, volume = 0.0;
+  for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
+    const int p = grid.order[i];
+    sum += points.volume(p) * pressure(points.ln_J[p], K);
+    volume += points.volume(p);
+  }
+  return sum / volume;
+}
+
+/// Strain rows in space, one set for each kind of cell that there is.
+inline void lay_out_kinds(const ActiveGrid<3>& grid, Quadrature<ThreeD>& quadrature) {
+  std::array<bool, 64> done{};
+  for (int c = 0; c < grid.n_cells(); ++c) {
+    const unsigned char kind = cell_kind<3>(grid.axes, grid.cell_index[c]);
+    quadrature.B.set_kind(c, kind);
+    quadrature.slopes.set_kind(c, kind);
+    if (done[kind]) continue;
+    done[kind] = true;
+    for (int k = 0; k < 8; ++k) {
+      const Stencil<3> st = stencil<3>(grid.axes, grid.cell_index[c], gauss_place<3>(k));
+      for (int i = 0; i < 27; ++i) {
+        quadrature.B.entry(kind)[k][i] = ThreeD::strain_rows(st.N[i], st.g[i], Vec<3>::Zero());
+        quadrature.slopes.entry(kind)[k][i] = ThreeD::divergence_row(st.N[i], st.g[i], Vec<3>::Zero());
+      }
+    }
+  }
+}
+
+}  // namespace detail
+
+/// Lays out the quadrature of a step: places, volumes, yield stresses tau_y = (1 + lambda) tau_0 and
+/// pressures. `fit`: the places of partly filled cells are fitted to their points (fitted_places.hpp), in a
+/// section.
+template <class Space>
+void lay_out_quadrature(const ActiveGrid<Space::dim>& grid, const Points<Space::dim>& points, double tau_0,
+                        double K, Quadrature<Space>& quadrature, bool fit = false) {
+  constexpr int D = Space::dim, n = power(2, D);
+  quadrature.resize(grid.cell_index.size());
+  if constexpr (D == 3) detail::lay_out_kinds(grid, quadrature);
+#pragma omp parallel for schedule(static)
+  for (int c = 0; c < grid.n_cells(); ++c) {
+    const Index<D>& cell = grid.cell_index[c];
+    const bool inside = is_inside<D>(grid, cell), fitted = D < 3 && fit && !inside;
+    std::array<Vec<D>, n> place;
+    for (int k = 0; k < n; ++k) place[k] = gauss_place<D>(k);
+    if (fitted) place = fitted_places<Space>(grid, points, c);
+    if (D < 3) quadrature.place[c] = place;
+    std::array<Vec<D>, n> x;
+    for (int k = 0; k < n; ++k) x[k] = cell_place<D>(grid.axes, cell, place[k]);
+    std::array<double, n> structure;
+    detail::add_up_points<Space>(grid, points, c, x, quadrature.V[c], structure);
+    double all_V = 0.0, all_structure = 0.0;
+    for (int k = 0; k < n; ++k) all_V += quadrature.V[c][k], all_structure += structure[k];
+    for (int k = 0; k < n; ++k)  // where no point is near, as in the rest of the cell
+      quadrature.tau_y[c][k] =
+          tau_0 * (quadrature.V[c][k] > 0.0 ? structure[k] / quadrature.V[c][k] : all_structure / all_V);
+    if (fitted) {
+      double section = 0.0;
+      for (int k = 0; k < n; ++k) section += quadrature.V[c][k] / Space::measure(x[k]);
+      for (int k = 0; k < n; ++k) quadrature.V[c][k] = section / n * Space::measure(x[k]);
+    }
+    // Inside the body a cell is full: with counted volumes the pressure would push whenever a point crosses
+    // into a cell.
+    if (inside) quadrature.V[c] = detail::full_volumes<Space>(grid.axes, x);
+    quadrature.V_cell[c] = detail::sum_of_volumes(quadrature.V[c]);
+    if constexpr (D == 3) {
+      quadrature.full[c] = inside ? 1 : 0;
+    } else {
+      std::array<Stencil<D>, n> st;
+      for (int k = 0; k < n; ++k) st[k] = stencil<D>(grid.axes, cell, place[k]);
+      detail::lay_out_rows<Space>(st, x, c, quadrature);
+    }
+    quadrature.p[c] = detail::mean_pressure(grid, points, K, c);
+  }
+}
+
+}  // namespace tremie

@@ -1,0 +1,126 @@
+#pragma once
+
+// Cells in columns along the body's longest way, so that sixteen of them go side by side, in a box of places
+// with a margin on all sides. Columns go together in strips, eight wide across.
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "libmpm/grid/active_grid.hpp"
+#include "libmpm/implicit/matrix_free/cell_simd.hpp"
+
+namespace tremie {
+
+struct CellColumns {
+  static constexpr int reach = 2;                       ///< the margin, and how far cells are coupled
+  static constexpr int slack = batch_size + 2 * reach;  ///< of reading whole batches
+  static constexpr int strip = 8;
+
+  /// Cells next to each other along way[2], with what lies between them if they have gaps.
+  struct Column {
+    Index<2> across;
+    int low, end;
+    std::size_t first = 0;  ///< how many places the columns before it have
+    int size() const { return end - low; }
+  };
+  struct Ghost {
+    int place, cell;
+  };
+
+  /// Cells of a grid that is not periodic in all directions.
+  void lay_out(const ActiveGrid<3>& grid);
+
+  int place_at(const Index<3>& at) const { return (at[0] * extent[1] + at[1]) * extent[2] + at[2]; }
+  int begin_of(const Column& column) const {
+    return place_at({column.across[0], column.across[1], column.low});
+  }
+  /// Number of the column beside `column`, -1 where none; on a periodic axis it may be far away.
+  int beside(const Column& column, int a, int b) const {
+    return column_at[(column.across[0] + a) * extent[1] + column.across[1] + b];
+  }
+  std::size_t n_places() const { return columns.empty() ? 0 : columns.back().first + columns.back().size(); }
+  int n_strips() const { return (extent[1] - 1) / strip + 1; }
+
+  Index<3> way{}, extent{};      ///< axes, the longest one last; the box with its margin
+  std::vector<Column> columns;   ///< those of a strip follow each other
+  std::vector<int> strip_begin;  ///< strip k has the columns strip_begin[k] .. strip_begin[k + 1]
+  std::vector<int>
+      column_at;  ///< by place across, -1 where none; beside the ends of a periodic axis, the one repeated
+  std::vector<int> place_of, column_of;  ///< of each cell
+  std::vector<Ghost> ghosts;             ///< places in the margin that repeat a cell on a periodic axis
+  std::vector<float> x, y;  ///< room for two vectors by place; zero where neither cell nor ghost is
+
+ private:
+  void find_columns(const std::vector<Index<3>>& at);
+  void find_ghosts(const ActiveGrid<3>& grid, const std::vector<Index<3>>& at);
+};
+
+inline void CellColumns::find_columns(const std::vector<Index<3>>& at) {
+  const auto across = [&](const Index<2>& a) { return static_cast<std::size_t>(a[0] * extent[1] + a[1]); };
+  const int n = static_cast<int>(at.size());
+  column_at.assign(across({extent[0], 0}), -1);
+  columns.clear();
+  for (const Index<3>& cell : at) {
+    int& k = column_at[across({cell[0], cell[1]})];
+    if (k < 0) {
+      k = static_cast<int>(columns.size());
+      columns.push_back({.across = {cell[0], cell[1]}, .low = cell[2], .end = cell[2] + 1});
+    }
+    columns[k].low = std::min(columns[k].low, cell[2]);
+    columns[k].end = std::max(columns[k].end, cell[2] + 1);
+  }
+  const auto strip_of = [](const Column& c) { return c.across[1] / strip; };
+  std::sort(columns.begin(), columns.end(), [&](const Column& a, const Column& b) {
+    return std::pair(strip_of(a), a.across) < std::pair(strip_of(b), b.across);
+  });
+  strip_begin.assign(static_cast<std::size_t>(n_strips() + 1), 0);
+  for (const Column& c : columns) ++strip_begin[strip_of(c) + 1];
+  std::partial_sum(strip_begin.begin(), strip_begin.end(), strip_begin.begin());
+  std::size_t places = 0;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    columns[k].first = places;
+    column_at[across(columns[k].across)] = static_cast<int>(k);
+    places += static_cast<std::size_t>(columns[k].size());
+  }
+  make_room(place_of, at.size()), make_room(column_of, at.size());
+  for (int c = 0; c < n; ++c) {
+    column_of[c] = column_at[across({at[c][0], at[c][1]})];
+    place_of[c] = place_at(at[c]);
+  }
+}
+
+/// Places beside the ends of periodic axes; their columns are those of the cells that they repeat.
+inline void CellColumns::find_ghosts(const ActiveGrid<3>& grid, const std::vector<Index<3>>& at) {
+  ghosts.clear();
+  Index<2> turns{}, period{};
+  for (int d = 0; d < 2; ++d)
+    if (const Axis& axis = grid.axes[way[d]]; axis.periodic) turns[d] = reach, period[d] = axis.n_cells;
+  if (turns == Index<2>{}) return;
+  for (int i = -turns[0]; i <= turns[0]; ++i)
+    for (int j = -turns[1]; j <= turns[1]; ++j)
+      for (std::size_t c = 0; c < at.size() && (i != 0 || j != 0); ++c) {
+        const Index<3> to{at[c][0] + i * period[0], at[c][1] + j * period[1], at[c][2]};
+        if (to[0] < 0 || to[0] >= extent[0] || to[1] < 0 || to[1] >= extent[1]) continue;
+        ghosts.push_back({place_at(to), static_cast<int>(c)});
+        column_at[to[0] * extent[1] + to[1]] = column_of[c];
+      }
+}
+
+inline void CellColumns::lay_out(const ActiveGrid<3>& grid) {
+  const auto length = [&](int d) { return grid.axes[d].periodic ? 0 : grid.cell_map.extent[d]; };
+  way = {0, 1, 2};
+  std::stable_sort(way.begin(), way.end(), [&](int a, int b) { return length(a) < length(b); });
+  for (int d = 0; d < 3; ++d) extent[d] = grid.cell_map.extent[way[d]] + 2 * reach;
+  extent[2] += batch_size;
+  std::vector<Index<3>> at(grid.cell_index.size());
+  for (std::size_t c = 0; c < at.size(); ++c)
+    for (int d = 0; d < 3; ++d) at[c][d] = grid.cell_index[c][way[d]] - grid.cell_map.low[way[d]] + reach;
+  find_columns(at);
+  find_ghosts(grid, at);
+  const auto box = static_cast<std::size_t>(extent[0]) * extent[1] * extent[2] + slack;
+  for (std::vector<float>* v : {&x, &y}) make_room(*v, box), std::fill(v->begin(), v->end(), 0.0f);
+}
+
+}  // namespace tremie

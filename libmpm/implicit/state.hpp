@@ -1,0 +1,67 @@
+#pragma once
+
+// What implicit steps need beside the body: their settings, the solver's state that goes on from one step to the
+// next, and what a step reports.
+
+#include <optional>
+#include <type_traits>
+#include <vector>
+
+#include "libmpm/body/body.hpp"
+#include "libmpm/implicit/admm_3d.hpp"
+#include "libmpm/implicit/newton.hpp"
+#include "libmpm/implicit/particle_shifting_3d.hpp"
+
+namespace tremie {
+
+enum class YieldMethod { automatic, admm, newton };
+
+struct StepSettings {
+  YieldMethod method = YieldMethod::automatic;
+  AdmmSettings admm;
+  NewtonSettings newton;
+  Transfer transfer;
+  EvenOut even_out;
+  std::optional<double> fixed_dt;  ///< [s]; empty: chosen at every step
+  double dt_max = 0.1;             ///< [s]
+  double time_error = 0.0;         ///< a step beyond dt_max may err by so much, in cells; 0: none goes beyond
+  double dt_longest = 1.0;         ///< of those [s]
+  double time_left = 1e300;        ///< no step goes beyond it [s]
+  double cfl = 0.6;                ///< largest move in a step, in cells
+  double growth = 1.3;             ///< largest ratio of successive steps
+  double strays = 0.0;             ///< share of the points that may be drops in the air (strays.hpp)
+  double friction_coefficient = 0.0;
+  bool keep_forces = false;            ///< fill Body::wall_force and Body::dissipation
+  double boundary_stiffness = 1000.0;  ///< of walls inside the grid, in m/dt
+  double alternating_viscosity = 0.0;  ///< zeta of yield_problem.hpp, in mu; plane strain alone
+  bool fitted_places = false;       ///< stresses of partly filled cells where the points are; sections alone
+  bool moving_surface = false;      ///< gravity where the step leaves the free surface; sections alone
+  double side_wall_distance = 0.0;  ///< of a width-averaged section [m]; 0: plane strain, no side walls
+  double wall_gap = 0.0;            ///< how near a point may come to a rigid wall [m]
+  double wall_penalty = 100.0;      ///< stiffness of a rigid wall, in m/dt
+};
+
+/// A body with what its implicit steps carry over from one to the next.
+template <class Space>
+struct ImplicitBody : Body<Space> {
+  static constexpr int D = Space::dim;
+  Quadrature<Space> quadrature{};
+  Duals<Space> duals{};
+  std::vector<FrictionNode<D>> friction{};
+  std::vector<BoundPoint<D>> bound{};  ///< walls inside the grid that touched concrete in the last step
+  double time_error = 0.0;             ///< of the last step: its local error, if it was asked for [m]
+  BlockSystem<D> system{};
+  std::conditional_t<D == 3, SpaceSystem, Nothing> space_system{};  ///< for large bodies in 3D
+};
+
+struct StepReport {
+  double dt = 0.0;
+  bool converged = false;
+  bool failed = false;  ///< the velocities are not finite or run away: the points were left where they were
+  int iterations = 0;   ///< linear solves
+  double max_speed = 0.0;        ///< of the points [m/s]
+  double bulk_speed = 0.0;       ///< of all but the fastest half percent of the points [m/s]
+  double shear_rate_mean = 0.0;  ///< volume mean [1/s]
+};
+
+}  // namespace tremie

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "libmpm/geometry/geometries.hpp"
+
+namespace tremie {
+
+/// Material points as a structure of arrays, SI units. What a material does not have is an empty array.
+template <int D>
+struct Points {
+  std::vector<Vec<D>> x;          ///< position [m]
+  std::vector<Vec<D>> v;          ///< velocity [m/s]
+  std::vector<Mat<D, D>> C;       ///< affine velocity, APIC [1/s]
+  std::vector<double> mass;       ///< [kg]
+  std::vector<double> V0;         ///< stress-free volume [m^3]
+  std::vector<double> ln_J;       ///< ln(V / V0)
+  std::vector<double> lambda;     ///< flocculation state; empty without thixotropy
+  std::vector<double> gamma_dot;  ///< shear rate of the last step [1/s]; empty where nothing needs it
+
+  std::size_t size() const { return x.size(); }
+  bool thixotropic() const { return !lambda.empty(); }
+  double volume(std::size_t p) const { return V0[p] * std::exp(ln_J[p]); }
+};
+
+/// Bytes that one more point costs.
+template <int D>
+std::int64_t bytes_per_point(bool thixotropic) {
+  const std::size_t doubles = 2 * D + D * D + 3 + (thixotropic ? 2 : 0);
+  return static_cast<std::int64_t>(doubles * sizeof(double));
+}
+
+/// Room for n points without thixotropy.
+template <int D>
+void reserve(Points<D>& points, std::size_t n) {
+  points.x.reserve(n), points.v.reserve(n), points.C.reserve(n);
+  for (std::vector<double>* array : {&points.mass, &points.V0, &points.ln_J}) array->reserve(n);
+}
+
+/// Gives back the room to grow.
+template <int D>
+void shrink(Points<D>& points) {
+  points.x.shrink_to_fit(), points.v.shrink_to_fit(), points.C.shrink_to_fit();
+  for (std::vector<double>* array :
+       {&points.mass, &points.V0, &points.ln_J, &points.lambda, &points.gamma_dot})
+    array->shrink_to_fit();
+}
+
+/// Adds a point at rest.
+template <int D>
+void add_point(Points<D>& points, const Vec<D>& x, double mass, double V0, double ln_J) {
+  points.x.push_back(x);
+  points.v.push_back(Vec<D>::Zero());
+  points.C.push_back(Mat<D, D>::Zero());
+  points.mass.push_back(mass);
+  points.V0.push_back(V0);
+  points.ln_J.push_back(ln_J);
+}
+
+}  // namespace tremie

@@ -1,0 +1,43 @@
+#pragma once
+
+// The torque of the thixotropic Couette model at the times of a record, and its derivatives. Private to
+// rheometer/.
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "rheometer/fits/fit.hpp"
+
+namespace tremie::fitting {
+
+/// tau_0 [Pa], mu [Pa s], lambda_0, alpha.
+using DecayParameters = std::array<double, 4>;
+
+/// Solves the model on a fixed set of times, dense at the start, and interpolates to those of the record: one
+/// solve serves a record of any length.
+class DecayModel {
+ public:
+  /// `intervals` of the model in r (CouetteOptions).
+  DecayModel(const FitInput& input, const std::vector<double>& times, int intervals);
+
+  /// Torque [N m] at the times of the record. Throws std::runtime_error where the integrator gives up.
+  void torque(const DecayParameters& p, std::span<double> result) const;
+
+ private:
+  struct Place {
+    std::size_t interval;
+    std::array<double, 4> weight;  ///< of the torque and the slope at both ends (cubic Hermite)
+  };
+
+  FitInput input_;
+  int intervals_;
+  std::vector<double> nodes_;
+  std::vector<Place> places_;
+};
+
+/// The yield stress [Pa] with which a Bingham material of viscosity mu gives this torque at this speed; 0
+/// where the viscosity alone gives more.
+double yield_stress_from_torque(double torque, double mu, double omega, const Instrument& instrument);
+
+}  // namespace tremie::fitting

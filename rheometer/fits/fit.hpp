@@ -1,0 +1,96 @@
+#pragma once
+
+// Material parameters, each with its 95 % interval, from a torque record.
+//
+// Flow curve: (tau_0, mu) by Reiner-Riwlin, the plug solved for at every speed. Torque decay at constant
+// speed: (lambda_0, alpha), and tau_0 and mu where they are not given, by the thixotropic Couette model, so
+// that the localisation of shear is accounted for. Beside it the paper's reading of the same record, the
+// apparent alpha: the coefficient of an exponential through lambda(t) from equation (6), divided by a nominal
+// shear rate, equation (5).
+//
+// The error of a reading is taken to be in proportion to it; outliers are named and left out
+// (least_squares.hpp).
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libmpm/constitutive/flocculation.hpp"
+#include "rheometer/reference/reiner_riwlin.hpp"
+#include "rheometer/records/torque_record.hpp"
+
+namespace tremie {
+
+/// What is known besides the record.
+struct FitInput {
+  Instrument instrument;
+  std::optional<double> tau_0;  ///< dynamic yield stress [Pa]
+  std::optional<double> mu;     ///< plastic viscosity [Pa s]
+  std::optional<double> omega;  ///< speed of a torque decay [rad/s]; a decay needs it
+  std::optional<double> rest;   ///< rest before a torque decay [s]
+  Kinetics kinetics = Kinetics::gated;
+  double gamma_c = 0.1;  ///< critical shear rate of the gate [1/s]
+};
+
+struct Interval {
+  double low = 0.0, high = 0.0;
+};
+
+struct Estimate {
+  double value = 0.0;
+  std::optional<Interval> ci95;  ///< empty where as many readings as parameters leave no scatter to judge by
+  bool given = false;            ///< taken from FitInput, not from the record
+};
+
+struct DroppedPoint {
+  long line = 0;                 ///< of the file
+  double x = 0.0, torque = 0.0;  ///< speed [rad/s] or time [s]; [N m]
+  std::string reason;
+};
+
+/// One reading of alpha the paper's way. `coefficient` [1/s] is the exponent's, alpha =
+/// coefficient/shear_rate.
+struct ApparentAlpha {
+  double window = 0.0;  ///< of the record, from its start [s]
+  double coefficient = 0.0;
+  double alpha_newtonian_rate = 0.0;         ///< shear rate 2 Omega/(1 - R_i^2/R_o^2)
+  std::optional<double> alpha_rate_at_vane;  ///< shear rate at the vane at the start, by the fitted model
+};
+
+struct ApparentReading {
+  double offset_torque = 0.0;          ///< the torque taken for lambda = 0 [N m]
+  std::string offset;                  ///< where it comes from
+  double newtonian_rate = 0.0;         ///< [1/s]
+  std::optional<double> rate_at_vane;  ///< [1/s]
+  std::vector<ApparentAlpha> windows;  ///< 2, 5, 10, 20 s as far as the record goes, and all of it (last)
+};
+
+/// A curve to plot: the readings used, condensed where there are very many.
+struct FittedCurve {
+  std::vector<double> x, observed, fitted;  ///< speed [rad/s] or time [s]; torque [N m]
+  std::vector<double> standard_error;       ///< of the fitted torque [N m]
+};
+
+struct FitResult {
+  RecordKind kind = RecordKind::flow_curve;
+  std::optional<Estimate> tau_0, mu, static_yield_stress, lambda_0, alpha, A_thix;
+  std::optional<ApparentReading> apparent;
+  std::optional<bool> plug;              ///< part of the gap is at rest at some reading
+  std::optional<double> plug_below;      ///< speed below which there is a plug [rad/s], flow curve alone
+  std::optional<double> sheared_radius;  ///< the smallest sheared radius over the record [m]
+  std::vector<DroppedPoint> dropped;     ///< the first 100
+  long dropped_count = 0;
+  long readings = 0;                 ///< used
+  double scatter = 0.0;              ///< relative standard deviation of a reading about the fit
+  double correlation = 0.0;          ///< of successive residuals
+  std::vector<std::string> notes;    ///< assumptions, and why a value is missing
+  std::vector<std::string> reasons;  ///< why the result is not to be trusted
+  FittedCurve curve;
+  std::vector<double> lambda_apparent;  ///< of curve.observed, torque decay alone
+};
+
+/// Fits the record by its kind. Throws std::invalid_argument, with what is needed, for a record or an input
+/// that cannot be fitted: too few rows, one speed only, a decay without a speed.
+FitResult fit(const TorqueRecord& record, const FitInput& input);
+
+}  // namespace tremie

@@ -1,0 +1,144 @@
+#include "rheometer/fits/fit_common.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "rheometer/fits/statistics.hpp"
+
+namespace tremie {
+
+namespace {
+
+/// A record in a wrong unit fits as well as in the right one. Fresh concretes, mortars and pastes shear at
+/// stresses from a few Pa to, rested, a few kPa, and vanes turn at a few rev/s at most; what is far beyond is
+/// told.
+void judge_sizes(const TorqueRecord& record, const FitInput& input, FitResult& result) {
+  const double stress =
+      shear_stress_at(input.instrument.vane_radius,
+                      *std::max_element(record.torque.begin(), record.torque.end()), input.instrument);
+  if (stress < 1.0 || stress > 2e4)
+    result.reasons.push_back("the largest shear stress at the vane is " + std::to_string(stress) +
+                             " Pa, which no fresh concrete has: is the torque's unit right?");
+  const double speed = record.kind == RecordKind::flow_curve
+                           ? *std::max_element(record.omega.begin(), record.omega.end())
+                           : input.omega.value_or(0.0);
+  if (speed > angular_speed(10.0))
+    result.reasons.push_back("the vane turns at " + std::to_string(speed / angular_speed(1.0)) +
+                             " rev/s: is the speed's unit right?");
+}
+
+}  // namespace
+
+FitResult fit(const TorqueRecord& record, const FitInput& input) {
+  check(input.instrument);
+  const auto positive = [](const std::optional<double>& v, const char* what) {
+    if (v && !(std::isfinite(*v) && *v > 0.0))
+      throw std::invalid_argument(std::string(what) + " must be greater than 0");
+  };
+  positive(input.tau_0, "the yield stress");
+  positive(input.mu, "the plastic viscosity");
+  positive(input.omega, "the speed");
+  positive(input.rest, "the rest");
+  FitResult result = record.kind == RecordKind::flow_curve ? fitting::fit_flow_curve(record, input)
+                                                           : fitting::fit_torque_decay(record, input);
+  judge_sizes(record, input, result);
+  return result;
+}
+
+namespace fitting {
+
+void Readings::push(double x_value, double torque_value, double rows, long line_number) {
+  x.push_back(x_value);
+  torque.push_back(torque_value);
+  count.push_back(rows);
+  line.push_back(line_number);
+}
+
+void drop(FitResult& result, long line, double x, double torque, const std::string& reason) {
+  if (result.dropped.size() < 100) result.dropped.push_back({line, x, torque, reason});
+  ++result.dropped_count;
+}
+
+Readings condense(const Readings& all, std::size_t most, FitResult& result) {
+  if (all.size() <= most) return all;
+  result.notes.push_back(std::to_string(all.size()) + " rows averaged to " + std::to_string(most) +
+                         " readings");
+  Readings means;
+  for (std::size_t k = 0; k < most; ++k) {
+    const std::size_t begin = all.size() * k / most, end = all.size() * (k + 1) / most;
+    const auto from = all.torque.begin() + static_cast<std::ptrdiff_t>(begin);
+    std::vector<double> deviation(from, all.torque.begin() + static_cast<std::ptrdiff_t>(end));
+    const double middle = median(deviation);
+    for (double& d : deviation) d -= middle;
+    // 6 deviations: one row in a thousand million of a normal sample; runs of a few rows are left whole
+    const double cut =
+        end - begin < 8 ? HUGE_VAL : std::max(6.0 * robust_deviation(deviation), 1e-6 * middle);
+    double x = 0.0, torque = 0.0, count = 0.0;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (std::abs(deviation[i - begin]) > cut) {
+        drop(result, all.line[i], all.x[i], all.torque[i], "outlier among its neighbours");
+        continue;
+      }
+      x += all.x[i];
+      torque += all.torque[i];
+      count += 1.0;
+    }
+    if (count > 0.0) means.push(x / count, torque / count, count, all.line[begin]);
+  }
+  return means;
+}
+
+Readings without(const Readings& all, const std::vector<char>& leave_out) {
+  Readings kept;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (!leave_out[i]) kept.push(all.x[i], all.torque[i], all.count[i], all.line[i]);
+  return kept;
+}
+
+std::optional<Estimate> tell(double value, double variance, double degrees, double scale) {
+  if (!std::isfinite(value) || !std::isfinite(variance)) return std::nullopt;
+  if (degrees <= 0.0) return Estimate{value, std::nullopt, false};
+  const double half = student_quantile(0.975, degrees) * std::sqrt(variance);
+  if (half > scale) return std::nullopt;
+  return Estimate{value, Interval{std::max(0.0, value - half), value + half}, false};
+}
+
+Estimate given(double value) { return {value, Interval{value, value}, true}; }
+
+void report(const Readings& readings, const LeastSquaresFit& fit, FitResult& result) {
+  double square = 0.0, left_out = 0.0;
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    if (fit.outlier[i]) {
+      drop(result, readings.line[i], readings.x[i], readings.torque[i], "outlier from the fitted curve");
+      result.dropped_count += std::lround(readings.count[i]) - 1;  // the mean of so many rows
+      left_out += 1.0;
+      continue;
+    }
+    result.curve.x.push_back(readings.x[i]);
+    result.curve.observed.push_back(readings.torque[i]);
+    result.curve.fitted.push_back(fit.fitted[i]);
+    result.readings += std::lround(readings.count[i]);
+    square += fit.residual[i] * fit.residual[i];
+  }
+  result.scatter = fit.scatter;
+  result.correlation = fit.correlation;
+  const auto n = static_cast<double>(readings.size());
+  const double misfit = 100.0 * std::sqrt(square / std::max(1.0, n - left_out));
+  // An instrument's readings scatter by a few per cent; at this size the record is another material, unit or
+  // speed.
+  if (misfit > 25.0)
+    result.reasons.push_back("the fitted curve misses the readings by " +
+                             std::to_string(std::lround(misfit)) +
+                             " % (root mean square): check units, speed and what was given as known");
+  // A stray reading is an outlier; a twentieth of a long record is a part that the model does not describe.
+  if (readings.size() >= 50 && left_out > 0.05 * n)
+    result.reasons.push_back(
+        std::to_string(std::lround(100.0 * left_out / n)) +
+        " % of the readings are off the fitted curve and were left out: the material does not "
+        "behave as the model, or what was given as known is not right");
+}
+
+}  // namespace fitting
+
+}  // namespace tremie

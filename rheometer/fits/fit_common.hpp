@@ -1,0 +1,39 @@
+#pragma once
+
+// What the fit of a flow curve and of a torque decay share. Private to rheometer/.
+
+#include "rheometer/fits/fit.hpp"
+#include "rheometer/fits/least_squares.hpp"
+
+namespace tremie::fitting {
+
+/// Readings in ascending x; where a record has very many rows, each is the mean of its neighbours.
+struct Readings {
+  std::vector<double> x, torque, count;
+  std::vector<long> line;  ///< of the first row of each
+
+  std::size_t size() const { return x.size(); }
+  void push(double x_value, double torque_value, double rows, long line_number);
+};
+
+void drop(FitResult& result, long line, double x, double torque, const std::string& reason);
+
+/// At most `most` readings: means over runs of neighbours in x, with rows far from a run's median left out.
+Readings condense(const Readings& all, std::size_t most, FitResult& result);
+
+/// Without the marked readings.
+Readings without(const Readings& all, const std::vector<char>& leave_out);
+
+/// value with its 95 % interval, cut at 0; empty where the interval is wider than `scale` to each side.
+std::optional<Estimate> tell(double value, double variance, double degrees, double scale);
+
+/// The given value as an estimate.
+Estimate given(double value);
+
+/// Names the outliers and fills in the scatter and the curve.
+void report(const Readings& readings, const LeastSquaresFit& fit, FitResult& result);
+
+FitResult fit_flow_curve(const TorqueRecord& record, const FitInput& input);
+FitResult fit_torque_decay(const TorqueRecord& record, const FitInput& input);
+
+}  // namespace tremie::fitting

@@ -1,0 +1,164 @@
+#include "rheometer/reference/material_cell.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+#include "rheometer/reference/flocculation_ode.hpp"
+#include "rheometer/records/table.hpp"
+#include "rheometer/records/torque_record.hpp"
+
+namespace tremie {
+
+namespace {
+
+/// Stress [Pa] in simple shear; at zero rate the limit from the side of flow.
+template <class Law>
+double limit_stress(const Law& law, double mu, double tau_y, double gamma_dot) {
+  if constexpr (std::is_same_v<Law, ExactBingham>) return mu * gamma_dot + tau_y;
+  return (mu + law.secant(gamma_dot, tau_y)) * gamma_dot;
+}
+
+double duration_of(const std::vector<ShearSegment>& history) {
+  double sum = 0.0;
+  for (const ShearSegment& s : history) sum += s.duration;
+  return sum;
+}
+
+/// Steps in one segment: the time step as given, else its share of 2000, and some in a short one too.
+long steps_in(const MaterialCell& cell, const ShearSegment& s, double total) {
+  const double count = static_cast<double>(cell.history.size());
+  const double n =
+      cell.time_step ? s.duration / *cell.time_step : std::max(2000.0 * s.duration / total, 400.0 / count);
+  if (n > 1e7) throw std::invalid_argument("the time step makes more than 10 million steps of one segment");
+  return std::max(1L, static_cast<long>(std::ceil(n * (1.0 - 1e-12))));
+}
+
+template <class Law>
+class Run {
+ public:
+  Run(const MaterialCell& cell, const Law& law) : cell_(cell), law_(law) {
+    if (const auto& t = cell.mix.thixotropy)
+      lambda_ = flocculation_after_rest(t->initial_flocculation, *t, cell.mix.tau_0, cell.rest);
+  }
+
+  CellResult operator()() {
+    const double total = duration_of(cell_.history);
+    double start = 0.0;
+    for (const ShearSegment& s : cell_.history) {
+      if (result_.samples.empty() || s.from != result_.samples.back().shear_rate) add(start, s.from);
+      const long n = steps_in(cell_, s, total);
+      for (long i = 1; i <= n; ++i) step(s, start, s.duration / static_cast<double>(n), i, n);
+      start += s.duration;
+    }
+    if (cell_.mix.thixotropy) compare();
+    find_area();
+    return std::move(result_);
+  }
+
+ private:
+  void step(const ShearSegment& s, double start, double dt, long i, long n) {
+    const auto rate = [&](long k) {
+      return k == n ? s.to : s.from + (s.to - s.from) * static_cast<double>(k) / static_cast<double>(n);
+    };
+    if (const auto& t = cell_.mix.thixotropy)
+      lambda_ = flocculation_step(lambda_, *t, cell_.mix.tau_0, rate(i - 1), rate(i), dt);
+    add(i == n ? start + s.duration : start + static_cast<double>(i) * dt, rate(i));
+    ++result_.steps;
+  }
+
+  void add(double time, double gamma_dot) {
+    const double tau_y = static_yield_stress(lambda_, cell_.mix.tau_0);
+    const double stress = limit_stress(law_, cell_.mix.mu, tau_y, gamma_dot);
+    stress_limit_.push_back(stress);
+    CellSample sample{time, gamma_dot, stress, {}, {}};
+    if (std::is_same_v<Law, ExactBingham> && gamma_dot == 0.0 && tau_y > 0.0) sample.shear_stress.reset();
+    if (cell_.mix.thixotropy) sample.flocculation = lambda_;
+    result_.samples.push_back(sample);
+  }
+
+  void compare() {
+    const Thixotropy& t = *cell_.mix.thixotropy;
+    const double lambda_0 = flocculation_after_rest(t.initial_flocculation, t, cell_.mix.tau_0, cell_.rest);
+    std::vector<double> times;
+    for (const CellSample& sample : result_.samples) times.push_back(sample.time);
+    const OdeResult reference =
+        flocculation_ode(linear_pieces(cell_.history), t, cell_.mix.tau_0, lambda_0, times);
+    result_.reference_steps = reference.steps;
+    result_.flocculation_error_max = 0.0;
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      CellSample& sample = result_.samples[i];
+      sample.flocculation_reference = reference.lambda[i];
+      result_.flocculation_error_max =
+          std::max(*result_.flocculation_error_max, std::abs(*sample.flocculation - reference.lambda[i]));
+    }
+  }
+
+  void find_area() {
+    const std::vector<CellSample>& s = result_.samples;
+    const auto [low, high] = std::minmax_element(
+        s.begin(), s.end(), [](const auto& a, const auto& b) { return a.shear_rate < b.shear_rate; });
+    if (s.front().shear_rate != s.back().shear_rate || low->shear_rate == high->shear_rate) return;
+    double area = 0.0;
+    for (std::size_t i = 1; i < s.size(); ++i)
+      area += 0.5 * (stress_limit_[i - 1] + stress_limit_[i]) * (s[i].shear_rate - s[i - 1].shear_rate);
+    result_.hysteresis_area = area;
+  }
+
+  const MaterialCell& cell_;
+  const Law& law_;
+  double lambda_ = 0.0;
+  std::vector<double> stress_limit_;
+  CellResult result_;
+};
+
+template <class Law>
+CellResult run(const MaterialCell& cell, const Law& law) {
+  if (cell.history.empty()) throw std::invalid_argument("the history is empty");
+  for (const ShearSegment& s : cell.history) linear_piece(s);  // throws where a segment is out of range
+  if (cell.time_step && !(*cell.time_step > 0.0))
+    throw std::invalid_argument("the time step must be greater than 0");
+  return Run<Law>(cell, law)();
+}
+
+}  // namespace
+
+CellResult run_cell(const MaterialCell& cell, const ExactBingham& law) { return run(cell, law); }
+CellResult run_cell(const MaterialCell& cell, const Papanastasiou& law) { return run(cell, law); }
+CellResult run_cell(const MaterialCell& cell, const BiViscous& law) { return run(cell, law); }
+
+std::vector<ShearSegment> parse_shear_history(std::string_view text, const std::string& name) {
+  const NumberTable table = parse_number_table(text, name,
+                                               {{"time",
+                                                 {{"s", 1.0}, {"ms", 1e-3}, {"min", 60.0}, {"h", 3600.0}},
+                                                 "time_s, time_ms, time_min or time_h"},
+                                                {"shear_rate",
+                                                 {{"/s", 1.0}, {"1/s", 1.0}, {"/min", 1.0 / 60.0}},
+                                                 "shear_rate_per_s or shear_rate_per_min"}});
+  for (const std::size_t k : {0u, 1u})
+    if (table.position[k] == 0)
+      throw RecordError(
+          at_position(name, table.header_line, 1, "a history needs the columns time_s,shear_rate_per_s"));
+  const auto &time = table.column[0], &rate = table.column[1];
+  if (time.size() < 2)
+    throw RecordError(at_position(name, table.header_line, 1, "a history needs two rows or more"));
+  std::vector<ShearSegment> segments;
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    if (rate[i] < 0.0)
+      throw RecordError(at_position(name, table.line[i], table.position[1],
+                                    "the shear rate is negative; 0 or more is allowed"));
+    if (i == 0) continue;
+    if (time[i] < time[i - 1])
+      throw RecordError(at_position(name, table.line[i], table.position[0],
+                                    "time runs backwards; the rows must ascend in time"));
+    if (time[i] > time[i - 1]) segments.push_back({time[i] - time[i - 1], rate[i - 1], rate[i]});
+  }
+  if (segments.empty())
+    throw RecordError(at_position(name, table.line.back(), table.position[0], "all rows have the same time"));
+  return segments;
+}
+
+}  // namespace tremie

@@ -1,0 +1,59 @@
+#pragma once
+
+// One material cell in simple shear at a prescribed shear rate: the law alone, without a flow.
+//
+//   tau = mu gamma_dot + f(gamma_dot, (1 + lambda) tau_0)     equations (2), (27), (32), (33) in one
+//   dimension
+//
+// with lambda by the per-point update that the material points use, and beside it by CVODE.
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "libmpm/constitutive/mix.hpp"
+#include "libmpm/constitutive/yield_law.hpp"
+#include "rheometer/records/shear_history.hpp"
+
+namespace tremie {
+
+struct MaterialCell {
+  Mix mix;
+  double rest = 0.0;                  ///< before the history, in closed form [s]
+  std::vector<ShearSegment> history;  ///< at least one
+  std::optional<double> time_step;    ///< of the update [s]; empty: about 2000 steps over the history
+};
+
+/// One line of timeseries.csv. Where the shear rate jumps, there are two with the same time.
+struct CellSample {
+  double time = 0.0;        ///< [s]
+  double shear_rate = 0.0;  ///< [1/s]
+  /// [Pa]; empty where the law leaves it open: an exact Bingham material at rest, anything up to the yield
+  /// stress.
+  std::optional<double> shear_stress;
+  std::optional<double> flocculation, flocculation_reference;  ///< empty without thixotropy
+};
+
+struct CellResult {
+  std::vector<CellSample> samples;
+  long steps = 0;
+  long reference_steps = 0;  ///< of CVODE
+  /// Largest difference between the update and CVODE over the samples.
+  std::optional<double> flocculation_error_max;
+  /// int tau d(gamma_dot) around the history, rising branch minus falling [Pa/s]; empty unless the shear rate
+  /// ends where it began, with a change between.
+  std::optional<double> hysteresis_area;
+};
+
+/// Runs the cell. `Law` is one of libmpm/constitutive/yield_law.hpp;
+/// Throws std::invalid_argument for an empty history or values out of range.
+CellResult run_cell(const MaterialCell& cell, const ExactBingham& law);
+CellResult run_cell(const MaterialCell& cell, const Papanastasiou& law);
+CellResult run_cell(const MaterialCell& cell, const BiViscous& law);
+
+/// Reads a history from the text of a CSV with the columns time_s,shear_rate_per_s (format:
+/// torque_record.hpp): linear between the rows, a jump where two rows have the same time. Throws RecordError.
+std::vector<ShearSegment> parse_shear_history(std::string_view text, const std::string& name);
+
+}  // namespace tremie

@@ -1,0 +1,371 @@
+#include "rheometer/reference/thixotropic_couette.hpp"
+
+#include <ida/ida.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "rheometer/reference/sundials_support.hpp"
+
+namespace tremie {
+
+namespace {
+
+/// The discretised gap. Unknowns: lambda at the n nodes, then s = T/(2 pi h R_i^2), the stress at the vane
+/// [Pa].
+struct Gap {
+  double tau_0 = 0.0, mu = 0.0, alpha = 0.0, build_rate = 0.0, gamma_c = 0.0, dx = 0.0;
+  bool gated = true, find_gate = true;
+  std::vector<double> x, stress_share;  ///< ln(r/R_i) and (R_i/r)^2 of the nodes
+  std::vector<char> flowing;            ///< the gate's side, gated alone
+  std::function<double(double)> omega;
+
+  std::size_t nodes() const { return x.size(); }
+
+  /// Shear rate if the material yields; negative: it does not.
+  double excess(std::size_t i, std::span<const double> y) const {
+    return (y[nodes()] * stress_share[i] - (1.0 + y[i]) * tau_0) / mu;
+  }
+
+  bool breaks(std::size_t i, double e) const {
+    if (!gated) return true;
+    return find_gate ? flowing[i] != 0 : e >= gamma_c;
+  }
+
+  double kinetics(std::size_t i, double lambda, double e) const {
+    if (!breaks(i, e)) return build_rate;
+    return (gated ? 0.0 : build_rate) - alpha * lambda * std::max(0.0, e);
+  }
+};
+
+/// int over one interval of the positive part of a linear function with end values a and b, and its
+/// derivatives.
+struct PositivePart {
+  double integral = 0.0, d_a = 0.0, d_b = 0.0;
+};
+
+PositivePart positive_part(double a, double b, double dx) {
+  if (a >= 0.0 && b >= 0.0) return {0.5 * dx * (a + b), 0.5 * dx, 0.5 * dx};
+  if (a <= 0.0 && b <= 0.0) return {};
+  const bool falling = a > b;
+  const double top = falling ? a : b, bottom = falling ? b : a;
+  const double q = top / (top - bottom);  // share of the interval that is sheared
+  const double by_top = dx * q * (1.0 - 0.5 * q), by_bottom = 0.5 * dx * q * q;
+  return {0.5 * dx * top * q, falling ? by_top : by_bottom, falling ? by_bottom : by_top};
+}
+
+/// The speed that the state turns the vane at; d_excess[i] (if given) receives its derivative by the excess
+/// at node i.
+double speed_of(const Gap& gap, std::span<const double> y, std::vector<double>* d_excess) {
+  if (d_excess) d_excess->assign(gap.nodes(), 0.0);
+  double sum = 0.0, left = gap.excess(0, y);
+  for (std::size_t i = 1; i < gap.nodes(); ++i) {
+    const double right = gap.excess(i, y);
+    const PositivePart part = positive_part(left, right, gap.dx);
+    sum += part.integral;
+    if (d_excess) {
+      (*d_excess)[i - 1] += part.d_a;
+      (*d_excess)[i] += part.d_b;
+    }
+    left = right;
+  }
+  return sum;
+}
+
+/// d(speed)/d(s) given the derivatives by the excess.
+double speed_by_stress(const Gap& gap, const std::vector<double>& d_excess) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < gap.nodes(); ++i) sum += d_excess[i] * gap.stress_share[i];
+  return sum / gap.mu;
+}
+
+/// Puts the s into y that turns the vane at omega. The speed is convex in s, so Newton from above stays
+/// above.
+void solve_stress(const Gap& gap, std::span<double> y, double omega) {
+  double& s = y[gap.nodes()];
+  s = (1.0 + y[0]) * gap.tau_0 + gap.mu * omega;
+  while (speed_of(gap, y, nullptr) < omega) s *= 2.0;
+  std::vector<double> d_excess;
+  for (int i = 0; i < 100; ++i) {
+    const double error = speed_of(gap, y, &d_excess) - omega;
+    const double step = error / speed_by_stress(gap, d_excess);
+    s -= step;
+    if (std::abs(step) <= 1e-14 * s) break;
+  }
+}
+
+/// Time derivatives that agree with the state: the kinetics, and the constraint differentiated.
+void consistent_rates(const Gap& gap, double t, std::span<const double> y, std::span<double> rates) {
+  std::vector<double> d_excess;
+  speed_of(gap, y, &d_excess);
+  double by_lambda = 0.0;
+  for (std::size_t i = 0; i < gap.nodes(); ++i) {
+    rates[i] = gap.kinetics(i, y[i], gap.excess(i, y));
+    by_lambda -= d_excess[i] * gap.tau_0 / gap.mu * rates[i];
+  }
+  const double dt = 1e-6, d_omega = (gap.omega(t + dt) - gap.omega(t)) / dt;
+  rates[gap.nodes()] = (d_omega - by_lambda) / speed_by_stress(gap, d_excess);
+}
+
+int residual(sunrealtype t, N_Vector y_vector, N_Vector rates_vector, N_Vector result, void* user) {
+  const Gap& gap = *static_cast<const Gap*>(user);
+  const std::span<double> y = values(y_vector), rates = values(rates_vector), f = values(result);
+  for (std::size_t i = 0; i < gap.nodes(); ++i) f[i] = rates[i] - gap.kinetics(i, y[i], gap.excess(i, y));
+  f[gap.nodes()] = speed_of(gap, y, nullptr) - gap.omega(t);
+  return std::isfinite(f[gap.nodes()]) ? 0 : 1;  // 1: IDA tries a smaller step
+}
+
+int gate(sunrealtype, N_Vector y_vector, N_Vector, sunrealtype* g, void* user) {
+  const Gap& gap = *static_cast<const Gap*>(user);
+  const std::span<double> y = values(y_vector);
+  for (std::size_t i = 0; i < gap.nodes(); ++i) g[i] = gap.excess(i, y) - gap.gamma_c;
+  return 0;
+}
+
+/// Newton's system is an arrow: each lambda_i couples to itself and to s, the constraint to all. Eliminating
+/// the lambda_i leaves one equation for s, so a solve costs O(n) where a dense factorisation would cost
+/// O(n^3).
+int solve_arrow(SUNLinearSolver solver, SUNMatrix, N_Vector x_vector, N_Vector b_vector, sunrealtype) {
+  void* memory = solver->content;
+  sunrealtype t = 0.0, cj = 0.0;
+  N_Vector y_predicted, rates_predicted, y_vector, rates_vector, res;
+  void* user = nullptr;
+  IDAGetNonlinearSystemData(memory, &t, &y_predicted, &rates_predicted, &y_vector, &rates_vector, &res, &cj,
+                            &user);
+  const Gap& gap = *static_cast<const Gap*>(user);
+  const std::span<double> y = values(y_vector), x = values(x_vector), b = values(b_vector);
+  const std::size_t n = gap.nodes();
+
+  thread_local std::vector<double> d_excess, diagonal, column;
+  speed_of(gap, y, &d_excess);
+  diagonal.assign(n, cj);
+  column.assign(n, 0.0);
+  double pivot = speed_by_stress(gap, d_excess), right = b[n];
+  for (std::size_t i = 0; i < n; ++i) {
+    const double e = gap.excess(i, y);
+    if (e > 0.0 && gap.breaks(i, e)) {
+      diagonal[i] += gap.alpha * (e - y[i] * gap.tau_0 / gap.mu);
+      column[i] = gap.alpha * y[i] * gap.stress_share[i] / gap.mu;
+    }
+    const double row = -d_excess[i] * gap.tau_0 / gap.mu;
+    pivot -= row * column[i] / diagonal[i];
+    right -= row * b[i] / diagonal[i];
+  }
+  if (!(std::abs(pivot) > 0.0)) return 1;  // recoverable: IDA tries a smaller step
+  x[n] = right / pivot;
+  for (std::size_t i = 0; i < n; ++i) x[i] = (b[i] - column[i] * x[n]) / diagonal[i];
+  return 0;
+}
+
+SUNLinearSolver arrow_solver(void* memory, const SundialsContext& context) {
+  SUNLinearSolver solver = SUNLinSolNewEmpty(context.get);
+  if (!solver) return nullptr;
+  solver->ops->gettype = [](SUNLinearSolver) { return SUNLINEARSOLVER_MATRIX_EMBEDDED; };
+  solver->ops->solve = solve_arrow;
+  solver->ops->free = [](SUNLinearSolver s) {
+    s->content = nullptr;  // IDA's memory, not ours
+    SUNLinSolFreeEmpty(s);
+    return 0;
+  };
+  solver->content = memory;
+  return solver;
+}
+
+struct FreeIda {
+  void operator()(void* memory) const { IDAFree(&memory); }
+};
+
+void check(const CouetteFlow& flow) {
+  const auto positive = [](double v) { return std::isfinite(v) && v > 0.0; };
+  const auto not_negative = [](double v) { return std::isfinite(v) && v >= 0.0; };
+  if (!positive(flow.bingham.tau_0) || !positive(flow.bingham.mu))
+    throw std::invalid_argument("the yield stress and the plastic viscosity must be greater than 0");
+  if (!flow.omega_of_time && !positive(flow.omega))
+    throw std::invalid_argument("the speed must be greater than 0");
+  const Thixotropy& t = flow.thixotropy;
+  if (!not_negative(t.A_thix) || !not_negative(t.alpha) || !not_negative(t.gamma_c) ||
+      !not_negative(t.initial_flocculation))
+    throw std::invalid_argument("A_thix, alpha, the critical shear rate and lambda must not be negative");
+}
+
+Gap make_gap(const CouetteFlow& flow, double width, const CouetteOptions& options) {
+  const Thixotropy& t = flow.thixotropy;
+  Gap gap;
+  gap.tau_0 = flow.bingham.tau_0;
+  gap.mu = flow.bingham.mu;
+  gap.alpha = t.alpha;
+  gap.build_rate = t.A_thix / flow.bingham.tau_0;
+  gap.gamma_c = t.gamma_c;
+  gap.gated = t.kinetics == Kinetics::gated;
+  gap.find_gate = options.find_gate;
+  gap.dx = width / options.intervals;
+  for (int i = 0; i <= options.intervals; ++i) {
+    gap.x.push_back(i * gap.dx);
+    gap.stress_share.push_back(std::exp(-2.0 * gap.x.back()));
+  }
+  const double omega = flow.omega;
+  gap.omega = flow.omega_of_time ? flow.omega_of_time : [omega](double) { return omega; };
+  return gap;
+}
+
+class Integrator {
+ public:
+  Integrator(Gap gap, double lambda, const CouetteOptions& options)
+      : gap_(std::move(gap)),
+        y_(gap_.nodes() + 1, context_),
+        rates_(gap_.nodes() + 1, context_),
+        memory_(IDACreate(context_.get)),
+        solver_(arrow_solver(memory_.get(), context_)) {
+    const std::span<double> y = values(y_.get);
+    std::fill(y.begin(), y.end(), lambda);
+    solve_stress(gap_, y, gap_.omega(0.0));
+    if (!std::isfinite(y[gap_.nodes()])) throw std::runtime_error("the Couette flow has no finite torque");
+    for (std::size_t i = 0; i < gap_.nodes(); ++i) gap_.flowing.push_back(gap_.excess(i, y) >= gap_.gamma_c);
+    consistent_rates(gap_, 0.0, y, values(rates_.get));
+    void* m = memory_.get();
+    sundials_ok(IDAInit(m, residual, 0.0, y_.get, rates_.get), "IDAInit");
+    sundials_ok(IDASStolerances(m, options.relative_tolerance, options.absolute_tolerance),
+                "IDASStolerances");
+    sundials_ok(IDASetUserData(m, &gap_), "IDASetUserData");
+    sundials_ok(IDASetLinearSolver(m, solver_.get, nullptr), "IDASetLinearSolver");
+    sundials_ok(IDASetMaxNumSteps(m, 1'000'000), "IDASetMaxNumSteps");
+    sundials_ok(IDASetErrHandlerFn(
+                    m, [](int, const char*, const char*, char*, void*) {}, nullptr),
+                "IDASetErrHandlerFn");
+    if (gap_.gated && gap_.find_gate) {
+      sundials_ok(IDARootInit(m, static_cast<int>(gap_.nodes()), gate), "IDARootInit");
+      sundials_ok(IDASetNoInactiveRootWarn(m), "IDASetNoInactiveRootWarn");
+    }
+  }
+
+  void advance(double t, CouetteDecay& result) {
+    double reached = now_;
+    while (now_ < t) {
+      const int flag = IDASolve(memory_.get(), t, &reached, y_.get, rates_.get, IDA_NORMAL);
+      sundials_ok(flag, "IDASolve");
+      now_ = reached;
+      if (flag == IDA_ROOT_RETURN) pass_gate(result);
+    }
+  }
+
+  void report(double t, bool keep_profile, const Instrument& in, CouetteDecay& result) const {
+    const std::span<const double> y = values(y_.get);
+    const double r_i = in.vane_radius, s = y[gap_.nodes()];
+    result.time.push_back(t);
+    result.torque.push_back(s * 2.0 * std::numbers::pi * r_i * r_i * in.vane_height);
+    result.sheared_radius.push_back(r_i * std::exp(sheared_x(y)));
+    if (!keep_profile) return;
+    CouetteProfile& profile = result.profile.emplace_back();
+    for (std::size_t i = 0; i < gap_.nodes(); ++i) {
+      profile.lambda.push_back(y[i]);
+      profile.gamma_dot.push_back(std::max(0.0, gap_.excess(i, y)));
+    }
+  }
+
+  const Gap& gap() const { return gap_; }
+
+  long steps() const {
+    long n = 0;
+    IDAGetNumSteps(memory_.get(), &n);
+    return n + steps_before_;
+  }
+
+ private:
+  void pass_gate(CouetteDecay& result) {
+    std::vector<int> direction(gap_.nodes());
+    sundials_ok(IDAGetRootInfo(memory_.get(), direction.data()), "IDAGetRootInfo");
+    bool changed = false;
+    for (std::size_t i = 0; i < gap_.nodes(); ++i) {
+      if (direction[i] == 0 || gap_.flowing[i] == (direction[i] > 0)) continue;
+      gap_.flowing[i] = direction[i] > 0;
+      ++result.gate_crossings;
+      changed = true;
+    }
+    if (!changed) return;
+    steps_before_ = steps();  // a new start sets the counter to 0
+    solve_stress(gap_, values(y_.get), gap_.omega(now_));
+    consistent_rates(gap_, now_, values(y_.get), values(rates_.get));
+    sundials_ok(IDAReInit(memory_.get(), now_, y_.get, rates_.get), "IDAReInit");
+  }
+
+  /// x of the outermost point with a positive excess, linear between the nodes.
+  double sheared_x(std::span<const double> y) const {
+    for (std::size_t i = gap_.nodes(); i-- > 0;) {
+      const double e = gap_.excess(i, y);
+      if (e <= 0.0) continue;
+      return i + 1 == gap_.nodes() ? gap_.x[i] : gap_.x[i] + gap_.dx * e / (e - gap_.excess(i + 1, y));
+    }
+    return 0.0;
+  }
+
+  SundialsContext context_;
+  Gap gap_;
+  SundialsVector y_, rates_;
+  std::unique_ptr<void, FreeIda> memory_;
+  SundialsLinearSolver solver_;
+  double now_ = 0.0;
+  long steps_before_ = 0;
+};
+
+}  // namespace
+
+namespace {
+
+/// ln(r/R_i) as far as the material can be sheared while lambda falls: a tenth more than at time 0.
+double sheared_width(const CouetteFlow& flow, const Instrument& in) {
+  const double tau_y = static_yield_stress(flow.thixotropy.initial_flocculation, flow.bingham.tau_0);
+  const double omega = flow.omega_of_time ? flow.omega_of_time(0.0) : flow.omega;
+  return 1.1 * std::log(reiner_riwlin({tau_y, flow.bingham.mu}, omega, in).sheared_radius / in.vane_radius);
+}
+
+/// Empty where the shear reached the outer end of the resolved width.
+std::optional<CouetteDecay> solve(const CouetteFlow& flow, std::span<const double> times,
+                                  const Instrument& in, const CouetteOptions& options, double width,
+                                  bool whole) {
+  Integrator integrator(make_gap(flow, width, options), flow.thixotropy.initial_flocculation, options);
+  CouetteDecay result;
+  for (const double x : integrator.gap().x) result.radius.push_back(in.vane_radius * std::exp(x));
+  for (const double t : times) {
+    integrator.advance(t, result);
+    integrator.report(t, options.keep_profiles, in, result);
+    if (!whole && result.sheared_radius.back() >= result.radius.back()) return std::nullopt;
+  }
+  result.steps = integrator.steps();
+  return result;
+}
+
+}  // namespace
+
+CouetteDecay thixotropic_couette(const CouetteFlow& flow, std::span<const double> times, const Instrument& in,
+                                 const CouetteOptions& options) {
+  check(in);
+  check(flow);
+  if (options.intervals < 2) throw std::invalid_argument("the gap needs at least 2 intervals");
+  if (!std::is_sorted(times.begin(), times.end()) || (!times.empty() && times.front() < 0.0))
+    throw std::invalid_argument("the times must ascend from 0 or later");
+  const double gap = std::log(in.container_radius / in.vane_radius);
+  if (!options.whole_gap) {
+    const double width = sheared_width(flow, in);
+    if (width < gap)
+      if (auto result = solve(flow, times, in, options, width, false)) return *std::move(result);
+  }
+  return *solve(flow, times, in, options, gap, true);
+}
+
+double dissipated_power(const CouetteProfile& p, std::span<const double> radius, const Bingham& b,
+                        const Instrument& in) {
+  const auto density = [&](std::size_t i) {
+    const double g = p.gamma_dot[i];
+    return (b.mu * g * g + (1.0 + p.lambda[i]) * b.tau_0 * g) * 2.0 * std::numbers::pi * radius[i] *
+           in.vane_height;
+  };
+  double sum = 0.0;
+  for (std::size_t i = 1; i < radius.size(); ++i)
+    sum += 0.5 * (density(i - 1) + density(i)) * (radius[i] - radius[i - 1]);
+  return sum;
+}
+
+}  // namespace tremie
