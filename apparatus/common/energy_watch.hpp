@@ -8,24 +8,24 @@
 namespace tremie::slump_flow {
 
 /// Kinetic and potential energy of the points [J]; heights from the floor.
-template <class Space>
-double energy_of_motion(const Points<Space::dim>& points) {
+template <class Geometry>
+double energy_of_motion(const Points<Geometry::dim>& points) {
   double energy = engine::kinetic_energy(points);
   for (std::size_t p = 0; p < points.size(); ++p)
-    energy += points.mass[p] * engine::gravity * points.x[p][Space::up];
+    energy += points.mass[p] * engine::gravity * points.x[p][Geometry::up];
   return energy;
 }
 
 /// With the elastic energy, too: the pressure -K ln(J) stores K (J ln J - J + 1) in a unit of stress-free
 /// volume.
-template <class Space>
-double energy_of(const Points<Space::dim>& points, double K) {
+template <class Geometry>
+double energy_of(const Points<Geometry::dim>& points, double K) {
   double elastic = 0.0;
   for (std::size_t p = 0; p < points.size(); ++p) {
     const double ln_J = points.ln_J[p], J = std::exp(ln_J);
     elastic += points.V0[p] * K * (J * ln_J - J + 1.0);
   }
-  return energy_of_motion<Space>(points) + elastic;
+  return energy_of_motion<Geometry>(points) + elastic;
 }
 
 /// A body that nothing pushes can only lose energy. A wall that moves may do work on it, half of what the

@@ -35,7 +35,7 @@ inline StepSettings step_settings(const Model& model) {
                                                          : YieldMethod::automatic;
   settings.transfer.flip = model.transfer == TransferKind::flip;
   settings.transfer.flip_blend = model.flip_blend;
-  settings.even_out.on = model.even_out;
+  settings.particle_shifting.on = model.particle_shifting;
   settings.fixed_dt = model.time_step;
   settings.dt_max *= model.step_scale;
   return settings;
@@ -65,8 +65,8 @@ inline void refuse_what_has_no_engine(const Model& model, const char* apparatus)
 }
 
 /// lambda of every point after a rest; nothing is stored for a mix without thixotropy.
-template <class Space>
-void rest(Body<Space>& body, double duration) {
+template <class Geometry>
+void rest(Body<Geometry>& body, double duration) {
   if (!body.mix.thixotropy) return;
   const Thixotropy& t = *body.mix.thixotropy;
   body.points.lambda.assign(body.points.size(),
@@ -129,15 +129,15 @@ std::int64_t points_lost(const std::array<Axis, D>& axes, const Points<D>& point
 
 /// Place of a point for the frames: an axisymmetric section lies in the plane (r, 0, z), a plane one in (x,
 /// y, 0), circling concrete on the line (r, 0, 0).
-template <class Space>
-std::array<double, 3> in_space(const Vec<Space::dim>& x) {
-  if constexpr (Space::dim == 3)
+template <class Geometry>
+std::array<double, 3> in_space(const Vec<Geometry::dim>& x) {
+  if constexpr (Geometry::dim == 3)
     return {x[0], x[1], x[2]};
-  else if constexpr (Space::dim == 1)
+  else if constexpr (Geometry::dim == 1)
     return {x[0], 0.0, 0.0};
-  else if constexpr (std::is_same_v<Space, Axisymmetric>)
+  else if constexpr (std::is_same_v<Geometry, Axisymmetric>)
     return {x[0], 0.0, x[1]};
-  else if constexpr (std::is_same_v<Space, Polar>)
+  else if constexpr (std::is_same_v<Geometry, Polar>)
     return {x[0] * std::cos(x[1]), x[0] * std::sin(x[1]), 0.0};
   else
     return {x[0], x[1], 0.0};
@@ -145,9 +145,9 @@ std::array<double, 3> in_space(const Vec<Space::dim>& x) {
 
 /// Shear rates where the points are now [1/s], from their own velocities: the body's grid is that of the last
 /// step's start.
-template <class Space>
-std::vector<double> shear_rates_now(const Body<Space>& body) {
-  constexpr int D = Space::dim;
+template <class Geometry>
+std::vector<double> shear_rates_now(const Body<Geometry>& body) {
+  constexpr int D = Geometry::dim;
   ActiveGrid<D> grid;
   grid.axes = body.grid.axes;
   grid.blocks = body.grid.blocks;
@@ -159,13 +159,13 @@ std::vector<double> shear_rates_now(const Body<Space>& body) {
   detail::apply_flat_walls<D>(grid, body.walls, fixed, friction, nodes.v);
   detail::apply_blocks<D>(grid, fixed, nodes.v);
   std::vector<double> gamma_dot;
-  shear_rate_at_points<Space>(grid, nodes.v, body.points, gamma_dot);
+  shear_rate_at_points<Geometry>(grid, nodes.v, body.points, gamma_dot);
   return gamma_dot;
 }
 
 /// The body's points as they are now. The velocity of circling concrete is (0, v_theta, 0).
-template <class Space>
-Frame frame_of(const Body<Space>& body) {
+template <class Geometry>
+Frame frame_of(const Body<Geometry>& body) {
   const auto& points = body.points;
   Frame frame;
   frame.time = body.time;
@@ -173,10 +173,10 @@ Frame frame_of(const Body<Space>& body) {
   frame.position.reserve(points.size()), frame.velocity.reserve(points.size());
   frame.volume.reserve(points.size()), frame.pressure.reserve(points.size());
   for (std::size_t p = 0; p < points.size(); ++p) {
-    frame.position.push_back(in_space<Space>(points.x[p]));
-    frame.velocity.push_back(in_space<Space>(points.v[p]));
-    if constexpr (Space::dim == 1) frame.velocity.back() = {0.0, points.v[p][0], 0.0};
-    if constexpr (std::is_same_v<Space, Polar>) {
+    frame.position.push_back(in_space<Geometry>(points.x[p]));
+    frame.velocity.push_back(in_space<Geometry>(points.v[p]));
+    if constexpr (Geometry::dim == 1) frame.velocity.back() = {0.0, points.v[p][0], 0.0};
+    if constexpr (std::is_same_v<Geometry, Polar>) {
       const double c = std::cos(points.x[p][1]), s = std::sin(points.x[p][1]);
       const Vec<2>& v = points.v[p];
       frame.velocity.back() = {c * v[0] - s * v[1], s * v[0] + c * v[1], 0.0};
@@ -202,18 +202,18 @@ struct RestWatch {
 };
 
 /// Adds one step to the counts of a run.
-template <class Space>
-void count_step(const Body<Space>& body, const StepReport& step, Checks& checks, Cost& cost) {
+template <class Geometry>
+void count_step(const Body<Geometry>& body, const StepReport& step, Checks& checks, Cost& cost) {
   checks.unconverged_steps += step.converged ? 0 : 1;
   cost.steps += 1;
   cost.cells_active = std::max<std::int64_t>(cost.cells_active, body.grid.n_cells());
 }
 
 /// A step that the scene fixes is not bound to the cells: how many the fastest point crossed in it.
-template <class Space>
-void watch_fixed_step(const Body<Space>& body, const Model& model, const StepReport& step, Checks& checks) {
+template <class Geometry>
+void watch_fixed_step(const Body<Geometry>& body, const Model& model, const StepReport& step, Checks& checks) {
   if (!model.time_step) return;
-  for (int d = 0; d < Space::dim; ++d) {
+  for (int d = 0; d < Geometry::dim; ++d) {
     double v = 0.0;
     for (std::size_t p = 0; p < body.points.size(); ++p)
       v = std::max(v, std::abs(body.motion.rate(body.points.x[p], body.points.v[p])[d]));
@@ -230,11 +230,11 @@ inline bool gave_up(const StepReport& step, Status& status, Checks& checks, doub
 }
 
 /// Fills checks and cost at the end of a run, with the reasons why a result is not to be trusted.
-template <class Space>
-void judge(const Body<Space>& body, double start_mass, Checks& checks, Cost& cost) {
+template <class Geometry>
+void judge(const Body<Geometry>& body, double start_mass, Checks& checks, Cost& cost) {
   checks.volume_change = volume_change(body.points);
   checks.mass_error = total_mass(body.points) / start_mass - 1.0;
-  checks.points_lost = points_lost<Space::dim>(body.grid.axes, body.points);
+  checks.points_lost = points_lost<Geometry::dim>(body.grid.axes, body.points);
   checks.max_speed_end = detail::max_speed(body.points);
   if (checks.unconverged_steps > 0)
     checks.reasons.push_back(std::to_string(checks.unconverged_steps) + " of " + std::to_string(cost.steps) +
@@ -249,7 +249,7 @@ void judge(const Body<Space>& body, double start_mass, Checks& checks, Cost& cos
                              " cells in a step; up to one is trusted");
   }
   cost.points = static_cast<std::int64_t>(body.points.size());
-  cost.bytes_per_point = bytes_per_point<Space::dim>(body.points.thixotropic());
+  cost.bytes_per_point = bytes_per_point<Geometry::dim>(body.points.thixotropic());
   cost.simulated = body.time;
 }
 

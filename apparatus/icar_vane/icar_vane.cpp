@@ -24,7 +24,7 @@ std::vector<Stage> schedule(const Scene& scene) {
 double angular(double revolutions_per_second) { return 2.0 * std::numbers::pi * revolutions_per_second; }
 
 template <class Section>
-Sample read(const Body<typename Section::Space>& body, const Scene& scene, const Torques& t,
+Sample read(const Body<typename Section::Geometry>& body, const Scene& scene, const Torques& t,
             double last_momentum, double speed, const StepReport& step) {
   const double h = scene.vane.height;
   Sample s;
@@ -44,7 +44,7 @@ Sample read(const Body<typename Section::Space>& body, const Scene& scene, const
 
 /// Means over rings one cell wide.
 template <class Section>
-std::vector<ProfilePoint> profile(const Body<typename Section::Space>& body, const Section& section,
+std::vector<ProfilePoint> profile(const Body<typename Section::Geometry>& body, const Section& section,
                                   double cell) {
   const Vane& vane = section.vane;
   const auto& points = body.points;
@@ -70,7 +70,7 @@ std::vector<ProfilePoint> profile(const Body<typename Section::Space>& body, con
 
 template <class Section, class Law>
 Outcome run_section(const Scene& scene, const Section& section, const Law& law, const Observer& observer) {
-  using Geometry = typename Section::Space;
+  using Geometry = typename Section::Geometry;
   ImplicitBody<Geometry> body{section.body_at_rest(scene)};
   engine::rest(body, scene.rest);
   StepSettings settings = engine::step_settings(scene.model);
@@ -148,7 +148,7 @@ Estimate estimate(const Scene& scene) {
     e.points = static_cast<std::int64_t>(body.points.size());
     e.cells_active = body.grid.n_cells();
     e.bytes_per_point =
-        bytes_per_point<std::decay_t<decltype(section)>::Space::dim>(scene.mix.thixotropy.has_value());
+        bytes_per_point<std::decay_t<decltype(section)>::Geometry::dim>(scene.mix.thixotropy.has_value());
     for (const Stage& stage : schedule(scene)) e.steps += std::llround(stage.duration / largest_dt) + 15;
     return e;
   });

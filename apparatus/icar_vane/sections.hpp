@@ -22,11 +22,11 @@ inline constexpr double thinnest = 0.125;  ///< of a cell: a thinner blade is a 
 
 /// Concrete circling between a cylinder and the container: a radial line of cells.
 struct CouetteSection {
-  using Space = Couette;
+  using Geometry = Couette;
   const Vane& vane;
 
-  Body<Space> body_at_rest(const Scene& scene) const {
-    Body<Space> body;
+  Body<Geometry> body_at_rest(const Scene& scene) const {
+    Body<Geometry> body;
     body.mix = scene.mix;
     const double gap = vane.container_radius - vane.radius;
     const int n_cells = std::max(4, static_cast<int>(std::lround(gap / scene.model.cell[0])));
@@ -35,15 +35,15 @@ struct CouetteSection {
                          .low = FaceKind::no_slip,
                          .high = FaceKind::no_slip,
                          .n_cells = n_cells};
-    seed_box<Space>(
+    seed_box<Geometry>(
         Vec<1>(vane.radius), Vec<1>(vane.container_radius), {n_cells * scene.model.points_per_cell[0]},
         scene.mix.density, scene.mix.K, [](const Vec<1>&) { return true; }, [](const Vec<1>&) { return 0.0; },
         body.points);
     return body;
   }
-  void turn(Body<Space>& body, double omega) const { body.walls.v[0][0] = Vec<1>(omega * vane.radius); }
+  void turn(Body<Geometry>& body, double omega) const { body.walls.v[0][0] = Vec<1>(omega * vane.radius); }
 
-  Torques torques(const Body<Space>& body) const {
+  Torques torques(const Body<Geometry>& body) const {
     Torques t;
     for (int i = 0; i < body.grid.n_nodes(); ++i) {
       const double r = body.grid.node_position(i)[0];
@@ -65,7 +65,7 @@ struct CouetteSection {
 /// container and the shaft are the ends of the radial axis, the blade is a block of cells from the shaft to
 /// its tip, as thick as the real one at its tip and thinner inwards, where the concrete turns with it.
 struct PlaneSection {
-  using Space = Polar;
+  using Geometry = Polar;
   const Vane& vane;
   double sector;               ///< one blade's share [rad]
   double shaft;                ///< a whole number of cells inside the tips [m]
@@ -89,8 +89,8 @@ struct PlaneSection {
     cell = {gap / n_gap, sector / n_around};
     shaft = vane.radius - n_blade * cell[0];
   }
-  Body<Space> body_at_rest(const Scene& scene) const {
-    Body<Space> body;
+  Body<Geometry> body_at_rest(const Scene& scene) const {
+    Body<Geometry> body;
     body.mix = scene.mix;
     const int first = (n_around - n_thick) / 2;
     body.grid.axes[0] = {.h = cell[0],
@@ -98,9 +98,9 @@ struct PlaneSection {
                          .low = FaceKind::no_slip,
                          .high = FaceKind::no_slip,
                          .n_cells = n_radial,
-                         .creases = {n_blade}};
-    body.grid.axes[1] = {.h = cell[1], .periodic = true, .n_cells = n_around, .creases = {first}};
-    if (n_thick > 0) body.grid.axes[1].creases.push_back(first + n_thick);
+                         .repeated_knots = {n_blade}};
+    body.grid.axes[1] = {.h = cell[1], .periodic = true, .n_cells = n_around, .repeated_knots = {first}};
+    if (n_thick > 0) body.grid.axes[1].repeated_knots.push_back(first + n_thick);
     body.grid.blocks = {{{0, first}, {n_blade, first + n_thick}, {}}};
     const auto wrapped = [&](const Vec<2>& x) {
       return Vec<2>(x[0], x[1] - sector * std::floor(x[1] / sector));
@@ -108,7 +108,7 @@ struct PlaneSection {
     const auto in_concrete = [&](const Vec<2>& x) {
       return !block_of_cell<2>(body.grid, detail::cell_of<2>(body.grid.axes, wrapped(x)));
     };
-    seed_box<Space>(
+    seed_box<Geometry>(
         {shaft, scene.orientation}, {vane.container_radius, sector + scene.orientation},
         {n_radial * scene.model.points_per_cell[0], n_around * scene.model.points_per_cell[1]},
         scene.mix.density, scene.mix.K, in_concrete, [](const Vec<2>&) { return 0.0; }, body.points);
@@ -116,15 +116,15 @@ struct PlaneSection {
     return body;
   }
   /// The vane turns at omega, and the grid with it. The section is full.
-  void turn(Body<Space>& body, double omega) const {
+  void turn(Body<Geometry>& body, double omega) const {
     body.motion.grid_rate = omega;
     body.walls.v[0][0] = Vec<2>(0.0, omega * shaft);
-    refill<2>(body.grid.axes, body.grid.blocks, body.points);
+    split_particles<2>(body.grid.axes, body.grid.blocks, body.points);
     body.grid.blocks[0].velocity = [omega](const Vec<2>& x) { return Vec<2>(0.0, omega * x[0]); };
   }
   /// The nodal velocity v_theta = r of a turn as a whole strains nothing, so that the moments of the nodal
   /// forces are in balance to the last digit.
-  Torques torques(const Body<Space>& body) const {
+  Torques torques(const Body<Geometry>& body) const {
     Torques t;
     for (int i = 0; i < body.grid.n_nodes(); ++i) {
       const double r = body.grid.node_position(i)[0], moment = r * body.wall_force[i][1];

@@ -9,15 +9,15 @@
 
 namespace tremie::l_box {
 
-inline constexpr double drops = 0.005;         ///< share of the points that may fall off the column's walls
+inline constexpr double detached_share = 0.005;         ///< share of the points that may fall off the column's walls
 inline constexpr double share_of_time = 0.01;  ///< largest step, in the time since the start of the lift
 inline constexpr double longest_step = 0.3;    ///< [s]: in longer ones thin films run away
 
-template <class Space>
+template <class Geometry>
 StepSettings step_settings(const Scene& scene) {
   StepSettings settings = engine::step_settings(scene.model);
-  if (!scene.model.time_step) settings.strays = drops;
-  settings.fitted_places = true;   // what hangs on the column's walls is thinner than a cell
+  if (!scene.model.time_step) settings.detached = detached_share;
+  settings.cut_cell_rule = true;   // what hangs on the column's walls is thinner than a cell
   settings.moving_surface = true;  // without it steps of tenths of a second carry a fluid past its level
   settings.alternating_viscosity = scene.alternating_viscosity;
   if (scene.model.space == SpaceKind::plane_with_side_walls) settings.side_wall_distance = scene.box.width;
@@ -26,11 +26,11 @@ StepSettings step_settings(const Scene& scene) {
 
 /// The longest step: the films on the column's walls drain ever more slowly, so may the steps go. In space
 /// gravity acts where the surface is at a step's start (libmpm/implicit/free_surface.hpp), and they do not grow.
-template <class Space>
+template <class Geometry>
 double longest_dt(const Scene& scene, double time) {
   const double shortest = StepSettings{}.dt_max;
   return scene.model.step_scale *
-         (Space::dim == 3 ? shortest : std::clamp(share_of_time * time, shortest, longest_step));
+         (Geometry::dim == 3 ? shortest : std::clamp(share_of_time * time, shortest, longest_step));
 }
 
 /// When the front passed a distance from the gate.
@@ -43,8 +43,8 @@ inline std::optional<double> time_of_front(const std::vector<Sample>& series, do
   return std::nullopt;
 }
 
-template <class Space>
-void read_results(const Body<Space>& body, const Scene& scene, std::optional<double> stopped_at,
+template <class Geometry>
+void read_results(const Body<Geometry>& body, const Scene& scene, std::optional<double> stopped_at,
                   Outcome& outcome) {
   const Sample &first = outcome.series.front(), &last = outcome.series.back();
   Results& r = outcome.results;
@@ -87,10 +87,10 @@ inline void judge_cells(const Scene& scene, const Results& r, Checks& checks) {
   if (text[0] != 0) checks.reasons.push_back(std::string(text) + ": a smaller model.cell");
 }
 
-template <class Space, class Law>
+template <class Geometry, class Law>
 Outcome run_in(const Scene& scene, const Law& law, const Observer& observer) {
-  ImplicitBody<Space> body{filled_column<Space>(scene)};
-  StepSettings settings = step_settings<Space>(scene);
+  ImplicitBody<Geometry> body{filled_column<Geometry>(scene)};
+  StepSettings settings = step_settings<Geometry>(scene);
   const double start_mass = engine::total_mass(body.points);
 
   Outcome outcome;
@@ -100,8 +100,8 @@ Outcome run_in(const Scene& scene, const Law& law, const Observer& observer) {
   bool stopped = false;
   double next_frame = scene.frame_interval;
   while (!stopped && body.time < scene.duration * (1.0 - 1e-12)) {
-    settings.dt_max = std::min(longest_dt<Space>(scene, body.time), scene.duration - body.time);
-    body.boundary = walls_inside<Space>(scene, body.grid.axes, body.time);
+    settings.dt_max = std::min(longest_dt<Geometry>(scene, body.time), scene.duration - body.time);
+    body.boundary = walls_inside<Geometry>(scene, body.grid.axes, body.time);
     const StepReport step = implicit_step(body, law, settings);
     engine::count_step(body, step, outcome.checks, outcome.cost);
     engine::watch_fixed_step(body, scene.model, step, outcome.checks);

@@ -6,14 +6,14 @@
 namespace tremie::l_box {
 namespace {
 
-template <class Space>
+template <class Geometry>
 Estimate estimate_in(const Scene& scene) {
-  Body<Space> body = filled_column<Space>(scene);
+  Body<Geometry> body = filled_column<Geometry>(scene);
   activate(body.grid, body.points.x);
   Estimate e;
   e.points = static_cast<std::int64_t>(body.points.size());
   e.cells_active = body.grid.n_cells();
-  e.bytes_per_point = bytes_per_point<Space::dim>(body.points.thixotropic());
+  e.bytes_per_point = bytes_per_point<Geometry::dim>(body.points.thixotropic());
   const StepSettings settings = engine::step_settings(scene.model);
   const double collapse = std::sqrt(engine::gravity * scene.box.column_height) /
                           (settings.cfl * std::min(scene.model.cell[0], scene.model.cell[1]));
@@ -35,7 +35,7 @@ double gap_between_bars(const Scene& scene) {
 Outcome run(const Scene& scene, const Observer& observer) {
   engine::refuse_what_has_no_engine(scene.model, "L-box");
   omp_set_num_threads(scene.threads);
-  return in_space(scene) ? run_in_space(scene, observer) : run_in_the_plane(scene, observer);
+  return in_space(scene) ? run_3d(scene, observer) : run_in_the_plane(scene, observer);
 }
 
 Estimate estimate(const Scene& scene) {

@@ -21,12 +21,12 @@ namespace tremie::l_box {
 inline constexpr double off_the_walls = 0.02;  ///< no depth is read nearer to a wall [m]
 
 /// Mean depth over [low, high] along the channel [m], of a body `width` wide, in rows of height `row`.
-template <class Space>
-double depth(const Points<Space::dim>& points, double low, double high, double row, double width) {
+template <class Geometry>
+double depth(const Points<Geometry::dim>& points, double low, double high, double row, double width) {
   std::vector<double> fill(2, 0.0);
   for (std::size_t p = 0; p < points.size(); ++p) {
     if (points.x[p][0] < low || points.x[p][0] >= high) continue;
-    const std::size_t j = static_cast<std::size_t>(std::max(0.0, points.x[p][Space::up]) / row);
+    const std::size_t j = static_cast<std::size_t>(std::max(0.0, points.x[p][Geometry::up]) / row);
     if (j + 2 > fill.size()) fill.resize(j + 2, 0.0);
     fill[j] += points.volume(p) / ((high - low) * width * row);
   }
@@ -51,22 +51,22 @@ inline Stretch at_the_end(const Box& box) {
 /// a cell behind).
 template <int D>
 double front_of(const Points<D>& points, double gate, double cell) {
-  constexpr std::size_t most_strays = 500;
+  constexpr std::size_t most_detached = 500;
   std::vector<double> x;
   for (const auto& p : points.x) x.push_back(p[0]);
-  const std::size_t n = std::min(most_strays, x.size());
+  const std::size_t n = std::min(most_detached, x.size());
   std::partial_sort(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(n), x.end(), std::greater<>());
   std::size_t i = 0;
   while (i + 4 < n && x[i] - x[i + 3] > 0.5 * cell) ++i;
   return std::max(0.0, x[i] - gate);
 }
 
-template <class Space>
-Sample read(const Body<Space>& body, const Scene& scene, const StepReport& step) {
+template <class Geometry>
+Sample read(const Body<Geometry>& body, const Scene& scene, const StepReport& step) {
   const Box& box = scene.box;
-  const double row = body.grid.axes[Space::up].h, width = computed_width(scene);
+  const double row = body.grid.axes[Geometry::up].h, width = computed_width(scene);
   const auto depth_over = [&](const Stretch& s) {
-    return depth<Space>(body.points, s.low, s.high, row, width);
+    return depth<Geometry>(body.points, s.low, s.high, row, width);
   };
   Sample s;
   s.time = body.time;
@@ -83,17 +83,17 @@ Sample read(const Body<Space>& body, const Scene& scene, const StepReport& step)
 }
 
 /// Depths along the channel, a station every two cells, and the volume below its ceiling.
-template <class Space>
-void read_profile(const Body<Space>& body, const Scene& scene, Results& r) {
+template <class Geometry>
+void read_profile(const Body<Geometry>& body, const Scene& scene, Results& r) {
   const Box& box = scene.box;
-  const double step = 2.0 * body.grid.axes[0].h, row = body.grid.axes[Space::up].h;
+  const double step = 2.0 * body.grid.axes[0].h, row = body.grid.axes[Geometry::up].h;
   const double width = computed_width(scene);
   for (double x = 0.0; x < box.channel_length - 0.5 * step; x += step)
-    r.profile.push_back({x + 0.5 * step, depth<Space>(body.points, box.column_length + x,
+    r.profile.push_back({x + 0.5 * step, depth<Geometry>(body.points, box.column_length + x,
                                                       box.column_length + x + step, row, width)});
   double volume = 0.0;
   for (std::size_t p = 0; p < body.points.size(); ++p)
-    if (body.points.x[p][0] >= box.column_length && body.points.x[p][Space::up] < box.channel_height)
+    if (body.points.x[p][0] >= box.column_length && body.points.x[p][Geometry::up] < box.channel_height)
       volume += body.points.volume(p);
   r.volume_in_channel = volume / width * box.width;
 }

@@ -3,7 +3,7 @@
 
 namespace tremie::l_box {
 
-Outcome run_in_space(const Scene& scene, const Observer& observer) {
+Outcome run_3d(const Scene& scene, const Observer& observer) {
   return engine::with_law(scene.model, [&](const auto& law) { return run_in<ThreeD>(scene, law, observer); });
 }
 

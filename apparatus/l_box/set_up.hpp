@@ -31,11 +31,11 @@ inline Axis between_walls(double length, double cell, FaceKind low, FaceKind hig
 
 /// The flow stretches the concrete along the channel alone: there points_per_cell has its first number,
 /// across the channel and up its second.
-template <class Space>
-Body<Space> filled_column(const Scene& scene) {
-  constexpr int D = Space::dim, up = Space::up;
+template <class Geometry>
+Body<Geometry> filled_column(const Scene& scene) {
+  constexpr int D = Geometry::dim, up = Geometry::up;
   const Box& box = scene.box;
-  Body<Space> body;
+  Body<Geometry> body;
   body.mix = scene.mix;
   body.gravity[up] = -engine::gravity;
   const auto [across, h_up] = scene.model.cell;
@@ -55,7 +55,7 @@ Body<Space> filled_column(const Scene& scene) {
   for (int d = 0; d < D; ++d)
     n[d] =
         std::max(1, static_cast<int>(std::lround(high[d] / body.grid.axes[d].h * (d == 0 ? n_along : n_up))));
-  seed_box<Space>(
+  seed_box<Geometry>(
       Vec<D>::Zero(), high, n, scene.mix.density, scene.mix.K, [](const Vec<D>&) { return true; },
       [&](const Vec<D>& x) { return scene.mix.density * engine::gravity * (box.column_height - x[up]); },
       body.points);
@@ -94,10 +94,10 @@ inline void add_bars(const Scene& scene, double spacing, std::vector<BoundaryPoi
 
 /// The column's front wall above the channel, to which the concrete sticks, and what is left of the gate
 /// below it, along which it slips, half a cell between points; and the bars.
-template <class Space>
-std::vector<BoundaryPoint<Space::dim>> walls_inside(const Scene& scene,
-                                                    const std::array<Axis, Space::dim>& axes, double time) {
-  constexpr int D = Space::dim, up = Space::up;
+template <class Geometry>
+std::vector<BoundaryPoint<Geometry::dim>> walls_inside(const Scene& scene,
+                                                    const std::array<Axis, Geometry::dim>& axes, double time) {
+  constexpr int D = Geometry::dim, up = Geometry::up;
   const Box& box = scene.box;
   const double spacing = 0.5 * axes[up].h;
   const double gate = scene.gate_speed ? *scene.gate_speed * time : box.channel_height;

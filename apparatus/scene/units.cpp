@@ -43,7 +43,7 @@ struct Split {
 };
 
 /// "54 Pa" as a number and the text after it; empty where no number leads.
-std::optional<Split> split(std::string_view text) {
+std::optional<Split> unpack(std::string_view text) {
   text = trimmed(text);
   if (text.starts_with('+')) text.remove_prefix(1);
   double number = 0.0;
@@ -91,7 +91,7 @@ std::string units_text(Dimension dimension) {
 }
 
 double parse_quantity(std::string_view text, Dimension dimension) {
-  const auto parts = split(text);
+  const auto parts = unpack(text);
   const auto allowed = units_text(dimension);
   const auto si = units(dimension).front().name;
   if (!parts) {

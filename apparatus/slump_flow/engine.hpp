@@ -24,10 +24,10 @@ inline constexpr double standard_t500 = 0.5;  ///< diameter of the t500 circle [
 inline bool is_quarter(const Scene& scene) { return scene.model.space == SpaceKind::quarter; }
 
 /// The filled cone after its rest, before the lift.
-template <class Space>
-Body<Space> filled_cone(const Scene& scene) {
-  constexpr int D = Space::dim, up = Space::up;
-  Body<Space> body;
+template <class Geometry>
+Body<Geometry> filled_cone(const Scene& scene) {
+  constexpr int D = Geometry::dim, up = Geometry::up;
+  Body<Geometry> body;
   body.mix = scene.mix;
   body.gravity[up] = -gravity;
   const auto [h, h_up] = scene.model.cell;
@@ -65,8 +65,8 @@ inline double spread_of(const Scene& scene, const Points<3>& points) {
   return spread(points, scene.model.cell[0], is_quarter(scene));
 }
 
-template <class Space>
-Sample read(const Scene& scene, const Body<Space>& body, const StepReport& step) {
+template <class Geometry>
+Sample read(const Scene& scene, const Body<Geometry>& body, const StepReport& step) {
   const auto& points = body.points;
   Sample s;
   s.time = body.time;
@@ -155,8 +155,8 @@ inline void lifted_wall(const Scene& scene, double reach, RigidWall<3>& wall) {
 
 /// Adds a line to the series. True where the flow has come to rest, clear of the cone; an interrupt sets the
 /// outcome's status.
-template <class Space>
-bool record(const Scene& scene, const Body<Space>& body, const StepReport& step, const Observer& observer,
+template <class Geometry>
+bool record(const Scene& scene, const Body<Geometry>& body, const StepReport& step, const Observer& observer,
             engine::RestWatch& watch, Outcome& outcome) {
   const bool low = scene.lift_speed && rim_height(scene, outcome.series.back().time) < scene.model.cell[1];
   if (low) outcome.results.through_the_cone = share_behind_wall(scene, body.time, body.points);
@@ -173,29 +173,29 @@ bool record(const Scene& scene, const Body<Space>& body, const StepReport& step,
 /// or what they leave would keep it from coming to rest.
 inline constexpr double flowing_tolerance = 4e-3, creeping = 1e-3;  // [1], [m/s]
 
-template <class Space, class Law>
+template <class Geometry, class Law>
 Outcome run_in(const Scene& scene, const Law& law, const Observer& observer) {
-  ImplicitBody<Space> body{filled_cone<Space>(scene)};
+  ImplicitBody<Geometry> body{filled_cone<Geometry>(scene)};
   StepSettings settings = step_settings(scene);
   const double start_mass = engine::total_mass(body.points);
   const double reach = settings.wall_gap + settings.cfl * scene.model.cell[0];
-  RigidWall<Space::dim> wall;
+  RigidWall<Geometry::dim> wall;
   if (scene.lift_speed) lifted_wall(scene, reach, wall);
 
   Outcome outcome;
   outcome.series.push_back(read(scene, body, {}));
   if (observer.on_frame) observer.on_frame(engine::frame_of(body));
-  EnergyWatch energy(energy_of<Space>(body.points, body.mix.K));
+  EnergyWatch energy(energy_of<Geometry>(body.points, body.mix.K));
   engine::RestWatch watch;
   bool stopped = false, flows = true;
   double next_frame = scene.frame_interval;
   while (!stopped && body.time < scene.duration * (1.0 - 1e-12)) {
     settings.time_left = scene.duration - body.time;
-    if constexpr (Space::dim == 3)
+    if constexpr (Geometry::dim == 3)
       settings.admm.tolerance = flows ? flowing_tolerance : StepSettings{}.admm.tolerance;
     const bool cone_gone =
         scene.lift_speed && rim_height(scene, body.time) > outcome.series.back().height + 0.02;
-    const StepReport step = implicit_step(body, law, settings, cone_gone ? RigidWall<Space::dim>{} : wall);
+    const StepReport step = implicit_step(body, law, settings, cone_gone ? RigidWall<Geometry::dim>{} : wall);
     flows = step.bulk_speed > creeping;
     engine::count_step(body, step, outcome.checks, outcome.cost);
     engine::watch_fixed_step(body, scene.model, step, outcome.checks);
@@ -203,7 +203,7 @@ Outcome run_in(const Scene& scene, const Law& law, const Observer& observer) {
     // What is elastic in it a body may turn into motion later: it counts for what it may have, not for what
     // it has.
     const bool pushed = wall && !cone_gone;
-    energy.see(pushed ? energy_of<Space>(body.points, body.mix.K) : energy_of_motion<Space>(body.points),
+    energy.see(pushed ? energy_of<Geometry>(body.points, body.mix.K) : energy_of_motion<Geometry>(body.points),
                pushed);
     stopped = record(scene, body, step, observer, watch, outcome);
     if (energy.ran_away()) outcome.status = Status::failed;

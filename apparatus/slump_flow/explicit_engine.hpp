@@ -28,12 +28,12 @@ inline ExplicitSettings explicit_settings(const Scene& scene) {
 }
 
 /// A GIMP point is as large as it was seeded.
-template <class Space>
-Shape<Space::dim> shape_of(const Model& model) {
-  Shape<Space::dim> shape;
+template <class Geometry>
+Shape<Geometry::dim> shape_of(const Model& model) {
+  Shape<Geometry::dim> shape;
   if (model.shape == ShapeKind::gimp) shape.kind = ShapeFunctions::gimp;
   shape.half.fill(0.5 / model.points_per_cell[0]);
-  shape.half[Space::up] = 0.5 / model.points_per_cell[1];
+  shape.half[Geometry::up] = 0.5 / model.points_per_cell[1];
   return shape;
 }
 
@@ -48,13 +48,13 @@ std::int64_t explicit_bytes_per_point(bool thixotropic) {
 
 /// The frame of a reading, which gives it its arrays: there is no room for both in a large body. Its shear
 /// rates are those of the last step.
-template <class Space>
-Frame frame_from(Body<Space>& body) {
+template <class Geometry>
+Frame frame_from(Body<Geometry>& body) {
   auto& points = body.points;
   const auto places = [](auto& from) {
     std::vector<std::array<double, 3>> to(from.size());
-    std::transform(from.begin(), from.end(), to.begin(), engine::in_space<Space>);
-    give_back(from);
+    std::transform(from.begin(), from.end(), to.begin(), engine::in_space<Geometry>);
+    release(from);
     return to;
   };
   Frame frame;
@@ -100,10 +100,10 @@ struct LimitWatch {
   }
 };
 
-template <class Space, class Law>
+template <class Geometry, class Law>
 Outcome run_explicit_in(const Scene& scene, const Law& law, const Observer& observer) {
-  constexpr int D = Space::dim;
-  Body<Space> body = filled_cone<Space>(scene);
+  constexpr int D = Geometry::dim;
+  Body<Geometry> body = filled_cone<Geometry>(scene);
   const ExplicitSettings settings = explicit_settings(scene);
   const double start_mass = engine::total_mass(body.points);
   RigidWall<D> wall;
@@ -112,8 +112,8 @@ Outcome run_explicit_in(const Scene& scene, const Law& law, const Observer& obse
   Outcome outcome;
   outcome.series.push_back(read(scene, body, {}));
   if (observer.on_frame) observer.on_frame(engine::frame_of(body));
-  EnergyWatch energy(energy_of<Space>(body.points, body.mix.K));
-  auto state = start_explicit(body, law, settings, shape_of<Space>(scene.model));
+  EnergyWatch energy(energy_of<Geometry>(body.points, body.mix.K));
+  auto state = start_explicit(body, law, settings, shape_of<Geometry>(scene.model));
   write_back(state, body);  // what a run that fails at once is read from
   engine::RestWatch watch;
   LimitWatch limits;
@@ -134,7 +134,7 @@ Outcome run_explicit_in(const Scene& scene, const Law& law, const Observer& obse
     } while (!step.failed && body.time < until - 0.5 * state.next_dt);
     if (engine::gave_up(step, outcome.status, outcome.checks, body.time)) break;
     write_back(state, body);
-    energy.see(energy_of<Space>(body.points, body.mix.K), bool{wall});
+    energy.see(energy_of<Geometry>(body.points, body.mix.K), bool{wall});
     outcome.cost.cells_active =
         std::max(outcome.cost.cells_active, count_active_cells<D>(body.grid.axes, body.points.x));
     stopped = record(scene, body, step, observer, watch, outcome);

@@ -10,7 +10,7 @@ namespace {
 
 /// A point belongs to the outline when this many others are less than half a cell behind it; fewer are
 /// strays.
-constexpr std::size_t company = 3;
+constexpr std::size_t min_neighbours = 3;
 
 struct Weighted {
   double value, volume, size;
@@ -51,12 +51,12 @@ double outermost_radius(const Points<D>& points) {
 /// of its point. Empty where none has.
 std::optional<double> reach_of(std::vector<Weighted>& out, double cell) {
   // Few are strays, so that a look at the outermost is nearly always enough.
-  for (std::size_t n = std::min<std::size_t>(out.size(), 32); n > company; n = out.size()) {
+  for (std::size_t n = std::min<std::size_t>(out.size(), 32); n > min_neighbours; n = out.size()) {
     std::partial_sort(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(n), out.end(),
                       [](const Weighted& a, const Weighted& b) { return a.value > b.value; });
     std::size_t i = 0;
-    while (i + company < n && out[i].value - out[i + company].value > 0.5 * cell) ++i;
-    if (i + company < n) return out[i].value + 0.5 * out[i].size;
+    while (i + min_neighbours < n && out[i].value - out[i + min_neighbours].value > 0.5 * cell) ++i;
+    if (i + min_neighbours < n) return out[i].value + 0.5 * out[i].size;
     if (n == out.size()) break;
   }
   return std::nullopt;

@@ -20,15 +20,15 @@ void refuse_what_has_no_engine(const Scene& scene) {
         "model.shape: \"gimp\" goes with model.scheme = \"explicit\" or \"explicit_usf\"");
 }
 
-template <class Space>
+template <class Geometry>
 void count(const Scene& scene, Estimate& e) {
-  Body<Space> body = filled_cone<Space>(scene);
+  Body<Geometry> body = filled_cone<Geometry>(scene);
   activate(body.grid, body.points.x);
   e.points = static_cast<std::int64_t>(body.points.size());
   e.cells_active = body.grid.n_cells();
   const bool thixotropic = body.points.thixotropic();
-  e.bytes_per_point = is_explicit(scene.model) ? explicit_bytes_per_point<Space::dim>(thixotropic)
-                                               : bytes_per_point<Space::dim>(thixotropic);
+  e.bytes_per_point = is_explicit(scene.model) ? explicit_bytes_per_point<Geometry::dim>(thixotropic)
+                                               : bytes_per_point<Geometry::dim>(thixotropic);
 }
 
 /// Longest step of an explicit scheme at the start [s].

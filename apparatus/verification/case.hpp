@@ -53,7 +53,7 @@ struct Table {
   std::vector<Bound> bounds = {};
 };
 
-struct Rung {
+struct CaseGroup {
   int number = 0;
   std::string title;
   std::vector<Case> cases;
@@ -69,6 +69,6 @@ double observed_order(const Series& series);
 double cpu_seconds();
 
 /// Whether every bound of every case is kept.
-bool all_kept(const std::vector<Rung>& rungs);
+bool all_kept(const std::vector<CaseGroup>& groups);
 
 }  // namespace tremie::verification

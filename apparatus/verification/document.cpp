@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string stem_of(const Rung& rung) { return fmt::format("rung_{}", rung.number); }
+std::string stem_of(const CaseGroup& group) { return fmt::format("rung_{}", group.number); }
 
 std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.2e}", value) : "—"; }
 
@@ -61,16 +61,16 @@ std::string table_section(const Table& table) {
 }
 
 /// Whether the chart has anything to show: two runs of some series.
-bool can_be_drawn(const Rung& rung) {
-  for (const Case& one : rung.cases)
+bool can_be_drawn(const CaseGroup& group) {
+  for (const Case& one : group.cases)
     for (const Series& s : one.series)
       if (s.runs.size() > 1) return true;
   return false;
 }
 
-std::string csv_of(const Rung& rung) {
+std::string csv_of(const CaseGroup& group) {
   std::string text = "case,scheme,resolution,h,error,cpu_s,note\n";
-  for (const Case& one : rung.cases)
+  for (const Case& one : group.cases)
     for (const Series& s : one.series)
       for (const Run& run : s.runs)
         text += fmt::format("{},\"{}\",\"{}\",{:g},{:.6e},{:.6g},\"{}\"\n", one.name, s.scheme, run.label,
@@ -85,9 +85,9 @@ std::string quoted(const std::string& text) {
   return fmt::format("'{}' noenhanced", result);
 }
 
-std::string chart_of(const Rung& rung) {
+std::string chart_of(const CaseGroup& group) {
   std::vector<const Case*> drawn;
-  for (const Case& one : rung.cases)
+  for (const Case& one : group.cases)
     if (std::any_of(one.series.begin(), one.series.end(), [](const Series& s) { return s.runs.size() > 1; }))
       drawn.push_back(&one);
   const std::size_t columns = std::min<std::size_t>(2, drawn.size()), rows = (drawn.size() + 1) / 2;
@@ -96,7 +96,7 @@ std::string chart_of(const Rung& rung) {
       "set logscale xy\nset format x '10^{{%L}}'\nset format y '10^{{%L}}'\nset grid linecolor rgb "
       "'#dddddd'\n"
       "set xlabel 'CPU time in s'\nset key outside bottom center horizontal\nset multiplot layout {},{}\n",
-      620 * columns, 460 * rows, stem_of(rung), rows, columns);
+      620 * columns, 460 * rows, stem_of(group), rows, columns);
   constexpr std::array colours{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"};
   for (const Case* one : drawn) {
     std::string plots;
@@ -117,10 +117,10 @@ std::string chart_of(const Rung& rung) {
   return text + "unset multiplot\n";
 }
 
-std::string draw(const std::vector<Rung>& rungs, const fs::path& folder) {
+std::string draw(const std::vector<CaseGroup>& groups, const fs::path& folder) {
   std::string script;
-  for (const Rung& rung : rungs)
-    if (can_be_drawn(rung)) script += chart_of(rung) + "reset\n";
+  for (const CaseGroup& group : groups)
+    if (can_be_drawn(group)) script += chart_of(group) + "reset\n";
   if (script.empty()) return {};
   const auto gnuplot = report::find_program("gnuplot");
   if (gnuplot.empty()) return "gnuplot is not installed: no charts";
@@ -131,7 +131,7 @@ std::string draw(const std::vector<Rung>& rungs, const fs::path& folder) {
   return code == 0 ? "" : "gnuplot failed: charts are missing or not complete";
 }
 
-std::string head(const std::vector<Rung>& rungs, const std::string& command) {
+std::string head(const std::vector<CaseGroup>& groups, const std::string& command) {
   std::string text = fmt::format(
       "# Verification: error against run time\n\ntremie {} ({}), {}, {}.\nMade by `{}`. CPU seconds are of "
       "one "
@@ -141,7 +141,7 @@ std::string head(const std::vector<Rung>& rungs, const std::string& command) {
       "log "
       "cell size over all resolutions of the scheme.\n\n",
       version, commit, compiler, study::processor(), command);
-  const auto broken = broken_bounds(rungs);
+  const auto broken = broken_bounds(groups);
   text += broken.empty() ? "Every bound is kept.\n" : "Bounds that are **not kept**:\n\n";
   for (const auto& line : broken) text += fmt::format("- {}\n", line);
   text += '\n';
@@ -150,33 +150,33 @@ std::string head(const std::vector<Rung>& rungs, const std::string& command) {
 
 }  // namespace
 
-std::vector<std::string> broken_bounds(const std::vector<Rung>& rungs) {
+std::vector<std::string> broken_bounds(const std::vector<CaseGroup>& groups) {
   std::vector<std::string> lines;
-  const auto add = [&](const Rung& rung, const std::string& name, const std::vector<Bound>& bounds) {
+  const auto add = [&](const CaseGroup& group, const std::string& name, const std::vector<Bound>& bounds) {
     for (const Bound& b : bounds)
       if (!b.kept())
-        lines.push_back(fmt::format("rung {}, {}: {} {:.3g}, {} {:.3g} wanted", rung.number, name, b.what,
+        lines.push_back(fmt::format("rung {}, {}: {} {:.3g}, {} {:.3g} wanted", group.number, name, b.what,
                                     b.value, b.at_least ? "at least" : "at most", b.limit));
   };
-  for (const Rung& rung : rungs) {
-    for (const Case& one : rung.cases) add(rung, one.name, one.bounds);
-    for (const Table& table : rung.tables) add(rung, table.name, table.bounds);
+  for (const CaseGroup& group : groups) {
+    for (const Case& one : group.cases) add(group, one.name, one.bounds);
+    for (const Table& table : group.tables) add(group, table.name, table.bounds);
   }
   return lines;
 }
 
-std::string write_document(const std::vector<Rung>& rungs, const std::string& command,
+std::string write_document(const std::vector<CaseGroup>& groups, const std::string& command,
                            const fs::path& folder) {
-  std::string text = head(rungs, command);
-  for (const Rung& rung : rungs) {
-    text += fmt::format("## Rung {}. {}\n\n", rung.number, rung.title);
-    if (can_be_drawn(rung)) text += fmt::format("![error over CPU time]({}.svg)\n\n", stem_of(rung));
-    for (const Case& one : rung.cases) text += case_section(one);
-    for (const Table& table : rung.tables) text += table_section(table);
-    if (!rung.cases.empty()) io::write_text(folder / (stem_of(rung) + ".csv"), csv_of(rung));
+  std::string text = head(groups, command);
+  for (const CaseGroup& group : groups) {
+    text += fmt::format("## Rung {}. {}\n\n", group.number, group.title);
+    if (can_be_drawn(group)) text += fmt::format("![error over CPU time]({}.svg)\n\n", stem_of(group));
+    for (const Case& one : group.cases) text += case_section(one);
+    for (const Table& table : group.tables) text += table_section(table);
+    if (!group.cases.empty()) io::write_text(folder / (stem_of(group) + ".csv"), csv_of(group));
   }
   io::write_text(folder / "VERIFICATION.md", text);
-  return draw(rungs, folder);
+  return draw(groups, folder);
 }
 
 }  // namespace tremie::verification

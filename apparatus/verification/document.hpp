@@ -13,10 +13,10 @@ namespace tremie::verification {
 /// Writes VERIFICATION.md, a CSV and a chart a rung (error over CPU time, all schemes) into `folder`, which
 /// is there. `command` is what made it. Returns a note where charts could not be drawn, else nothing. Throws
 /// io::WriteError.
-std::string write_document(const std::vector<Rung>& rungs, const std::string& command,
+std::string write_document(const std::vector<CaseGroup>& groups, const std::string& command,
                            const std::filesystem::path& folder);
 
 /// The bounds that were not kept, a line each.
-std::vector<std::string> broken_bounds(const std::vector<Rung>& rungs);
+std::vector<std::string> broken_bounds(const std::vector<CaseGroup>& groups);
 
 }  // namespace tremie::verification

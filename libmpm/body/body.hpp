@@ -21,14 +21,14 @@ struct WallVelocities {
 };
 
 /// A body of one mix on its grid: everything that a step reads and writes.
-template <class Space>
+template <class Geometry>
 struct Body {
-  static constexpr int D = Space::dim;
+  static constexpr int D = Geometry::dim;
   Mix mix;
   Vec<D> gravity = Vec<D>::Zero();  ///< [m/s^2]
   Points<D> points;
   ActiveGrid<D> grid;
-  Motion<Space> motion{};                  ///< of the points
+  Motion<Geometry> motion{};                  ///< of the points
   WallVelocities<D> walls{};               ///< of the walls at the ends of the axes
   std::vector<BoundaryPoint<D>> boundary;  ///< walls inside the grid
   double time = 0.0, dt = 0.0;             ///< [s]; dt of the last step

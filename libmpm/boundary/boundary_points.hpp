@@ -23,7 +23,7 @@ struct BoundaryPoint {
 
 /// A boundary point that touches concrete in this step.
 template <int D>
-struct BoundPoint {
+struct PenaltyPoint {
   int cell = 0, source = 0;           ///< active cell; index of the boundary point
   std::array<double, power(3, D)> N;  ///< shape values in that cell
   Vec<D> velocity;                    ///< of the wall [m/s]
@@ -32,13 +32,13 @@ struct BoundPoint {
 
 /// The boundary points that lie in active cells.
 template <int D>
-std::vector<BoundPoint<D>> find_bound_points(const ActiveGrid<D>& grid, const NodalState<D>& nodes,
+std::vector<PenaltyPoint<D>> find_penalty_points(const ActiveGrid<D>& grid, const NodalState<D>& nodes,
                                              const std::vector<BoundaryPoint<D>>& wall, double dt,
                                              double stiffness) {
-  std::vector<BoundPoint<D>> bound;
+  std::vector<PenaltyPoint<D>> bound;
   for (std::size_t k = 0; k < wall.size(); ++k) {
     const Index<D> cell = detail::cell_of<D>(grid.axes, wall[k].x);
-    BoundPoint<D> point;
+    PenaltyPoint<D> point;
     point.cell = grid.cell_map.at(cell);
     if (point.cell < 0) continue;
     point.source = static_cast<int>(k);
@@ -57,7 +57,7 @@ std::vector<BoundPoint<D>> find_bound_points(const ActiveGrid<D>& grid, const No
 
 /// Force of the wall on the concrete at a bound point [N].
 template <int D>
-Vec<D> wall_force(const BoundPoint<D>& b, const std::vector<std::array<int, power(3, D)>>& cell_nodes,
+Vec<D> wall_force(const PenaltyPoint<D>& b, const std::vector<std::array<int, power(3, D)>>& cell_nodes,
                   const std::vector<Vec<D>>& v) {
   Vec<D> u = Vec<D>::Zero();
   for (int i = 0; i < power(3, D); ++i) u += b.N[i] * v[cell_nodes[b.cell][i]];
@@ -65,18 +65,18 @@ Vec<D> wall_force(const BoundPoint<D>& b, const std::vector<std::array<int, powe
 }
 
 template <int D>
-void add_bound_forces(const std::vector<BoundPoint<D>>& bound,
+void add_penalty_forces(const std::vector<PenaltyPoint<D>>& bound,
                       const std::vector<std::array<int, power(3, D)>>& cell_nodes,
                       const std::vector<Vec<D>>& v, Eigen::VectorXd& R) {
-  for (const BoundPoint<D>& b : bound) {
+  for (const PenaltyPoint<D>& b : bound) {
     const Vec<D> force = wall_force<D>(b, cell_nodes, v);
     for (int i = 0; i < power(3, D); ++i) R.segment<D>(cell_nodes[b.cell][i] * D) += b.N[i] * force;
   }
 }
 
 template <int D>
-void add_bound_stiffness(const std::vector<BoundPoint<D>>& bound, BlockSystem<D>& system) {
-  for (const BoundPoint<D>& b : bound) {
+void add_penalty_stiffness(const std::vector<PenaltyPoint<D>>& bound, BlockSystem<D>& system) {
+  for (const PenaltyPoint<D>& b : bound) {
     typename BlockSystem<D>::CellMatrix K;
     for (int i = 0; i < power(3, D); ++i)
       for (int j = 0; j < power(3, D); ++j)
@@ -86,11 +86,11 @@ void add_bound_stiffness(const std::vector<BoundPoint<D>>& bound, BlockSystem<D>
 }
 
 template <int D>
-double bound_energy(const std::vector<BoundPoint<D>>& bound,
+double penalty_energy(const std::vector<PenaltyPoint<D>>& bound,
                     const std::vector<std::array<int, power(3, D)>>& cell_nodes,
                     const std::vector<Vec<D>>& v) {
   double energy = 0.0;
-  for (const BoundPoint<D>& b : bound) {
+  for (const PenaltyPoint<D>& b : bound) {
     Vec<D> u = b.velocity;
     for (int i = 0; i < power(3, D); ++i) u -= b.N[i] * v[cell_nodes[b.cell][i]];
     energy += 0.5 * u.dot(b.stiffness * u);

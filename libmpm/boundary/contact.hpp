@@ -28,7 +28,7 @@ struct ContactPoint {
   double target = 0.0;                       ///< least normal velocity [m/s]
   double stiffness = 0.0;                    ///< penalty [kg/s]
 
-  /// Of all controls.
+  /// Of all nodes.
   std::array<double, power(3, D)> shape() const {
     std::array<double, power(3, D)> N;
     for (int k = 0; k < power(3, D); ++k) {

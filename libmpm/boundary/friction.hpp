@@ -40,7 +40,7 @@ void add_friction_forces_admm(const std::vector<FrictionNode<D>>& friction, cons
 template <int D>
 bool update_friction_admm(std::vector<FrictionNode<D>>& friction, const std::vector<Vec<D>>& v,
                           double over_relaxation, double tolerance) {
-  double mismatch = 0.0, scale = 0.0;
+  double residuals = 0.0, scale = 0.0;
   for (FrictionNode<D>& f : friction) {
     if (f.stiffness == 0.0) continue;  // nothing presses on it
     const Vec<D> u = sliding(f, v);
@@ -48,13 +48,13 @@ bool update_friction_admm(std::vector<FrictionNode<D>>& friction, const std::vec
     const double a_norm = a.norm();
     const Vec<D> force = a_norm > f.limit ? Vec<D>(f.limit / a_norm * a) : a;
     const Vec<D> slip = (a - force) / f.stiffness;
-    mismatch +=
+    residuals +=
         (f.stiffness * f.stiffness) * std::max((u - slip).squaredNorm(), (slip - f.slip).squaredNorm());
     scale += f.limit * f.limit;
     f.force = force;
     f.slip = slip;
   }
-  return mismatch <= tolerance * tolerance * scale;
+  return residuals <= tolerance * tolerance * scale;
 }
 
 template <int D>

@@ -64,9 +64,9 @@ struct Holding {
 };
 
 /// The body on its tiles. body.points is what it was at the last write_back, and empty before the first.
-template <class Space>
+template <class Geometry>
 struct ExplicitState {
-  static constexpr int D = Space::dim;
+  static constexpr int D = Geometry::dim;
   Shape<D> shape;
   LanePoints<D> points;
   TileGrid<D> grid;

@@ -5,12 +5,12 @@
 // All points of a cell change their volume with the divergence at one place of it, and their pressures push
 // by the same row: what a change of volume costs is what the pressure does.
 //
-// The place is the centre of mass of the points: at the cell's own centre the row would push controls that
-// the points hardly reach, in a cell that they have just entered, by any multiple of the control's mass.
-// (With the row at the mean place s of the points, a control whose spline is s^2/2 has at least the mass of
-// s^2/2 of them, and slope s.) Of two points at two faces of a cell, though, none reaches the control across,
+// The place is the centre of mass of the points: at the cell's own centre the row would push nodes that
+// the points hardly reach, in a cell that they have just entered, by any multiple of the node's mass.
+// (With the row at the mean place s of the points, a node whose spline is s^2/2 has at least the mass of
+// s^2/2 of them, and slope s.) Of two points at two faces of a cell, though, none reaches the node across,
 // which the row between them would push. So points that leave out a corner have the mean of their own rows:
-// its slope squared is nowhere more than twice their share of the control's mass.
+// its slope squared is nowhere more than twice their share of the node's mass.
 //
 // GIMP's steps with the stress first read the divergence from velocities that the points have brought to the
 // grid, which know nothing of such a push: there the place is the cell's centre, whose row is the same in
@@ -37,11 +37,11 @@ inline std::array<int, octet_size> in_place_of_none(const std::array<std::int32_
   return result;
 }
 
-/// Node: of the tile's controls that the rows read and push.
-template <class Space, class Node>
+/// Node: of the tile's nodes that the rows read and push.
+template <class Geometry, class Node>
 class PressureCells {
  public:
-  static constexpr int D = Space::dim, n = power(tile_pressure_cells, D);
+  static constexpr int D = Geometry::dim, n = power(tile_pressure_cells, D);
   using Real = std::remove_cvref_t<decltype(Node{}[0])>;
   using Cube = NodeCube<Node, TileGrid<D>::tile_nodes>;
 
@@ -101,7 +101,7 @@ class PressureCells {
       impulse_[static_cast<std::size_t>(cells[static_cast<std::size_t>(l)])] += impulse[l];
   }
 
-  /// Gives the controls the impulses of all cells, when all points have pushed.
+  /// Gives the nodes the impulses of all cells, when all points have pushed.
   void scatter_impulses(Cube& sums) {
     for_each_cell([&](std::size_t cell) {
       const double impulse = impulse_[cell];
@@ -115,7 +115,7 @@ class PressureCells {
         constexpr int width = std::remove_cvref_t<decltype(weights)>::n_controls;
         NodeLanes value = {}, slope[D] = {};
         const NodeLanes moment[D] = {};
-        if (std::is_same_v<Space, Axisymmetric>) value[0] = share * impulse / x_0;
+        if (std::is_same_v<Geometry, Axisymmetric>) value[0] = share * impulse / x_0;
         for (int d = 0; d < D; ++d) slope[d][d] = share * impulse;
         scatter<D, width>(&sums[base], weights, value, slope, moment);
       });
@@ -155,11 +155,11 @@ class PressureCells {
     with_rows(cell, [&](double share, int base, const auto& weights, double x_0) {
       constexpr int width = std::remove_cvref_t<decltype(weights)>::n_controls;
       const auto at = gather<D, width, slopes_only>(&v[base], weights);
-      double L[D][D], q[Space::n_strain], divergence;
+      double L[D][D], q[Geometry::n_strain], divergence;
       for (int a = 0; a < D; ++a)
         for (int b = 0; b < D; ++b) L[a][b] = at.slope[b][a];
       const double v_0 = at.value[0];
-      strain_rate_of<Space, double>(L, v_0, x_0, q, divergence);
+      strain_rate_of<Geometry, double>(L, v_0, x_0, q, divergence);
       mean += share * divergence;
     });
     return mean;
@@ -172,7 +172,7 @@ class PressureCells {
     return at;
   }
 
-  /// Each cell's first corner among the controls that the tile sees.
+  /// Each cell's first corner among the nodes that the tile sees.
   static constexpr std::array<std::int16_t, n> first_corner = [] {
     std::array<std::int16_t, n> first{};
     for (std::size_t cell = 0; cell < first.size(); ++cell) {
@@ -200,9 +200,9 @@ class PressureCells {
   }
 
   /// GIMP's rows are the slopes of the hats of the cell's corners. Averaged over an extent they would see
-  /// other controls too, but no longer add up to a uniform push along a row of points.
+  /// other nodes too, but no longer add up to a uniform push along a row of points.
   bool at_corners() const {
-    return frame_.kind == ShapeFunctions::gimp && !std::is_same_v<Space, Axisymmetric>;
+    return frame_.kind == ShapeFunctions::gimp && !std::is_same_v<Geometry, Axisymmetric>;
   }
 
   Edges edges_at(const NodeLanes& place) const {
@@ -221,7 +221,7 @@ class PressureCells {
     return edges;
   }
 
-  /// use(control, slopes in all directions of it and of the next) along the cell's edges in the last
+  /// use(node, slopes in all directions of it and of the next) along the cell's edges in the last
   /// direction.
   template <class Use>
   void with_corners(std::size_t cell, Use use) const {
@@ -272,7 +272,7 @@ class PressureCells {
     }
   }
 
-  /// use(base, weights, first coordinate) at a place in a cell: three controls a direction, or the cell's two
+  /// use(base, weights, first coordinate) at a place in a cell: three nodes a direction, or the cell's two
   /// corners.
   template <class Use>
   void with_row(std::size_t cell, const NodeLanes& place, Use use) const {

@@ -8,7 +8,7 @@
 namespace tremie::detail {
 
 /// What a pass does. `gather`: reads velocities; `stress`: updates volume, flocculation and stress and gives
-/// the controls its impulses; `move`: updates velocities and places and gives the controls mass and momentum.
+/// the nodes its impulses; `move`: updates velocities and places and gives the nodes mass and momentum.
 struct Pass {
   bool gather = true, stress = true, move = true;
 };
@@ -58,7 +58,7 @@ struct Fields {
 template <int D>
 using Cube = typename TileGrid<D>::Buffer;
 
-/// Eight points whose stencils begin at one control.
+/// Eight points whose stencils begin at one node.
 template <Wanted wanted, int D>
 void gather_side_by_side(const NodeLanes* node, const Weights<D>& weights, Fields<D>& fields) {
   for (int c = 0; c < D; ++c) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Moving rigid walls in an explicit step: impulses on the controls that keep the points next to a wall from
+// Moving rigid walls in an explicit step: impulses on the nodes that keep the points next to a wall from
 // coming nearer than their half spacing. One-sided, without friction.
 //
 // The grid's velocities themselves are held back, not the points': a point that stays while its cell's
@@ -11,7 +11,7 @@
 
 namespace tremie::detail {
 
-/// Components of a push that flat walls take from a control, one bit each.
+/// Components of a push that flat walls take from a node, one bit each.
 using HeldBy = std::uint8_t;
 
 /// Ones, but for the components that are held.
@@ -25,13 +25,13 @@ inline constexpr std::array<NodeLanes, 8> left_by = [] {
 /// A point that may touch the wall in this step.
 template <int D>
 struct WallPoint {
-  int n = 0;  ///< controls that it reaches
-  std::array<NodeLanes*, power(3, D)> control;
+  int n = 0;  ///< nodes that it reaches
+  std::array<NodeLanes*, power(3, D)> node;
   std::array<double, power(3, D)> N;
   std::array<HeldBy, power(3, D)> held;
   NodeLanes normal = {};
   double target = 0.0;   ///< least normal velocity [m/s]
-  double inertia = 0.0;  ///< 1/kg: of the controls against an impulse along the normal
+  double inertia = 0.0;  ///< 1/kg: of the nodes against an impulse along the normal
   double given = 0.0;    ///< impulse so far [N s]
 };
 
@@ -44,9 +44,9 @@ inline constexpr int wall_sweeps = 3;
 
 /// Finds the points that the wall says anything about. Points and wall may move a third of a cell, which is
 /// less than how far the wall must see, before they are looked for again.
-template <class Space>
-void look_around_wall(const RigidWall<Space::dim>& wall, double time, ExplicitState<Space>& state) {
-  constexpr int D = Space::dim;
+template <class Geometry>
+void look_around_wall(const RigidWall<Geometry::dim>& wall, double time, ExplicitState<Geometry>& state) {
+  constexpr int D = Geometry::dim;
   if (state.wall_drift < 0.3 * state.grid.axes[0].h) return;
   state.wall_drift = 0.0;
   state.near_wall.clear();
@@ -59,44 +59,44 @@ void look_around_wall(const RigidWall<Space::dim>& wall, double time, ExplicitSt
       }
 }
 
-/// The three controls of a stencil in one direction.
+/// The three nodes of a stencil in one direction.
 struct Side {
-  std::array<int, 3> block, within;  ///< their parts of where a control is on the grid
+  std::array<int, 3> block, within;  ///< their parts of where a node is on the grid
   std::array<double, 3> w;           ///< values of the shape functions
   std::array<HeldBy, 3> held;
 };
 
-template <class Space>
-Side side_of(const ExplicitState<Space>& state, const Tile<Space::dim>& tile,
-             const Weights<Space::dim>& weights, std::size_t l, int d) {
-  constexpr int D = Space::dim;
+template <class Geometry>
+Side side_of(const ExplicitState<Geometry>& state, const Tile<Geometry::dim>& tile,
+             const Weights<Geometry::dim>& weights, std::size_t l, int d) {
+  constexpr int D = Geometry::dim;
   const Axis& a = state.grid.axes[d];
   const int first = weights.base[l] / stride<D>(tile_span, d) % tile_span;
   Side side;
   for (std::size_t o = 0; o < 3; ++o) {
-    const int local = first + static_cast<int>(o), control = tile.at[d] * tile_cells - 1 + local;
+    const int local = first + static_cast<int>(o), node = tile.at[d] * tile_cells - 1 + local;
     side.block[o] = local / tile_cells * stride<D>(2, d);
     side.within[o] = local % tile_cells * stride<D>(tile_cells, d);
     side.w[o] = weights.w[d][o][l];
-    const bool low = a.wall_low() && control == state.shape.low_wall();
-    const bool high = a.wall_high() && control == a.n_cells + 1;
+    const bool low = a.wall_low() && node == state.shape.low_wall();
+    const bool high = a.wall_high() && node == a.n_cells + 1;
     const bool sticks = (low && a.low == FaceKind::no_slip) || (high && a.high == FaceKind::no_slip);
     side.held[o] = static_cast<HeldBy>(sticks ? 7 : low || high ? 1 << d : 0);
   }
   return side;
 }
 
-/// The velocity that a unit impulse along the normal gives the k-th control of a point.
+/// The velocity that a unit impulse along the normal gives the k-th node of a point.
 template <int D>
 NodeLanes given_by_push(const WallPoint<D>& p, std::size_t k) {
-  return p.N[k] * (*p.control[k])[D] * (p.normal * left_by[p.held[k]]);
+  return p.N[k] * (*p.node[k])[D] * (p.normal * left_by[p.held[k]]);
 }
 
-/// The controls of lane l, and what a push along the normal does to them.
-template <class Space>
-void enter_controls(ExplicitState<Space>& state, const Tile<Space::dim>& tile,
-                    const Weights<Space::dim>& weights, std::size_t l, WallPoint<Space::dim>& p) {
-  constexpr int D = Space::dim;
+/// The nodes of lane l, and what a push along the normal does to them.
+template <class Geometry>
+void enter_controls(ExplicitState<Geometry>& state, const Tile<Geometry::dim>& tile,
+                    const Weights<Geometry::dim>& weights, std::size_t l, WallPoint<Geometry::dim>& p) {
+  constexpr int D = Geometry::dim;
   Side side[D];
   for (int d = 0; d < D; ++d) side[d] = side_of(state, tile, weights, l, d);
   NodeLanes inertia = {};
@@ -104,7 +104,7 @@ void enter_controls(ExplicitState<Space>& state, const Tile<Space::dim>& tile,
     if (N == 0.0) return;
     const auto b = static_cast<std::size_t>(tile.block[static_cast<std::size_t>(block)]);
     const auto k = static_cast<std::size_t>(p.n++);
-    p.control[k] = &state.grid.v[b][static_cast<std::size_t>(within)];
+    p.node[k] = &state.grid.v[b][static_cast<std::size_t>(within)];
     p.N[k] = N, p.held[k] = static_cast<HeldBy>(held);
     inertia += N * given_by_push(p, k) * (p.normal * left_by[p.held[k]]);
   };
@@ -123,11 +123,11 @@ void enter_controls(ExplicitState<Space>& state, const Tile<Space::dim>& tile,
 
 /// Of the points first ... last - 1 that are near the wall those that may touch it; it must see half a cell
 /// further than `gap_min`.
-template <class Space>
-std::vector<WallPoint<Space::dim>> find_wall_points(const RigidWall<Space::dim>& wall, double time, double dt,
+template <class Geometry>
+std::vector<WallPoint<Geometry::dim>> find_wall_points(const RigidWall<Geometry::dim>& wall, double time, double dt,
                                                     double gap_min, std::size_t first, std::size_t last,
-                                                    ExplicitState<Space>& state) {
-  constexpr int D = Space::dim;
+                                                    ExplicitState<Geometry>& state) {
+  constexpr int D = Geometry::dim;
   std::vector<WallPoint<D>> touching;
   const auto& axes = state.grid.axes;
   const double reach = gap_min + 0.1 * axes[0].h;
@@ -161,27 +161,27 @@ template <int D>
 void push_off(WallPoint<D>& p) {
   NodeLanes v = {};
   const auto n = static_cast<std::size_t>(p.n);
-  for (std::size_t k = 0; k < n; ++k) v += p.N[k] * *p.control[k];
+  for (std::size_t k = 0; k < n; ++k) v += p.N[k] * *p.node[k];
   double u = 0.0;
   for (int d = 0; d < D; ++d) u += p.normal[d] * v[d];
   const double total = std::max(0.0, p.given + (p.target - u) / p.inertia), more = total - p.given;
   p.given = total;
   if (more == 0.0) return;
-  for (std::size_t k = 0; k < n; ++k) *p.control[k] += more * given_by_push(p, k);
+  for (std::size_t k = 0; k < n; ++k) *p.node[k] += more * given_by_push(p, k);
 }
 
 /// Holds the concrete back at the wall at `time`, the end of a step of length dt.
-template <class Space>
-void push_off_wall(const RigidWall<Space::dim>& wall, double time, double dt, double gap_min,
-                   ExplicitState<Space>& state) {
-  constexpr int D = Space::dim;
+template <class Geometry>
+void push_off_wall(const RigidWall<Geometry::dim>& wall, double time, double dt, double gap_min,
+                   ExplicitState<Geometry>& state) {
+  constexpr int D = Geometry::dim;
   if (!wall) return;
   look_around_wall(wall, time, state);
   const std::size_t near = state.near_wall.size(), parts = static_cast<std::size_t>(state.grid.crew->size());
   std::vector<std::vector<WallPoint<D>>> touching(parts);
   state.grid.crew->run([&](int s) {
     const auto part = static_cast<std::size_t>(s);
-    touching[part] = find_wall_points<Space>(wall, time, dt, gap_min, near * part / parts,
+    touching[part] = find_wall_points<Geometry>(wall, time, dt, gap_min, near * part / parts,
                                              near * (part + 1) / parts, state);
   });
   for (int sweep = 0; sweep < wall_sweeps; ++sweep)

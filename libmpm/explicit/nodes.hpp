@@ -1,20 +1,20 @@
 #pragma once
 
-// What happens on the controls of an explicit step: sums of the tiles, gravity, flat walls.
+// What happens on the nodes of an explicit step: sums of the tiles, gravity, flat walls.
 
 #include "libmpm/explicit/body.hpp"
 
 namespace tremie::detail {
 
-/// Flat walls on one control, v its velocity before them. A wall takes the velocity towards it; friction
+/// Flat walls on one node, v its velocity before them. A wall takes the velocity towards it; friction
 /// takes up to the coefficient times that from the sliding.
 template <int D>
 void apply_walls(const std::array<Axis, D>& axes, const Shape<D>& shape, const WallVelocities<D>& walls,
-                 double friction_coefficient, const Index<D>& control, NodeLanes& v) {
+                 double friction_coefficient, const Index<D>& node, NodeLanes& v) {
   for (int d = 0; d < D; ++d) {
     const Axis& axis = axes[d];
-    const bool low = axis.wall_low() && control[d] == shape.low_wall();
-    const bool high = axis.wall_high() && control[d] == axis.n_cells + 1;
+    const bool low = axis.wall_low() && node[d] == shape.low_wall();
+    const bool high = axis.wall_high() && node[d] == axis.n_cells + 1;
     if (!low && !high) continue;
     const FaceKind kind = low ? axis.low : axis.high;
     const Vec<D>& wall = walls.v[d][low ? 0 : 1];
@@ -37,31 +37,31 @@ void apply_walls(const std::array<Axis, D>& axes, const Shape<D>& shape, const W
 
 template <int D>
 Index<D> control_of(const Index<D>& block, int k) {
-  Index<D> control;
-  for (int d = D - 1; d >= 0; --d, k /= tile_cells) control[d] = block[d] * tile_cells - 1 + k % tile_cells;
-  return control;
+  Index<D> node;
+  for (int d = D - 1; d >= 0; --d, k /= tile_cells) node[d] = block[d] * tile_cells - 1 + k % tile_cells;
+  return node;
 }
 
-/// Which controls of the block at `block` lie on flat walls.
+/// Which nodes of the block at `block` lie on flat walls.
 template <int D>
 std::uint64_t nodes_on_walls(const std::array<Axis, D>& axes, const Shape<D>& shape, const Index<D>& block) {
   std::uint64_t on_walls = 0;
   for (int k = 0; k < power(tile_cells, D); ++k) {
-    const Index<D> control = control_of<D>(block, k);
+    const Index<D> node = control_of<D>(block, k);
     for (int d = 0; d < D; ++d)
-      if ((axes[d].wall_low() && control[d] == shape.low_wall()) ||
-          (axes[d].wall_high() && control[d] == axes[d].n_cells + 1))
+      if ((axes[d].wall_low() && node[d] == shape.low_wall()) ||
+          (axes[d].wall_high() && node[d] == axes[d].n_cells + 1))
         on_walls |= std::uint64_t{1} << k;
   }
   return on_walls;
 }
 
-/// Makes the velocities of block b's controls from the sums over the tiles: `update(totals, at)` those of the
-/// four controls from number `at` of the block on. Flat walls come after it.
-template <class Space, class Buffer, class Update>
-void update_block(const Body<Space>& body, double friction_coefficient, const std::vector<Buffer>& buffers,
-                  std::size_t b, ExplicitState<Space>& state, Update update) {
-  constexpr int D = Space::dim;
+/// Makes the velocities of block b's nodes from the sums over the tiles: `update(totals, at)` those of the
+/// four nodes from number `at` of the block on. Flat walls come after it.
+template <class Geometry, class Buffer, class Update>
+void update_block(const Body<Geometry>& body, double friction_coefficient, const std::vector<Buffer>& buffers,
+                  std::size_t b, ExplicitState<Geometry>& state, Update update) {
+  constexpr int D = Geometry::dim;
   TileGrid<D>& grid = state.grid;
   const NodeBlock<D>& block = grid.blocks[b];
   sum_tiles<D>(grid, block, buffers, [&](int row, const FourNodes& total) {
@@ -77,7 +77,7 @@ void update_block(const Body<Space>& body, double friction_coefficient, const st
   });
 }
 
-/// 1/mass of two controls, which their velocities have in entry D, in all their entries.
+/// 1/mass of two nodes, which their velocities have in entry D, in all their entries.
 template <int D>
 TwoNodes inverse_mass_of(const TwoNodes& two) {
   return __builtin_shufflevector(two, two, D, D, D, D, D + 4, D + 4, D + 4, D + 4);
@@ -92,7 +92,7 @@ TwoNodes with_mass(const TwoNodes& v, const TwoNodes& inverse_mass) {
     return __builtin_shufflevector(v, inverse_mass, 0, 1, 8, 3, 4, 5, 12, 7);
 }
 
-/// 1/mass of four controls in all their entries, 0 where there is none.
+/// 1/mass of four nodes in all their entries, 0 where there is none.
 template <int D>
 FourNodes inverse_masses(const FourNodes& total) {
   const NodeLanes mass = __builtin_shufflevector(total.low, total.high, D, D + 4, D + 8, D + 12);
@@ -102,7 +102,7 @@ FourNodes inverse_masses(const FourNodes& total) {
           __builtin_shufflevector(inverse, inverse, 2, 2, 2, 2, 3, 3, 3, 3)};
 }
 
-/// The same for two controls.
+/// The same for two nodes.
 template <int D>
 TwoNodes for_two(const Vec<D>& a) {
   NodeLanes one = {};
@@ -111,10 +111,10 @@ TwoNodes for_two(const Vec<D>& a) {
 }
 
 /// Velocities of block b from the momenta (with the impulses of the stresses already in them), and gravity.
-template <class Space>
-void velocities_from_sums(const Body<Space>& body, double friction, const Vec<Space::dim>& gravity_impulse,
-                          std::size_t b, ExplicitState<Space>& state) {
-  constexpr int D = Space::dim;
+template <class Geometry>
+void velocities_from_sums(const Body<Geometry>& body, double friction, const Vec<Geometry::dim>& gravity_impulse,
+                          std::size_t b, ExplicitState<Geometry>& state) {
+  constexpr int D = Geometry::dim;
   const TwoNodes pull = for_two<D>(gravity_impulse);
   const auto velocity = [&pull](const TwoNodes& total, const TwoNodes& inverse) {
     const TwoNodes moving = total * inverse + pull;
@@ -131,10 +131,10 @@ void velocities_from_sums(const Body<Space>& body, double friction, const Vec<Sp
 }
 
 /// Adds impulses of the stresses and gravity to velocities of block b that are there already.
-template <class Space, class Buffer>
-void add_impulses(const Body<Space>& body, double friction, const std::vector<Buffer>& impulses, bool flip,
-                  const Vec<Space::dim>& gravity_impulse, std::size_t b, ExplicitState<Space>& state) {
-  constexpr int D = Space::dim;
+template <class Geometry, class Buffer>
+void add_impulses(const Body<Geometry>& body, double friction, const std::vector<Buffer>& impulses, bool flip,
+                  const Vec<Geometry::dim>& gravity_impulse, std::size_t b, ExplicitState<Geometry>& state) {
+  constexpr int D = Geometry::dim;
   const TwoNodes pull = for_two<D>(gravity_impulse);
   const auto faster = [&pull](const TwoNodes& v, const TwoNodes& impulse) {
     const TwoNodes inverse = inverse_mass_of<D>(v), moving = v + (impulse * inverse + pull);

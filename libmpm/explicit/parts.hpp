@@ -7,9 +7,9 @@
 namespace tremie {
 
 /// Brings the state of the points to body.points.
-template <class Space>
-void write_back(ExplicitState<Space>& state, Body<Space>& body) {
-  write_back<Space::dim>(state.points, state.grid.axes, body.points);
+template <class Geometry>
+void write_back(ExplicitState<Geometry>& state, Body<Geometry>& body) {
+  write_back<Geometry::dim>(state.points, state.grid.axes, body.points);
 }
 
 namespace detail {
@@ -24,9 +24,9 @@ inline constexpr double passes_for_sorting = 4.0;
 /// In single precision it takes as long as this many runs of one stencil more, for each group.
 inline constexpr double runs_for_sorting = 60.0;
 
-template <class Space>
-void sort_points(const ExplicitSettings& settings, ExplicitState<Space>& state) {
-  constexpr int D = Space::dim;
+template <class Geometry>
+void sort_points(const ExplicitSettings& settings, ExplicitState<Geometry>& state) {
+  constexpr int D = Geometry::dim;
   auto sorted = sort_into_tiles<D>(state.grid.axes, state.shape.stencil_shift(), state.points,
                                    settings.single_precision);
   lay_tiles(state.grid, std::move(sorted.tiles), settings.transfer.flip);
@@ -40,17 +40,17 @@ void sort_points(const ExplicitSettings& settings, ExplicitState<Space>& state) 
 }
 
 /// Whether the points have drifted too far, or sorting them again pays.
-template <class Space>
-bool should_sort(const ExplicitState<Space>& state) {
+template <class Geometry>
+bool should_sort(const ExplicitState<Geometry>& state) {
   const double paid = static_cast<double>(state.mixed_since),
                price = state.grid.single ? runs_for_sorting : passes_for_sorting;
   return state.drift > drift_allowed || paid > price * static_cast<double>(state.points.groups());
 }
 
 /// The limits of the step to come, and its length.
-template <class Space, class Law>
-void choose_next_step(const Body<Space>& body, const Law& law, const ExplicitSettings& settings,
-                      ExplicitState<Space>& state) {
+template <class Geometry, class Law>
+void choose_next_step(const Body<Geometry>& body, const Law& law, const ExplicitSettings& settings,
+                      ExplicitState<Geometry>& state) {
   double h = state.grid.axes[0].h;
   for (const Axis& a : state.grid.axes) h = std::min(h, a.h);
   const double tau_y = static_yield_stress(state.lambda_max, body.mix.tau_0);

@@ -1,7 +1,7 @@
 #pragma once
 
 // One pass over the points of a tile: grid to points, stress, motion, points to grid, in whatever part a
-// scheme asks for. Between the sums over controls, which go point by point, everything is done for eight
+// scheme asks for. Between the sums over nodes, which go point by point, everything is done for eight
 // points at once.
 
 #include "libmpm/explicit/passes.hpp"
@@ -13,23 +13,23 @@
 namespace tremie::detail {
 
 /// Strain rate of points side by side.
-template <class Space, class Lanes>
+template <class Geometry, class Lanes>
 struct StrainRate {
-  Lanes q[Space::n_strain], divergence, gamma_dot;  ///< [1/s]
+  Lanes q[Geometry::n_strain], divergence, gamma_dot;  ///< [1/s]
 };
 
 /// slope[b][a] = dv_a/dx_b; v_0 and x_0 the first components of velocity and place.
-template <class Space, class Lanes, std::size_t n>
-[[gnu::always_inline]] inline StrainRate<Space, Lanes> strain_rate(const Lanes (&slope)[Space::dim][n],
+template <class Geometry, class Lanes, std::size_t n>
+[[gnu::always_inline]] inline StrainRate<Geometry, Lanes> strain_rate(const Lanes (&slope)[Geometry::dim][n],
                                                                    const Lanes& v_0, const Lanes& x_0) {
-  constexpr int D = Space::dim;
+  constexpr int D = Geometry::dim;
   Lanes L[D][D];
   for (int a = 0; a < D; ++a)
     for (int b = 0; b < D; ++b) L[a][b] = slope[b][a];
-  StrainRate<Space, Lanes> rate;
-  strain_rate_of<Space, Lanes>(L, v_0, x_0, rate.q, rate.divergence);
+  StrainRate<Geometry, Lanes> rate;
+  strain_rate_of<Geometry, Lanes>(L, v_0, x_0, rate.q, rate.divergence);
   Lanes q2 = rate.q[0] * rate.q[0];
-  for (int k = 1; k < Space::n_strain; ++k) q2 += rate.q[k] * rate.q[k];
+  for (int k = 1; k < Geometry::n_strain; ++k) q2 += rate.q[k] * rate.q[k];
   rate.gamma_dot = sqrt(q2);
   return rate;
 }
@@ -81,17 +81,17 @@ struct LaneStress {
   Lanes sigma[D][D], hoop;  ///< [Pa m^3]
 };
 
-template <class Space, class Lanes>
-LaneStress<Space::dim, Lanes> stress_of(const StrainRate<Space, Lanes>& rate, const Lanes& viscosity,
+template <class Geometry, class Lanes>
+LaneStress<Geometry::dim, Lanes> stress_of(const StrainRate<Geometry, Lanes>& rate, const Lanes& viscosity,
                                         const Lanes& pressure) {
-  Lanes s[Space::n_strain];
-  for (int k = 0; k < Space::n_strain; ++k) s[k] = rate.q[k] * viscosity;
-  LaneStress<Space::dim, Lanes> stress;
-  stress_tensor_of<Space, Lanes>(s, pressure, stress.sigma, stress.hoop);
+  Lanes s[Geometry::n_strain];
+  for (int k = 0; k < Geometry::n_strain; ++k) s[k] = rate.q[k] * viscosity;
+  LaneStress<Geometry::dim, Lanes> stress;
+  stress_tensor_of<Geometry, Lanes>(s, pressure, stress.sigma, stress.hoop);
   return stress;
 }
 
-/// 1/inertia in each direction [1/m^2], by one division. On a wall one control has all the weight: no slope
+/// 1/inertia in each direction [1/m^2], by one division. On a wall one node has all the weight: no slope
 /// can be seen there, and none is given.
 template <int D, class Lanes>
 [[gnu::always_inline]] inline std::array<Lanes, D> inverse_inertia(const StencilFrame<D>& frame,
@@ -158,15 +158,15 @@ void move_group(const std::array<Axis, D>& axes, const StencilFrame<D>& frame, c
     for (int a = 0; a < D; ++a) points.C[a * D + b][g] = fields.moment[b][a];
 }
 
-/// Momentum, mass and impulses of group g to the controls; `forces` is `sums` unless FLIP must tell them
+/// Momentum, mass and impulses of group g to the nodes; `forces` is `sums` unless FLIP must tell them
 /// apart. affine[b][a]: its affine velocities, but with FLIP.
-template <Pass pass, class Space>
-void scatter_points(bool flip, bool apart, double impulse_dt, const Weights<Space::dim>& weights,
-                    const LaneStress<Space::dim, Octet>& stress, const Octet (&affine)[Space::dim][4], int n,
-                    const LanePoints<Space::dim>& points, std::size_t g, Cube<Space::dim>& sums,
-                    Cube<Space::dim>& forces) {
-  constexpr int D = Space::dim;
-  constexpr bool hooped = pass.stress && std::is_same_v<Space, Axisymmetric>;
+template <Pass pass, class Geometry>
+void scatter_points(bool flip, bool apart, double impulse_dt, const Weights<Geometry::dim>& weights,
+                    const LaneStress<Geometry::dim, Octet>& stress, const Octet (&affine)[Geometry::dim][4], int n,
+                    const LanePoints<Geometry::dim>& points, std::size_t g, Cube<Geometry::dim>& sums,
+                    Cube<Geometry::dim>& forces) {
+  constexpr int D = Geometry::dim;
+  constexpr bool hooped = pass.stress && std::is_same_v<Geometry, Axisymmetric>;
   constexpr Given momenta{.slopes = false}, impulses{.values = hooped, .moments = false};
   constexpr Given both{.values = pass.move || hooped, .slopes = pass.stress, .moments = pass.move};
   const Octet mass = points.mass[g];
@@ -198,7 +198,7 @@ Octet hold_of_group(const HeldCells<D>* held, const std::array<int, octet_size>&
   return of;
 }
 
-/// Rows of controls that the first n points of a group reach.
+/// Rows of nodes that the first n points of a group reach.
 template <int D>
 TileRows rows_reached(const Weights<D>& weights, int n) {
   TileRows rows = stencil_rows<D>(weights.base[0]);
@@ -210,17 +210,17 @@ TileRows rows_reached(const Weights<D>& weights, int n) {
 /// Pressure cells of a group's points.
 using GroupCells = std::array<int, octet_size>;
 
-/// What a pass has in hand over one tile. Node: of the controls that the tile sees.
-template <Pass pass, class Space, class Law, class Node>
+/// What a pass has in hand over one tile. Node: of the nodes that the tile sees.
+template <Pass pass, class Geometry, class Law, class Node>
 struct TilePass {
-  static constexpr int D = Space::dim;
+  static constexpr int D = Geometry::dim;
   using Cube = NodeCube<Node, TileGrid<D>::tile_nodes>;
 
   const Mix& mix;
   const Law& law;
   const ExplicitSettings& settings;
   const PassInput& input;
-  const ExplicitState<Space>& state;
+  const ExplicitState<Geometry>& state;
   const Tile<D>& tile;
   LanePoints<D>& points;
   const Cube &v, &v_start;  ///< velocities, and those before the step's forces for FLIP
@@ -229,7 +229,7 @@ struct TilePass {
   const HeldCells<D>* held;
 
   bool cells;                                   ///< pressures go by the cell, and there are any in this pass
-  PressureCells<Space, Node>&before, &pressed;  ///< cells of the points as they were, and as they push
+  PressureCells<Geometry, Node>&before, &pressed;  ///< cells of the points as they were, and as they push
   const GroupCells* entered;  ///< pressure cells of each group, where `before` has been read
   const StencilFrame<D>& frame;
   LaneSums& reduced;
@@ -238,28 +238,28 @@ struct TilePass {
 };
 
 /// Pressure cells of group g as it is at the start of the pass, where the pass has a use for them.
-template <Pass pass, class Space, class Law, class Node>
-GroupCells cells_of_group(const TilePass<pass, Space, Law, Node>& in, std::size_t g) {
-  constexpr int D = Space::dim;
+template <Pass pass, class Geometry, class Law, class Node>
+GroupCells cells_of_group(const TilePass<pass, Geometry, Law, Node>& in, std::size_t g) {
+  constexpr int D = Geometry::dim;
   if (in.entered) return in.entered[g - static_cast<std::size_t>(in.tile.first_group)];
   GroupCells cell{};
-  using Real = typename PressureCells<Space, Node>::Real;
+  using Real = typename PressureCells<Geometry, Node>::Real;
   if (in.cells || in.held) find_pressure_cells<D, Real>(in.frame, places_of<D>(in.points, g), cell);
   return cell;
 }
 
 /// The divergence that changes the volumes of group g: by the point where its pressures do not go by the
 /// cell.
-template <Pass pass, class Space, class Law, class Node>
-Octet divergence_of_group(const TilePass<pass, Space, Law, Node>& in, const Octet& by_point,
+template <Pass pass, class Geometry, class Law, class Node>
+Octet divergence_of_group(const TilePass<pass, Geometry, Law, Node>& in, const Octet& by_point,
                           const GroupCells& cell) {
   if (!in.cells) return by_point;
   return pass.gather ? in.before.divergence(cell) : Octet{};
 }
 
 /// Gives the pressures of group g to its cells, in which it is entered if it was not or has moved since.
-template <Pass pass, class Space, class Law>
-void push_cells(TilePass<pass, Space, Law, NodeLanes>& in, std::size_t g, int n, const Octet& pressure,
+template <Pass pass, class Geometry, class Law>
+void push_cells(TilePass<pass, Geometry, Law, NodeLanes>& in, std::size_t g, int n, const Octet& pressure,
                 GroupCells& cell) {
   if (!pass.gather || pass.move) in.pressed.enter(in.points, g, cell);
   in.pressed.push(cell, n, in.input.impulse_dt * pressure);
@@ -275,9 +275,9 @@ Fields<D> kept_affine(const LanePoints<D>& points, std::size_t g) {
 }
 
 /// Eight points.
-template <Pass pass, class Space, class Law>
-void visit_group(TilePass<pass, Space, Law, NodeLanes>& in, std::size_t g) {
-  constexpr int D = Space::dim;
+template <Pass pass, class Geometry, class Law>
+void visit_group(TilePass<pass, Geometry, Law, NodeLanes>& in, std::size_t g) {
+  constexpr int D = Geometry::dim;
   const bool flip = in.settings.transfer.flip;
   const int n = filled<D>(in.points, g);
   Weights<D> weights;
@@ -297,11 +297,11 @@ void visit_group(TilePass<pass, Space, Law, NodeLanes>& in, std::size_t g) {
   GroupCells cell;
   if (pass.stress) {
     cell = cells_of_group(in, g);
-    const auto rate = strain_rate<Space, Octet>(fields.L, fields.v[0], in.points.x[0][g]);
+    const auto rate = strain_rate<Geometry, Octet>(fields.L, fields.v[0], in.points.x[0][g]);
     resistance = update_state<D>(in.mix, in.law, in.input.dt, rate.gamma_dot,
                                  divergence_of_group(in, rate.divergence, cell),
                                  hold_of_group<D>(in.held, cell), in.points, g, in.reduced);
-    stress = stress_of<Space, Octet>(rate, resistance.viscosity, in.cells ? Octet{} : resistance.pressure);
+    stress = stress_of<Geometry, Octet>(rate, resistance.viscosity, in.cells ? Octet{} : resistance.pressure);
   }
   if (pass.move && pass.gather) {
     move_group<D>(in.state.grid.axes, in.frame, in.settings.transfer, in.input.dt, weights, fields, in.points,
@@ -310,19 +310,19 @@ void visit_group(TilePass<pass, Space, Law, NodeLanes>& in, std::size_t g) {
   }
   if (in.cells) push_cells(in, g, n, resistance.pressure, cell);
   in.rows |= rows_reached<D>(weights, n);
-  scatter_points<pass, Space>(flip, &in.forces != &in.sums, in.input.impulse_dt, weights, stress,
+  scatter_points<pass, Geometry>(flip, &in.forces != &in.sums, in.input.impulse_dt, weights, stress,
                               fields.moment, n, in.points, g, in.sums, in.forces);
 }
 
 /// All groups of a tile.
-template <Pass pass, class Space, class Law>
-void visit_groups(TilePass<pass, Space, Law, NodeLanes>& in) {
+template <Pass pass, class Geometry, class Law>
+void visit_groups(TilePass<pass, Geometry, Law, NodeLanes>& in) {
   for (int g = in.tile.first_group; g < in.tile.last_group; ++g) visit_group(in, static_cast<std::size_t>(g));
 }
 
 /// Enters all points of the tile into their pressure cells, and reads those.
-template <Pass pass, class Space, class Law, class Node>
-void read_pressure_cells(TilePass<pass, Space, Law, Node>& in, std::vector<GroupCells>& of_group) {
+template <Pass pass, class Geometry, class Law, class Node>
+void read_pressure_cells(TilePass<pass, Geometry, Law, Node>& in, std::vector<GroupCells>& of_group) {
   const auto first = static_cast<std::size_t>(in.tile.first_group);
   of_group.resize(static_cast<std::size_t>(in.tile.last_group) - first);
   for (std::size_t i = 0; i < of_group.size(); ++i) in.before.enter(in.points, first + i, of_group[i]);
@@ -331,10 +331,10 @@ void read_pressure_cells(TilePass<pass, Space, Law, Node>& in, std::vector<Group
 }
 
 /// One tile.
-template <Pass pass, class Node, class Space, class Law>
+template <Pass pass, class Node, class Geometry, class Law>
 PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& settings,
-                        const PassInput& input, std::size_t t, ExplicitState<Space>& state) {
-  constexpr int D = Space::dim;
+                        const PassInput& input, std::size_t t, ExplicitState<Geometry>& state) {
+  constexpr int D = Geometry::dim;
   TileGrid<D>& grid = state.grid;
   const Tile<D>& tile = grid.tiles[t];
   const bool flip = settings.transfer.flip;
@@ -352,12 +352,12 @@ PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& 
   constexpr bool pressed_anew = pass.gather && pass.move;  // by the cells that points have moved to
   const StencilFrame<D> frame = stencil_frame<D>(grid.axes, state.shape, tile.at);
   const auto no_cells = [&](bool wanted) {
-    return PressureCells<Space, Node>(grid.axes, tile.at, frame, settings.stress, held, wanted);
+    return PressureCells<Geometry, Node>(grid.axes, tile.at, frame, settings.stress, held, wanted);
   };
-  PressureCells<Space, Node> before = no_cells(cell_pressure),
+  PressureCells<Geometry, Node> before = no_cells(cell_pressure),
                              after = no_cells(cell_pressure && pressed_anew);
   LaneSums reduced;
-  TilePass<pass, Space, Law, Node> in{.mix = mix,
+  TilePass<pass, Geometry, Law, Node> in{.mix = mix,
                                       .law = law,
                                       .settings = settings,
                                       .input = input,
@@ -385,23 +385,23 @@ PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& 
 }
 
 /// One tile, in the precision that is set: single goes with the stress first.
-template <Pass pass, class Space, class Law>
+template <Pass pass, class Geometry, class Law>
 PassSums pass_as_set(const Mix& mix, const Law& law, const ExplicitSettings& settings, const PassInput& input,
-                     std::size_t t, ExplicitState<Space>& state) {
+                     std::size_t t, ExplicitState<Geometry>& state) {
   if constexpr (!pass.stress || !pass.move)
     if (settings.single_precision)
-      return pass_over_tile<pass, SingleNode, Space>(mix, law, settings, input, t, state);
-  return pass_over_tile<pass, NodeLanes, Space>(mix, law, settings, input, t, state);
+      return pass_over_tile<pass, SingleNode, Geometry>(mix, law, settings, input, t, state);
+  return pass_over_tile<pass, NodeLanes, Geometry>(mix, law, settings, input, t, state);
 }
 
 /// A pass over the points, tile by tile in any order, in each of some steps.
-template <Pass pass, class Space, class Law>
+template <Pass pass, class Geometry, class Law>
 struct PointsPass {
   const Mix& mix;
   const Law& law;
   const ExplicitSettings& settings;
   PassInput input;
-  ExplicitState<Space>& state;
+  ExplicitState<Geometry>& state;
   int steps = 1;
   std::vector<PassSums> of_tile =
       std::vector<PassSums>(state.grid.tiles.size() * static_cast<std::size_t>(steps));
@@ -409,7 +409,7 @@ struct PointsPass {
   void operator()(int tile, int step) {
     const auto t = static_cast<std::size_t>(tile);
     of_tile[static_cast<std::size_t>(step) * state.grid.tiles.size() + t] =
-        pass_as_set<pass, Space>(mix, law, settings, input, t, state);
+        pass_as_set<pass, Geometry>(mix, law, settings, input, t, state);
   }
 
   /// Of a step, when all tiles are done, and its steps before have been asked for.

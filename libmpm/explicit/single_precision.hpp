@@ -24,13 +24,13 @@ inline Singles in_single(const std::vector<Octet>& of, const GroupPair& pair) {
 
 /// Updates the state of a pair, gives its pressures to their cells and its stress back. The stress has the
 /// pressure where that does not go by the cell.
-template <Pass pass, class Space, class Law>
-LaneStress<Space::dim, Singles> press_pair(TilePass<pass, Space, Law, SingleNode>& in, const GroupPair& pair,
-                                           const SingleFields<Space::dim>& read) {
-  constexpr int D = Space::dim;
+template <Pass pass, class Geometry, class Law>
+LaneStress<Geometry::dim, Singles> press_pair(TilePass<pass, Geometry, Law, SingleNode>& in, const GroupPair& pair,
+                                           const SingleFields<Geometry::dim>& read) {
+  constexpr int D = Geometry::dim;
   auto& points = in.points;
   const GroupCells cell[2] = {cells_of_group(in, pair.g[0]), cells_of_group(in, pair.g[1])};
-  const auto rate = strain_rate<Space, Singles>(read.along, read.value[0], in_single(points.x[0], pair));
+  const auto rate = strain_rate<Geometry, Singles>(read.along, read.value[0], in_single(points.x[0], pair));
   Octet gamma_dot[2], tau_y[2], pressure[2];
   for (int half = 0; half < 2; ++half) {
     gamma_dot[half] = to_double(rate.gamma_dot, half), tau_y[half] = pressure[half] = Octet{};
@@ -49,17 +49,17 @@ LaneStress<Space::dim, Singles> press_pair(TilePass<pass, Space, Law, SingleNode
   if (in.held) held *= look_up<sizeof(HeldCell<D>)>(&in.held->front().hold, cell[0], cell[1]);
   const Singles viscosity =
       held * viscosity_of(in.mix, in.law, rate.gamma_dot, to_single(tau_y[0], tau_y[1]));
-  if (!in.cells) return stress_of<Space, Singles>(rate, viscosity, to_single(pressure[0], pressure[1]));
+  if (!in.cells) return stress_of<Geometry, Singles>(rate, viscosity, to_single(pressure[0], pressure[1]));
   for (int half = 0; half < 2 && pair.n[half] > 0; ++half)
     in.pressed.push(cell[half], pair.n[half], in.input.impulse_dt * pressure[half]);
-  return stress_of<Space, Singles>(rate, viscosity, Singles{});
+  return stress_of<Geometry, Singles>(rate, viscosity, Singles{});
 }
 
 /// Moves a pair with what it read; the moments become its affine velocities.
-template <Pass pass, class Space, class Law>
-void move_pair(TilePass<pass, Space, Law, SingleNode>& in, const GroupPair& pair,
-               const SingleWeights<Space::dim>& weights, SingleFields<Space::dim>& read) {
-  constexpr int D = Space::dim;
+template <Pass pass, class Geometry, class Law>
+void move_pair(TilePass<pass, Geometry, Law, SingleNode>& in, const GroupPair& pair,
+               const SingleWeights<Geometry::dim>& weights, SingleFields<Geometry::dim>& read) {
+  constexpr int D = Geometry::dim;
   const std::array<Singles, D> inverse = inverse_inertia<D>(in.frame, weights.inertia);
   for (int b = 0; b < D; ++b)
     for (int a = 0; a < D; ++a) read.along[b][a] *= inverse[b];
@@ -84,7 +84,7 @@ SingleFields<D> kept_motion(const LanePoints<D>& points, const GroupPair& pair) 
   return motion;
 }
 
-/// Mass and momentum of a pair to the controls.
+/// Mass and momentum of a pair to the nodes.
 template <ShapeFunctions kind, int D>
 Reached scatter_motion(const SingleWeights<D>& weights, const SingleFields<D>& motion, const GroupPair& pair,
                        const LanePoints<D>& points, SingleNode* sums) {
@@ -100,13 +100,13 @@ Reached scatter_motion(const SingleWeights<D>& weights, const SingleFields<D>& m
   return scatter_momenta<kind, D>(weights, momenta, pair.real(), sums);
 }
 
-/// Impulses of a pair's stresses to the controls; x_0: its first coordinates.
-template <class Space>
-Reached scatter_stress(double impulse_dt, const SingleWeights<Space::dim>& weights,
-                       const LaneStress<Space::dim, Singles>& stress, const GroupPair& pair,
+/// Impulses of a pair's stresses to the nodes; x_0: its first coordinates.
+template <class Geometry>
+Reached scatter_stress(double impulse_dt, const SingleWeights<Geometry::dim>& weights,
+                       const LaneStress<Geometry::dim, Singles>& stress, const GroupPair& pair,
                        const Singles& x_0, SingleNode* sums) {
-  constexpr int D = Space::dim;
-  constexpr bool hooped = std::is_same_v<Space, Axisymmetric>;
+  constexpr int D = Geometry::dim;
+  constexpr bool hooped = std::is_same_v<Geometry, Axisymmetric>;
   const auto dt = static_cast<float>(impulse_dt);
   SingleImpulses<D> impulses;
   for (int i = 0; i < D; ++i) {
@@ -129,9 +129,9 @@ inline constexpr std::size_t pairs_at_once = 2;
 using Batch = std::span<const GroupPair>;
 
 /// A pass with stress over a batch.
-template <ShapeFunctions kind, Pass pass, class Space, class Law>
-void press_batch(TilePass<pass, Space, Law, SingleNode>& in, Batch batch) {
-  constexpr int D = Space::dim;
+template <ShapeFunctions kind, Pass pass, class Geometry, class Law>
+void press_batch(TilePass<pass, Geometry, Law, SingleNode>& in, Batch batch) {
+  constexpr int D = Geometry::dim;
   static_assert(pass.gather && !pass.move);
   SingleWeights<D> weights[pairs_at_once];
   SingleFields<D> read[pairs_at_once];
@@ -139,17 +139,17 @@ void press_batch(TilePass<pass, Space, Law, SingleNode>& in, Batch batch) {
   for (std::size_t i = 0; i < batch.size(); ++i)
     weigh_pair<kind, WeighedFor::stress>(in.frame, in.points, batch[i], weights[i]);
   for (std::size_t i = 0; i < batch.size(); ++i)
-    gather_slopes<D, std::is_same_v<Space, Axisymmetric>>(in.v.data(), weights[i], batch[i].real(), read[i]);
+    gather_slopes<D, std::is_same_v<Geometry, Axisymmetric>>(in.v.data(), weights[i], batch[i].real(), read[i]);
   for (std::size_t i = 0; i < batch.size(); ++i) stress[i] = press_pair(in, batch[i], read[i]);
   for (std::size_t i = 0; i < batch.size(); ++i)
-    in.count(scatter_stress<Space>(in.input.impulse_dt, weights[i], stress[i], batch[i],
+    in.count(scatter_stress<Geometry>(in.input.impulse_dt, weights[i], stress[i], batch[i],
                                    in_single(in.points.x[0], batch[i]), in.sums.data()));
 }
 
 /// A pass with motion over a batch.
-template <ShapeFunctions kind, Pass pass, class Space, class Law>
-void move_batch(TilePass<pass, Space, Law, SingleNode>& in, Batch batch) {
-  constexpr int D = Space::dim;
+template <ShapeFunctions kind, Pass pass, class Geometry, class Law>
+void move_batch(TilePass<pass, Geometry, Law, SingleNode>& in, Batch batch) {
+  constexpr int D = Geometry::dim;
   static_assert(pass.move && !pass.stress);
   SingleWeights<D> weights[pairs_at_once];
   SingleFields<D> motion[pairs_at_once];
@@ -169,9 +169,9 @@ void move_batch(TilePass<pass, Space, Law, SingleNode>& in, Batch batch) {
 }
 
 /// All groups of a tile, two by two. With the stress first a pass has either stress or motion.
-template <ShapeFunctions kind, Pass pass, class Space, class Law>
-void visit_groups_as(TilePass<pass, Space, Law, SingleNode>& in) {
-  constexpr int D = Space::dim;
+template <ShapeFunctions kind, Pass pass, class Geometry, class Law>
+void visit_groups_as(TilePass<pass, Geometry, Law, SingleNode>& in) {
+  constexpr int D = Geometry::dim;
   const auto last = static_cast<std::size_t>(in.tile.last_group);
   for (auto g = static_cast<std::size_t>(in.tile.first_group); g < last;) {
     std::array<GroupPair, pairs_at_once> pairs;
@@ -186,8 +186,8 @@ void visit_groups_as(TilePass<pass, Space, Law, SingleNode>& in) {
       move_batch<kind>(in, Batch(pairs.data(), n));
   }
 }
-template <Pass pass, class Space, class Law>
-void visit_groups(TilePass<pass, Space, Law, SingleNode>& in) {
+template <Pass pass, class Geometry, class Law>
+void visit_groups(TilePass<pass, Geometry, Law, SingleNode>& in) {
   if (in.frame.kind == ShapeFunctions::gimp)
     visit_groups_as<ShapeFunctions::gimp>(in);
   else

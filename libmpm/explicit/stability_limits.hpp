@@ -2,7 +2,7 @@
 
 // How long an explicit step may be.
 //
-// A field of velocities on the controls, v = phi(t) e with e an eigenvector of the lumped pencil (K_1, M),
+// A field of velocities on the nodes, v = phi(t) e with e an eigenvector of the lumped pencil (K_1, M),
 // K_1 the stiffness of unit viscosity (or of unit bulk modulus) and M the mass of unit density, decays at the
 // rate eta/rho kappa/h^2 under a viscosity eta and rings at the angular frequency sqrt(K/rho chi)/h under a
 // bulk modulus K; kappa and chi are eigenvalues on cells of size 1. One step multiplies the decay by 1 - dt
@@ -18,11 +18,11 @@
 // grid or flat walls at its ends: the worst of the patches in tests/libmpm/test_explicit_limits.cpp, which
 // computes them. Inside an endless body kappa is 2 for stretching (the spline's 3/2 times 4/3); free corners
 // raise it to 4, and where the concrete slides along a wall the open end of the spline does, to 5.4. chi is
-// largest at free corners, whose controls have little mass: 4.2 for splines, 5.9 for GIMP. The way from the
+// largest at free corners, whose nodes have little mass: 4.2 for splines, 5.9 for GIMP. The way from the
 // grid to the points and back leaves such a mode a share p of its velocity, and the second condition becomes
 // omega^2 dt^2 < 2 (1 + p); chi is taken by a third larger, for p down to 1/2.
 //
-// A point that shares its controls with no other rings faster than a body: chi is the sum of h^2 over the
+// A point that shares its nodes with no other rings faster than a body: chi is the sum of h^2 over the
 // second moment of its weights in each direction, up to 24 (GIMP, in space). These limits are not its own:
 // strays may run away at 0.4 to 0.7 h/sqrt(K/rho) (tests/verification/explicit.md).
 

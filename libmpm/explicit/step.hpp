@@ -13,18 +13,18 @@ namespace tremie {
 namespace detail {
 
 /// A pass over the points for repeat_passes: `of_block(block)` makes the velocities that it reads.
-template <Pass pass, class Space, class Law, class OfBlock>
-auto controls_to_points(bool controls_done, OfBlock of_block, PointsPass<pass, Space, Law>& of_tile) {
+template <Pass pass, class Geometry, class Law, class OfBlock>
+auto controls_to_points(bool controls_done, OfBlock of_block, PointsPass<pass, Geometry, Law>& of_tile) {
   return GridPass{controls_done, [of_block](int block, int) { of_block(static_cast<std::size_t>(block)); },
                   [&of_tile](int tile, int step) { of_tile(tile, step); }};
 }
 
-/// A pass over the points, with the velocities that the controls have.
-template <Pass pass, class Space, class Law>
+/// A pass over the points, with the velocities that the nodes have.
+template <Pass pass, class Geometry, class Law>
 PassSums pass_over_points(const Mix& mix, const Law& law, const ExplicitSettings& settings,
-                          const PassInput& input, ExplicitState<Space>& state) {
+                          const PassInput& input, ExplicitState<Geometry>& state) {
   const auto no_change = [](std::size_t) {};
-  PointsPass<pass, Space, Law> of_tile{mix, law, settings, input, state};
+  PointsPass<pass, Geometry, Law> of_tile{mix, law, settings, input, state};
   run_passes(state.grid, controls_to_points(true, no_change, of_tile));
   return of_tile.sums(0);
 }
@@ -33,15 +33,15 @@ PassSums pass_over_points(const Mix& mix, const Law& law, const ExplicitSettings
 
 /// Sorts the body's points into tiles and brings their mass, momentum and first stresses to the grid.
 /// body.points is empty from here to the next write_back.
-template <class Space, class Law>
-ExplicitState<Space> start_explicit(Body<Space>& body, const Law& law, const ExplicitSettings& settings,
-                                    const Shape<Space::dim>& shape) {
-  ExplicitState<Space> state;
+template <class Geometry, class Law>
+ExplicitState<Geometry> start_explicit(Body<Geometry>& body, const Law& law, const ExplicitSettings& settings,
+                                    const Shape<Geometry::dim>& shape) {
+  ExplicitState<Geometry> state;
   state.shape = shape;
   state.grid.axes = body.grid.axes;
   state.grid.single = settings.single_precision;
   for (double lambda : body.points.lambda) state.lambda_max = std::max(state.lambda_max, lambda);
-  take_points<Space::dim>(body.points, !settings.transfer.flip, settings.keep_shear_rates, state.points);
+  take_points<Geometry::dim>(body.points, !settings.transfer.flip, settings.keep_shear_rates, state.points);
   detail::sort_points(settings, state);
   detail::choose_next_step(body, law, settings, state);
   look_into_wall_cells(state);
@@ -51,18 +51,18 @@ ExplicitState<Space> start_explicit(Body<Space>& body, const Law& law, const Exp
   else
     detail::pass_over_points<detail::first_momenta>(body.mix, law, settings, input, state);
   if (!settings.keep_affine)
-    for (std::vector<Octet>& C : state.points.C) give_back(C);
+    for (std::vector<Octet>& C : state.points.C) release(C);
   return state;
 }
 
 /// Updates the stress last (USL): the velocities at the end of a step deform and move the points. Points to
 /// grid for the step to come happens in the same pass, with the impulses that the new stresses give in it.
 /// Returns the sums of each of n steps: one where there is a wall, or the points must be sorted.
-template <class Space, class Law>
-std::vector<detail::PassSums> stress_last(Body<Space>& body, const Law& law, const ExplicitSettings& settings,
-                                          const RigidWall<Space::dim>& wall, double dt, int n,
-                                          ExplicitState<Space>& state) {
-  const Vec<Space::dim> pull = dt * body.gravity, none = Vec<Space::dim>::Zero();
+template <class Geometry, class Law>
+std::vector<detail::PassSums> stress_last(Body<Geometry>& body, const Law& law, const ExplicitSettings& settings,
+                                          const RigidWall<Geometry::dim>& wall, double dt, int n,
+                                          ExplicitState<Geometry>& state) {
+  const Vec<Geometry::dim> pull = dt * body.gravity, none = Vec<Geometry::dim>::Zero();
   const double friction = settings.friction_coefficient;
   // Momentum balance on the grid; the stresses' impulses are in the momenta, but for FLIP.
   const auto velocities = [&](std::size_t block) {
@@ -76,7 +76,7 @@ std::vector<detail::PassSums> stress_last(Body<Space>& body, const Law& law, con
   if (sort) detail::sort_points(settings, state);
   look_into_wall_cells(state);
   // Grid to points, stress, motion, points to grid.
-  detail::PointsPass<detail::whole_pass, Space, Law> whole{body.mix, law, settings, {dt, state.next_dt},
+  detail::PointsPass<detail::whole_pass, Geometry, Law> whole{body.mix, law, settings, {dt, state.next_dt},
                                                            state,    n};
   repeat_passes(state.grid, n, detail::controls_to_points(all_at_once, velocities, whole));
   std::vector<detail::PassSums> sums;
@@ -86,12 +86,12 @@ std::vector<detail::PassSums> stress_last(Body<Space>& body, const Law& law, con
 
 /// Updates the stress first (USF), the paper's order: with the points' velocities as the grid has them before
 /// the forces act. Sums and n as in stress_last.
-template <class Space, class Law>
-std::vector<detail::PassSums> stress_first(Body<Space>& body, const Law& law,
+template <class Geometry, class Law>
+std::vector<detail::PassSums> stress_first(Body<Geometry>& body, const Law& law,
                                            const ExplicitSettings& settings,
-                                           const RigidWall<Space::dim>& wall, double dt, int n,
-                                           ExplicitState<Space>& state) {
-  const Vec<Space::dim> pull = dt * body.gravity, none = Vec<Space::dim>::Zero();
+                                           const RigidWall<Geometry::dim>& wall, double dt, int n,
+                                           ExplicitState<Geometry>& state) {
+  const Vec<Geometry::dim> pull = dt * body.gravity, none = Vec<Geometry::dim>::Zero();
   const auto velocities = [&](std::size_t block) {
     detail::velocities_from_sums(body, 0.0, none, block, state);
   };
@@ -108,8 +108,8 @@ std::vector<detail::PassSums> stress_first(Body<Space>& body, const Law& law,
     detail::sort_points(settings, state);
   }
   look_into_wall_cells(state);
-  detail::PointsPass<detail::stress_pass, Space, Law> stress{body.mix, law, settings, {dt, dt}, state, n};
-  detail::PointsPass<detail::motion_pass, Space, Law> motion{body.mix, law, settings, {dt, 0.0}, state, n};
+  detail::PointsPass<detail::stress_pass, Geometry, Law> stress{body.mix, law, settings, {dt, dt}, state, n};
+  detail::PointsPass<detail::motion_pass, Geometry, Law> motion{body.mix, law, settings, {dt, 0.0}, state, n};
   const auto first = detail::controls_to_points(sort, velocities, stress);
   const auto second = detail::controls_to_points(bool{wall}, impulses, motion);
   if (wall) {
@@ -133,22 +133,22 @@ namespace detail {
 /// How many steps may follow each other, at most `most`, before points must be sorted or cells at walls
 /// looked into, if they move no more than twice as far in each as in the last. Points that are faster all of
 /// a sudden are sorted late, and those that leave what their tile sees fail.
-template <class Space>
-int steps_in_a_row(const ExplicitSettings& settings, const ExplicitState<Space>& state, bool wall,
+template <class Geometry>
+int steps_in_a_row(const ExplicitSettings& settings, const ExplicitState<Geometry>& state, bool wall,
                    std::int64_t most) {
   if (wall || settings.fixed_dt != state.next_dt || should_sort(state) || state.holding.drift >= hold_drift)
     return 1;
   const double left = std::min(drift_allowed - state.drift, hold_drift - state.holding.drift);
   const double steps = left / std::max(2.0 * state.farthest, 1e-300);
   return static_cast<int>(
-      std::clamp(static_cast<double>(std::min<std::int64_t>(most, TileGrid<Space::dim>::most_times)), 1.0,
+      std::clamp(static_cast<double>(std::min<std::int64_t>(most, TileGrid<Geometry::dim>::most_times)), 1.0,
                  std::max(1.0, steps)));
 }
 
 /// The step to come, with what is known of the last.
-template <class Space, class Law>
-ExplicitReport begin_step(const Body<Space>& body, const Law& law, const ExplicitSettings& settings,
-                          ExplicitState<Space>& state) {
+template <class Geometry, class Law>
+ExplicitReport begin_step(const Body<Geometry>& body, const Law& law, const ExplicitSettings& settings,
+                          ExplicitState<Geometry>& state) {
   ExplicitReport report;
   report.dt = state.next_dt;
   report.limits = state.limits;
@@ -157,9 +157,9 @@ ExplicitReport begin_step(const Body<Space>& body, const Law& law, const Explici
   return report;
 }
 
-template <class Space>
-void end_step(const ExplicitSettings& settings, const PassSums& sums, Body<Space>& body,
-              ExplicitState<Space>& state, ExplicitReport& report) {
+template <class Geometry>
+void end_step(const ExplicitSettings& settings, const PassSums& sums, Body<Geometry>& body,
+              ExplicitState<Geometry>& state, ExplicitReport& report) {
   body.time += report.dt;
   body.dt = report.dt;
   report.max_speed = state.max_speed = std::sqrt(sums.speed2);
@@ -176,11 +176,11 @@ void end_step(const ExplicitSettings& settings, const PassSums& sums, Body<Space
 
 /// Advances the body by up to `most` steps, one or more, and reports on each; where one fails it is the last,
 /// and the points are not to be used. They are left on the tiles: write_back brings them to body.points.
-template <class Space, class Law>
-std::vector<ExplicitReport> explicit_steps(Body<Space>& body, const Law& law,
+template <class Geometry, class Law>
+std::vector<ExplicitReport> explicit_steps(Body<Geometry>& body, const Law& law,
                                            const ExplicitSettings& settings, std::int64_t most,
-                                           ExplicitState<Space>& state,
-                                           const RigidWall<Space::dim>& wall = {}) {
+                                           ExplicitState<Geometry>& state,
+                                           const RigidWall<Geometry::dim>& wall = {}) {
   const int n = detail::steps_in_a_row(settings, state, bool{wall}, most);
   std::vector<ExplicitReport> reports{detail::begin_step(body, law, settings, state)};
   const double dt = reports[0].dt;
@@ -196,9 +196,9 @@ std::vector<ExplicitReport> explicit_steps(Body<Space>& body, const Law& law,
 }
 
 /// One step.
-template <class Space, class Law>
-ExplicitReport explicit_step(Body<Space>& body, const Law& law, const ExplicitSettings& settings,
-                             ExplicitState<Space>& state, const RigidWall<Space::dim>& wall = {}) {
+template <class Geometry, class Law>
+ExplicitReport explicit_step(Body<Geometry>& body, const Law& law, const ExplicitSettings& settings,
+                             ExplicitState<Geometry>& state, const RigidWall<Geometry::dim>& wall = {}) {
   return explicit_steps(body, law, settings, 1, state, wall).front();
 }
 

@@ -76,7 +76,7 @@ void share_out(TileGrid<D>& grid, int n_threads) {
   grid.passes = 0;
 }
 
-/// Velocities of the controls that were there before.
+/// Velocities of the nodes that were there before.
 template <int D>
 std::vector<BlockNodes<D>> kept(const std::vector<NodeBlock<D>>& old, const std::vector<BlockNodes<D>>& v,
                                 const std::vector<NodeBlock<D>>& blocks) {
@@ -88,7 +88,7 @@ std::vector<BlockNodes<D>> kept(const std::vector<NodeBlock<D>>& old, const std:
 
 }  // namespace detail
 
-/// Lays the grid under these tiles, sorted by `at`, for a crew of n_threads. Velocities of controls that were
+/// Lays the grid under these tiles, sorted by `at`, for a crew of n_threads. Velocities of nodes that were
 /// there are kept.
 template <int D>
 void lay_tiles(TileGrid<D>& grid, std::vector<Tile<D>> tiles, bool flip,

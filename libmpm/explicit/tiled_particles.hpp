@@ -114,7 +114,7 @@ void take_points(Points<D>& points, bool affine, bool rates, LanePoints<D>& lane
       for (std::size_t p = 0; p < n; ++p)
         to[k][p / octet_size][p % octet_size] = detail::entry(from[p], static_cast<int>(k));
     }
-    give_back(from);
+    release(from);
   });
   lanes.id.assign(groups, {});
   for (std::size_t p = 0; p < groups * octet_size; ++p)

@@ -45,12 +45,12 @@ bool near_holding_wall(const std::array<Axis, D>& axes, const Index<D>& tile) {
 }
 
 /// Share of each cell that is concrete, in a box around the tiles near walls.
-template <class Space>
+template <class Geometry>
 class CellFills {
  public:
-  static constexpr int D = Space::dim;
+  static constexpr int D = Geometry::dim;
 
-  CellFills(const ExplicitState<Space>& state) : axes_(state.grid.axes) {
+  CellFills(const ExplicitState<Geometry>& state) : axes_(state.grid.axes) {
     Index<D> high;
     low_.fill(std::numeric_limits<int>::max()), high.fill(std::numeric_limits<int>::min());
     for (const Tile<D>& tile : state.grid.tiles)
@@ -119,7 +119,7 @@ class CellFills {
         full *= a.h;
       }
       Fill& of = fill_[number(cell)];
-      const double share = volume[l] / (full * Space::measure(middle));
+      const double share = volume[l] / (full * Geometry::measure(middle));
       of.share += share;
       of.height += share * place[held_at<D>(axes_, cell).axis];
     }
@@ -134,20 +134,20 @@ class CellFills {
 
 /// What points in a cell at a wall stand for, in units of their own volume: a full cell where it is inside
 /// the body, though not more than twice what the cell on its other side has.
-template <class Space>
-double hold_of(const detail::CellFills<Space>& fills, const std::array<Axis, Space::dim>& axes,
-               const Index<Space::dim>& cell) {
-  const detail::HeldAt wall = detail::held_at<Space::dim>(axes, cell);
+template <class Geometry>
+double hold_of(const detail::CellFills<Geometry>& fills, const std::array<Axis, Geometry::dim>& axes,
+               const Index<Geometry::dim>& cell) {
+  const detail::HeldAt wall = detail::held_at<Geometry::dim>(axes, cell);
   if (wall.into == 0 || fills.at(cell) == 0.0 || !fills.inside(cell)) return 1.0;
-  Index<Space::dim> next = cell;
+  Index<Geometry::dim> next = cell;
   next[wall.axis] += wall.into;
   return std::min(detail::most_hold, std::min(1.0, 2.0 * fills.at(next)) / fills.at(cell));
 }
 
 /// Looks into the cells at walls again where points have moved.
-template <class Space>
-void look_into_wall_cells(ExplicitState<Space>& state) {
-  constexpr int D = Space::dim;
+template <class Geometry>
+void look_into_wall_cells(ExplicitState<Geometry>& state) {
+  constexpr int D = Geometry::dim;
   Holding<D>& holding = state.holding;
   const auto& axes = state.grid.axes;
   if (holding.drift < detail::hold_drift) return;
@@ -157,7 +157,7 @@ void look_into_wall_cells(ExplicitState<Space>& state) {
   bool any = false;
   for (const Axis& a : axes) any = any || detail::holds(a.low) || detail::holds(a.high);
   if (!any) return;
-  const detail::CellFills<Space> fills(state);
+  const detail::CellFills<Geometry> fills(state);
   for (std::size_t t = 0; t < state.grid.tiles.size(); ++t) {
     const Tile<D>& tile = state.grid.tiles[t];
     if (!detail::near_holding_wall<D>(axes, tile.at)) continue;
@@ -172,7 +172,7 @@ void look_into_wall_cells(ExplicitState<Space>& state) {
       one.place.fill(0.5F);
       const detail::HeldAt wall = detail::held_at<D>(axes, cell);
       if (wall.into == 0) continue;
-      one.hold = static_cast<float>(hold_of<Space>(fills, axes, cell));
+      one.hold = static_cast<float>(hold_of<Geometry>(fills, axes, cell));
       one.place[static_cast<std::size_t>(wall.axis)] = static_cast<float>(fills.height(cell));
     }
   }

@@ -12,17 +12,17 @@ namespace tremie {
 
 /// Strain-rate vector q and divergence from L[a][b] = dv_a/dx_b [1/s]; v_0 and x_0 are the first components
 /// of velocity and place, which the hoop rate of the axisymmetric space needs.
-template <class Space, class T>
-void strain_rate_of(const T (&L)[Space::dim][Space::dim], const T& v_0, const T& x_0, T (&q)[Space::n_strain],
+template <class Geometry, class T>
+void strain_rate_of(const T (&L)[Geometry::dim][Geometry::dim], const T& v_0, const T& x_0, T (&q)[Geometry::n_strain],
                     T& divergence) {
   constexpr auto one_over_sqrt3 = static_cast<ScalarOf<T>>(inv_sqrt3);
-  if constexpr (std::is_same_v<Space, Axisymmetric>) {
+  if constexpr (std::is_same_v<Geometry, Axisymmetric>) {
     const T hoop = v_0 / x_0;
     q[0] = L[0][0] - L[1][1];
     q[1] = (L[0][0] + L[1][1] - 2.0 * hoop) * one_over_sqrt3;
     q[2] = L[0][1] + L[1][0];
     divergence = L[0][0] + L[1][1] + hoop;
-  } else if constexpr (Space::dim == 2) {
+  } else if constexpr (Geometry::dim == 2) {
     q[0] = L[0][0] - L[1][1];
     q[1] = (L[0][0] + L[1][1]) * one_over_sqrt3;
     q[2] = L[0][1] + L[1][0];
@@ -39,15 +39,15 @@ void strain_rate_of(const T (&L)[Space::dim][Space::dim], const T& v_0, const T&
 
 /// Stress tensor in the space's plane and hoop stress from the deviatoric stress vector s and a pressure
 /// [Pa].
-template <class Space, class T>
-void stress_tensor_of(const T (&s)[Space::n_strain], const T& pressure, T (&sigma)[Space::dim][Space::dim],
+template <class Geometry, class T>
+void stress_tensor_of(const T (&s)[Geometry::n_strain], const T& pressure, T (&sigma)[Geometry::dim][Geometry::dim],
                       T& hoop) {
   constexpr auto one_over_sqrt3 = static_cast<ScalarOf<T>>(inv_sqrt3);
   sigma[0][0] = s[0] + s[1] * one_over_sqrt3 - pressure;
   sigma[1][1] = s[1] * one_over_sqrt3 - s[0] - pressure;
   sigma[0][1] = sigma[1][0] = s[2];
   hoop = -2 * one_over_sqrt3 * s[1] - pressure;
-  if constexpr (Space::dim == 3) {
+  if constexpr (Geometry::dim == 3) {
     sigma[2][2] = hoop;
     sigma[1][2] = sigma[2][1] = s[3];
     sigma[0][2] = sigma[2][0] = s[4];

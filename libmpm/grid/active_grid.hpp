@@ -47,7 +47,7 @@ struct IndexMap {
   int at(const Index<D>& i) const { return contains(i) ? value[offset(i)] : -1; }
 };
 
-/// A rigid wall that fills whole cells, between faces of the grid that are creases or walls; a sheet where a
+/// A rigid wall that fills whole cells, between faces of the grid that are repeated knots or walls; a sheet where a
 /// low face is also the high one. No concrete enters it.
 template <int D>
 struct Block {
@@ -72,10 +72,10 @@ struct ActiveGrid {
   std::vector<Block<D>> blocks;
 
   std::vector<Index<D>> cell_index;                  ///< of each active cell, in lexicographic order
-  std::vector<std::array<int, n_local>> cell_nodes;  ///< active node of each local control
+  std::vector<std::array<int, n_local>> cell_nodes;  ///< active node of each local node
   std::vector<int> cell_begin;       ///< points order[cell_begin[c] .. cell_begin[c+1]) lie in cell c
   std::vector<int> order;            ///< point numbers sorted by cell, ties in point order
-  std::vector<Index<D>> node_index;  ///< control index of each active node
+  std::vector<Index<D>> node_index;  ///< node index of each active node
   IndexMap<D> cell_map, node_map;    ///< index -> active number
   std::vector<MirrorNode<D>> mirrors;
 
@@ -83,7 +83,7 @@ struct ActiveGrid {
   int n_nodes() const { return static_cast<int>(node_index.size()); }
   Vec<D> node_position(int node) const {
     Vec<D> x;
-    for (int d = 0; d < D; ++d) x[d] = axes[d].control_position(node_index[node][d]);
+    for (int d = 0; d < D; ++d) x[d] = axes[d].node_position(node_index[node][d]);
     return x;
   }
   double cell_size_min() const {
@@ -93,7 +93,7 @@ struct ActiveGrid {
   }
 };
 
-/// Local offset (0, 1 or 2 in each direction) of the k-th control of a cell; the last direction runs fastest.
+/// Local offset (0, 1 or 2 in each direction) of the k-th node of a cell; the last direction runs fastest.
 template <int D>
 constexpr Index<D> local_offset(int k) {
   Index<D> o{};
@@ -101,7 +101,7 @@ constexpr Index<D> local_offset(int k) {
   return o;
 }
 
-/// Shape values and gradients of all controls of a cell at one place.
+/// Shape values and gradients of all nodes of a cell at one place.
 template <int D>
 struct Stencil {
   static constexpr int n = power(3, D);
@@ -139,7 +139,7 @@ Vec<D> local_coordinates(const std::array<Axis, D>& axes, const Index<D>& cell, 
 
 /// The place at the local coordinates s of a cell.
 template <int D>
-Vec<D> cell_place(const std::array<Axis, D>& axes, const Index<D>& cell, const Vec<D>& s) {
+Vec<D> position_in_cell(const std::array<Axis, D>& axes, const Index<D>& cell, const Vec<D>& s) {
   Vec<D> x;
   for (int d = 0; d < D; ++d) x[d] = axes[d].origin + (cell[d] + s[d]) * axes[d].h;
   return x;
@@ -174,7 +174,7 @@ void sort_points_by_cell(ActiveGrid<D>& grid, const std::vector<Index<D>>& cell)
   }
   const auto active = static_cast<std::size_t>(count.size()) -
                       static_cast<std::size_t>(std::count(count.begin(), count.end(), 0));
-  make_room(grid.cell_index, active), grid.cell_index.clear();
+  resize_for_overwrite(grid.cell_index, active), grid.cell_index.clear();
   grid.cell_begin.assign(1, 0);
   for_each_index(grid.cell_map, [&](const Index<D>& i, std::size_t o) {
     if (count[o] == 0) return;
@@ -183,7 +183,7 @@ void sort_points_by_cell(ActiveGrid<D>& grid, const std::vector<Index<D>>& cell)
     grid.cell_begin.push_back(grid.cell_begin.back() + count[o]);
   });
   std::vector<int> next(grid.cell_begin.begin(), grid.cell_begin.end() - 1);
-  make_room(grid.order, cell.size());
+  resize_for_overwrite(grid.order, cell.size());
   for (std::size_t p = 0; p < cell.size(); ++p) {
     const int c = slot[static_cast<std::size_t>(cell_slot[p])];
     grid.order[static_cast<std::size_t>(next[static_cast<std::size_t>(c)]++)] = static_cast<int>(p);
@@ -195,21 +195,21 @@ void number_nodes(ActiveGrid<D>& grid) {
   Index<D> low, high;
   for (int d = 0; d < D; ++d) {
     const Axis& a = grid.axes[d];
-    low[d] = a.periodic ? 0 : a.first_control(grid.cell_map.low[d]);
-    high[d] = a.periodic ? a.n_cells + a.n_creases() - 1
-                         : a.first_control(grid.cell_map.low[d] + grid.cell_map.extent[d] - 1) + 2;
+    low[d] = a.periodic ? 0 : a.first_node(grid.cell_map.low[d]);
+    high[d] = a.periodic ? a.n_cells + a.n_repeated_knots() - 1
+                         : a.first_node(grid.cell_map.low[d] + grid.cell_map.extent[d] - 1) + 2;
   }
   grid.node_map.reset(low, high);
   std::array<std::ptrdiff_t, D> stride;  // of the map
   stride[D - 1] = 1;
   for (int d = D - 1; d > 0; --d) stride[d - 1] = stride[d] * grid.node_map.extent[d];
-  // Calls visit(k, place in the map) for each control of a cell.
-  const auto for_each_control = [&](const Index<D>& cell, auto visit) {
-    std::array<std::array<std::ptrdiff_t, 3>, D> at;  // what each control adds, direction by direction
+  // Calls visit(k, place in the map) for each node of a cell.
+  const auto for_each_local_node = [&](const Index<D>& cell, auto visit) {
+    std::array<std::array<std::ptrdiff_t, 3>, D> at;  // what each node adds, direction by direction
     for (int d = 0; d < D; ++d) {
       const Axis& a = grid.axes[d];
-      const int first = a.first_control(cell[d]);
-      for (int o = 0; o < 3; ++o) at[d][o] = (a.control(first + o) - low[d]) * stride[d];
+      const int first = a.first_node(cell[d]);
+      for (int o = 0; o < 3; ++o) at[d][o] = (a.node(first + o) - low[d]) * stride[d];
     }
     for (int k = 0; k < ActiveGrid<D>::n_local; ++k) {
       const Index<D> o = local_offset<D>(k);
@@ -219,19 +219,19 @@ void number_nodes(ActiveGrid<D>& grid) {
     }
   };
   for (const Index<D>& cell : grid.cell_index)
-    for_each_control(cell, [&](int, std::size_t place) { grid.node_map.value[place] = 0; });
+    for_each_local_node(cell, [&](int, std::size_t place) { grid.node_map.value[place] = 0; });
   const auto& map = grid.node_map.value;
-  make_room(grid.node_index, static_cast<std::size_t>(std::count(map.begin(), map.end(), 0)));
+  resize_for_overwrite(grid.node_index, static_cast<std::size_t>(std::count(map.begin(), map.end(), 0)));
   grid.node_index.clear();
   for_each_index(grid.node_map, [&](const Index<D>& j, std::size_t o) {
     if (grid.node_map.value[o] < 0) return;
     grid.node_map.value[o] = grid.n_nodes();
     grid.node_index.push_back(j);
   });
-  make_room(grid.cell_nodes, grid.cell_index.size());
+  resize_for_overwrite(grid.cell_nodes, grid.cell_index.size());
 #pragma omp parallel for schedule(static)
   for (std::size_t c = 0; c < grid.cell_index.size(); ++c)
-    for_each_control(grid.cell_index[c],
+    for_each_local_node(grid.cell_index[c],
                      [&](int k, std::size_t place) { grid.cell_nodes[c][k] = grid.node_map.value[place]; });
 }
 
@@ -348,8 +348,8 @@ const Block<D>* block_of_node(const ActiveGrid<D>& grid, const Index<D>& node) {
   for (const Block<D>& b : grid.blocks) {
     bool in = true;
     for (int d = 0; d < D; ++d)
-      in = in && node[d] >= grid.axes[d].first_control(b.low[d]) &&
-           node[d] <= grid.axes[d].first_control(b.high[d]);
+      in = in && node[d] >= grid.axes[d].first_node(b.low[d]) &&
+           node[d] <= grid.axes[d].first_node(b.high[d]);
     if (in) return &b;
   }
   return nullptr;

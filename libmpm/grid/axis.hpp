@@ -2,11 +2,11 @@
 
 // One direction of the background grid: cells of size h and quadratic B-splines, three per cell.
 //
-// Cell c covers [origin + c h, origin + (c+1) h] and sees the control values c, c+1, c+2. Control j sits at
+// Cell c covers [origin + c h, origin + (c+1) h] and sees the node values c, c+1, c+2. Node j sits at
 // (j - 1/2) h from the origin (its Greville abscissa), except at a wall, where the knot vector is open: there
-// the end spline is interpolatory, its control sits on the wall and fixing it fixes the velocity on the whole
-// wall. A crease is a face inside the grid with the same property: the velocity may bend there, and one
-// control sits on it, one more than without. At a plane of symmetry the splines are those inside: the control
+// the end spline is interpolatory, its node sits on the wall and fixing it fixes the velocity on the whole
+// wall. A repeated knot is a face inside the grid with the same property: the velocity may bend there, and one
+// node sits on it, one more than without. At a plane of symmetry the splines are those inside: the node
 // behind the plane is the mirror image of the one before it.
 
 #include <array>
@@ -31,7 +31,7 @@ struct Axis {
   FaceKind high = FaceKind::open;
   bool periodic = false;
   int n_cells = 0;                ///< of a periodic axis, or of one with a high wall; otherwise unused
-  std::vector<int> creases = {};  ///< the cells above them, ascending; none at an end of the axis
+  std::vector<int> repeated_knots = {};  ///< the cells above them, ascending; none at an end of the axis
 
   bool wall_low() const { return low != FaceKind::open; }
   bool wall_high() const { return high != FaceKind::open; }
@@ -46,38 +46,38 @@ struct Axis {
     if (wall_high() && c >= n_cells) c = n_cells - 1;
     return c;
   }
-  int n_creases() const { return static_cast<int>(creases.size()); }
-  bool creased(int face) const {
-    for (int f : creases)
+  int n_repeated_knots() const { return static_cast<int>(repeated_knots.size()); }
+  bool repeated(int face) const {
+    for (int f : repeated_knots)
       if (f == face) return true;
     return false;
   }
-  /// The first of the three controls that a cell sees; that of the face below it, if that is a wall or a
-  /// crease.
-  int first_control(int cell) const {
+  /// The first of the three nodes that a cell sees; that of the face below it, if that is a wall or a
+  /// repeated knot.
+  int first_node(int cell) const {
     int j = cell;
-    for (int f : creases) j += f <= cell ? 1 : 0;
+    for (int f : repeated_knots) j += f <= cell ? 1 : 0;
     return j;
   }
-  /// Cell and control index as stored: wrapped on a periodic axis.
+  /// Cell and node index as stored: wrapped on a periodic axis.
   int cell(int c) const { return periodic ? ((c % n_cells) + n_cells) % n_cells : c; }
-  int control(int j) const {
-    const int n = n_cells + n_creases();
+  int node(int j) const {
+    const int n = n_cells + n_repeated_knots();
     return periodic ? ((j % n) + n) % n : j;
   }
   bool on_low_wall(int j) const { return clamped_low() && j == 0; }
-  bool on_high_wall(int j) const { return clamped_high() && j == n_cells + 1 + n_creases(); }
-  /// The control that j, behind a plane of symmetry, is the mirror image of; j itself elsewhere.
+  bool on_high_wall(int j) const { return clamped_high() && j == n_cells + 1 + n_repeated_knots(); }
+  /// The node that j, behind a plane of symmetry, is the mirror image of; j itself elsewhere.
   int mirrored(int j) const {
     if (low == FaceKind::symmetry && j == 0) return 1;
-    if (high == FaceKind::symmetry && j == n_cells + 1 + n_creases()) return j - 1;
+    if (high == FaceKind::symmetry && j == n_cells + 1 + n_repeated_knots()) return j - 1;
     return j;
   }
-  double control_position(int j) const {
+  double node_position(int j) const {
     if (on_low_wall(j)) return origin;
     if (on_high_wall(j)) return origin + length();
     int below = 0;
-    for (int f : creases) {
+    for (int f : repeated_knots) {
       if (j == f + below + 1) return origin + f * h;
       below += j > f + below + 1 ? 1 : 0;
     }
@@ -92,8 +92,8 @@ struct SplineValues {
 
 /// Splines of cell c at the local coordinate s in [0, 1].
 inline SplineValues splines(const Axis& axis, int c, double s) {
-  const bool low = (axis.clamped_low() && c == 0) || axis.creased(c);
-  const bool high = (axis.clamped_high() && c == axis.n_cells - 1) || axis.creased(c + 1);
+  const bool low = (axis.clamped_low() && c == 0) || axis.repeated(c);
+  const bool high = (axis.clamped_high() && c == axis.n_cells - 1) || axis.repeated(c + 1);
   const double t = 1.0 - s, ih = 1.0 / axis.h;
   SplineValues v;
   v.N[0] = low ? t * t : 0.5 * t * t;
@@ -105,7 +105,7 @@ inline SplineValues splines(const Axis& axis, int c, double s) {
   return v;
 }
 
-/// Integral of control j's spline over the cells that exist [m]: its share of the line. Without creases.
+/// Integral of node j's spline over the cells that exist [m]: its share of the line. Without repeated knots.
 inline double spline_integral(const Axis& axis, int j) {
   double share = 1.0;
   if (axis.wall_low()) share = j == 0 ? 1.0 / 3.0 : j == 1 ? 2.0 / 3.0 : share;

@@ -2,10 +2,10 @@
 
 // Adds up at the nodes what cells give them, without locks and with bits that do not depend on the threads.
 //
-// The cells are cut into strips, as many as the body asks for. Each strip adds what its cells give, in their
-// order, to room of its own for the nodes that it sees; then each node adds up its strips, two or three of
-// them. Cells are in lexicographic order, so that a strip sees a range of nodes; where the first axis is
-// periodic the last strip's begins with the first node, and the room of all of them is larger.
+// The cells are cut into chunks, as many as the body asks for. Each chunk adds what its cells give, in their
+// order, to room of its own for the nodes that it sees; then each node adds up its chunks, two or three of
+// them. Cells are in lexicographic order, so that a chunk sees a range of nodes; where the first axis is
+// periodic the last chunk's begins with the first node, and the room of all of them is larger.
 
 #include <algorithm>
 #include <cstddef>
@@ -18,12 +18,12 @@
 
 namespace tremie {
 
-/// Room for what strips of cells give their nodes, four numbers each, in either precision: they are not
+/// Room for what chunks of cells give their nodes, four numbers each, in either precision: they are not
 /// needed at the same time.
-class StripRoom {
+class ReductionBuffer {
  public:
-  void make_room(std::size_t nodes) {
-    tremie::make_room(room_, nodes * 4 * sizeof(double) / sizeof(Line) + 1);
+  void resize_for_overwrite(std::size_t nodes) {
+    tremie::resize_for_overwrite(room_, nodes * 4 * sizeof(double) / sizeof(Line) + 1);
   }
   template <class Scalar>
   Scalar* values() {
@@ -51,40 +51,40 @@ void add_to_node(const Four& value, Scalar* at) {
   std::memcpy(at, &sum, sizeof sum);
 }
 
-class CellStrips {
+class NodeReduction {
  public:
-  /// Cuts the cells of a grid into strips that begin at multiples of `unit`.
+  /// Cuts the cells of a grid into chunks that begin at multiples of `unit`.
   void lay_out(const ActiveGrid<3>& grid, int unit = 1);
 
-  int size() const { return static_cast<int>(strips_.size()); }
-  int first_cell(int strip) const { return strips_[static_cast<std::size_t>(strip)].first_cell; }
-  int last_cell(int strip) const { return strips_[static_cast<std::size_t>(strip)].last_cell; }
-  void make_room(StripRoom& room) const { room.make_room(room_nodes_); }
+  int size() const { return static_cast<int>(reduction_.size()); }
+  int first_cell(int chunk) const { return reduction_[static_cast<std::size_t>(chunk)].first_cell; }
+  int last_cell(int chunk) const { return reduction_[static_cast<std::size_t>(chunk)].last_cell; }
+  void resize_for_overwrite(ReductionBuffer& room) const { room.resize_for_overwrite(room_nodes_); }
 
-  /// Where a strip's nodes are added to: node i at 4 i. Cleared before.
+  /// Where a chunk's nodes are added to: node i at 4 i. Cleared before.
   template <class Scalar>
-  Scalar* clear(int strip, StripRoom& room) const {
-    const Strip& s = strips_[static_cast<std::size_t>(strip)];
+  Scalar* clear(int chunk, ReductionBuffer& room) const {
+    const Chunk& s = reduction_[static_cast<std::size_t>(chunk)];
     Scalar* to = room.values<Scalar>() + 4 * s.place;
     std::fill(to + 4 * std::ptrdiff_t{s.first_node}, to + 4 * std::ptrdiff_t{s.last_node}, Scalar(0));
     return to;
   }
   /// The first n numbers of what node i was given.
   template <class Scalar, int n>
-  Eigen::Matrix<Scalar, n, 1> sum_at(int i, const StripRoom& room) const {
+  Eigen::Matrix<Scalar, n, 1> sum_at(int i, const ReductionBuffer& room) const {
     using Value = Eigen::Matrix<Scalar, n, 1>;
     const Scalar* from = room.values<Scalar>();
     Value sum = Value::Zero();
-    for (auto s = static_cast<std::size_t>(first_strip_[i]); s < strips_.size() && strips_[s].first_node <= i;
+    for (auto s = static_cast<std::size_t>(first_chunk_[i]); s < reduction_.size() && reduction_[s].first_node <= i;
          ++s)
-      sum += Eigen::Map<const Value>(from + 4 * (strips_[s].place + i));
+      sum += Eigen::Map<const Value>(from + 4 * (reduction_[s].place + i));
     return sum;
   }
-  /// Calls give(strip, to) for every strip, which adds what its cells give, and take(node) for every node
+  /// Calls give(chunk, to) for every chunk, which adds what its cells give, and take(node) for every node
   /// when all of them have. To be called by all threads of a parallel region.
   template <class Scalar, class Give, class Take>
-  void sweep_in_region(StripRoom& room, Give give, Take take) const {
-    const int n_nodes = static_cast<int>(first_strip_.size());
+  void sweep_in_region(ReductionBuffer& room, Give give, Take take) const {
+    const int n_nodes = static_cast<int>(first_chunk_.size());
 #pragma omp for schedule(static)
     for (int s = 0; s < size(); ++s) give(s, clear<Scalar>(s, room));
 #pragma omp for schedule(static)
@@ -92,51 +92,51 @@ class CellStrips {
   }
 
  private:
-  static constexpr int least_cells = 256, least_planes = 2, most_strips = 64;
+  static constexpr int least_cells = 256, least_planes = 2, most_chunks = 64;
   /// Cells [first_cell, last_cell), and the nodes [first_node, last_node) around them.
-  struct Strip {
+  struct Chunk {
     int first_cell, last_cell, first_node, last_node;
     std::ptrdiff_t place;  ///< of node 0 in the room, if it were among them
   };
-  std::vector<Strip> strips_;
-  std::vector<int> first_strip_;  ///< that sees each node
-  std::size_t room_nodes_ = 0;    ///< of all strips
+  std::vector<Chunk> reduction_;
+  std::vector<int> first_chunk_;  ///< that sees each node
+  std::size_t room_nodes_ = 0;    ///< of all chunks
 };
 
-/// A power of two strips, so that two, four or eight threads share them evenly.
-inline void CellStrips::lay_out(const ActiveGrid<3>& grid, int unit) {
+/// A power of two chunks, so that two, four or eight threads share them evenly.
+inline void NodeReduction::lay_out(const ActiveGrid<3>& grid, int unit) {
   const int n_cells = grid.n_cells(), n_nodes = grid.n_nodes(), units = (n_cells + unit - 1) / unit;
   int n = 1;
-  while (2 * n <= most_strips && 2 * n * least_cells <= n_cells &&
+  while (2 * n <= most_chunks && 2 * n * least_cells <= n_cells &&
          2 * n * least_planes <= grid.cell_map.extent[0])
     n *= 2;
-  strips_.resize(static_cast<std::size_t>(n));
+  reduction_.resize(static_cast<std::size_t>(n));
 #pragma omp parallel for schedule(static)
   for (int s = 0; s < n; ++s) {
     const auto begin = [&](int k) {
       return std::min(n_cells, unit * static_cast<int>(std::int64_t{units} * k / n));
     };
-    Strip strip{begin(s), begin(s + 1), n_nodes, 0, 0};
-    for (int c = strip.first_cell; c < strip.last_cell; ++c)
+    Chunk chunk{begin(s), begin(s + 1), n_nodes, 0, 0};
+    for (int c = chunk.first_cell; c < chunk.last_cell; ++c)
       for (int i : grid.cell_nodes[static_cast<std::size_t>(c)]) {
-        strip.first_node = std::min(strip.first_node, i);
-        strip.last_node = std::max(strip.last_node, i + 1);
+        chunk.first_node = std::min(chunk.first_node, i);
+        chunk.last_node = std::max(chunk.last_node, i + 1);
       }
-    strips_[static_cast<std::size_t>(s)] = strip;
+    reduction_[static_cast<std::size_t>(s)] = chunk;
   }
-  // Neither end lies behind an earlier strip's, so that the strips of a node follow each other.
-  for (std::size_t s = strips_.size() - 1; s > 0; --s)
-    strips_[s - 1].first_node = std::min(strips_[s - 1].first_node, strips_[s].first_node);
-  for (std::size_t s = 1; s < strips_.size(); ++s)
-    strips_[s].last_node = std::max(strips_[s].last_node, strips_[s - 1].last_node);
-  tremie::make_room(first_strip_, static_cast<std::size_t>(n_nodes));
+  // Neither end lies behind an earlier chunk's, so that the chunks of a node follow each other.
+  for (std::size_t s = reduction_.size() - 1; s > 0; --s)
+    reduction_[s - 1].first_node = std::min(reduction_[s - 1].first_node, reduction_[s].first_node);
+  for (std::size_t s = 1; s < reduction_.size(); ++s)
+    reduction_[s].last_node = std::max(reduction_[s].last_node, reduction_[s - 1].last_node);
+  tremie::resize_for_overwrite(first_chunk_, static_cast<std::size_t>(n_nodes));
   std::ptrdiff_t place = 0;
   int next = 0;
   for (int s = 0; s < n; ++s) {
-    Strip& strip = strips_[static_cast<std::size_t>(s)];
-    strip.place = place - strip.first_node;
-    place += strip.last_node - strip.first_node;
-    for (; next < strip.last_node; ++next) first_strip_[static_cast<std::size_t>(next)] = s;
+    Chunk& chunk = reduction_[static_cast<std::size_t>(s)];
+    chunk.place = place - chunk.first_node;
+    place += chunk.last_node - chunk.first_node;
+    for (; next < chunk.last_node; ++next) first_chunk_[static_cast<std::size_t>(next)] = s;
   }
   room_nodes_ = static_cast<std::size_t>(place);
 }

@@ -3,14 +3,14 @@
 // The grid of the explicit steps: tiles of 4 cells a direction where there is concrete, and nothing
 // elsewhere.
 //
-// A tile's points see the controls 4a - 1 ... 4a + 6 of each direction: its own cells and one more on either
-// side, so that points may drift by a cell before they are sorted again. Controls are kept in blocks, 4b - 1
-// ... 4b + 2; a tile reads exactly 2^D of them. What its points add to the controls goes into the tile's own
+// A tile's points see the nodes 4a - 1 ... 4a + 6 of each direction: its own cells and one more on either
+// side, so that points may drift by a cell before they are sorted again. Nodes are kept in blocks, 4b - 1
+// ... 4b + 2; a tile reads exactly 2^D of them. What its points add to the nodes goes into the tile's own
 // buffer, and each block sums up the buffers of its 2^D tiles in one fixed order: no locks, and the same bits
-// for any number of threads. Points reach about half of the rows that their tile sees (a row: the controls
+// for any number of threads. Points reach about half of the rows that their tile sees (a row: the nodes
 // along the last direction); each tile knows which, and the others are neither cleared nor read nor summed.
 //
-// A pass goes over the blocks, for the velocities of their controls, and over the tiles. A block needs what
+// A pass goes over the blocks, for the velocities of their nodes, and over the tiles. A block needs what
 // its 2^D tiles gave in the pass before, and a tile what is in its 2^D blocks: nobody waits for more than
 // that (passes.hpp).
 
@@ -31,9 +31,9 @@
 namespace tremie {
 
 inline constexpr int tile_cells = 4;
-inline constexpr int tile_span = 2 * tile_cells;  ///< controls that a tile sees in each direction
+inline constexpr int tile_span = 2 * tile_cells;  ///< nodes that a tile sees in each direction
 
-/// One entry a control: components 0 to D-1 a vector, component D the mass, or of velocities 1/mass [1/kg], 0
+/// One entry a node: components 0 to D-1 a vector, component D the mass, or of velocities 1/mass [1/kg], 0
 /// where there is none.
 using NodeLanes [[gnu::vector_size(32)]] = double;
 
@@ -51,7 +51,7 @@ inline NodeLanes in_double(const SingleNode& node) {
 inline void add_to(NodeLanes& node, const NodeLanes& a) { node += a; }
 inline void add_to(SingleNode& node, const NodeLanes& a) { node += __builtin_convertvector(a, SingleNode); }
 
-/// Two controls side by side.
+/// Two nodes side by side.
 using TwoNodes [[gnu::vector_size(64), gnu::may_alias]] = double;
 using TwoSingles [[gnu::vector_size(32), gnu::may_alias]] = float;
 
@@ -62,7 +62,7 @@ inline TwoSingles both(const SingleNode& a, const SingleNode& b) {
   return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
 }
 
-/// A control and the next, from any one on.
+/// A node and the next, from any one on.
 inline TwoNodes load_two(const NodeLanes* from) {
   TwoNodes two;
   std::memcpy(&two, from, sizeof two);
@@ -79,7 +79,7 @@ void store_two(const Two& two, Node* to) {
   std::memcpy(to, &two, sizeof two);
 }
 
-/// Rows of the controls that a tile sees, one bit each; the direction before the last runs fastest.
+/// Rows of the nodes that a tile sees, one bit each; the direction before the last runs fastest.
 using TileRows = std::uint64_t;
 template <int D>
 inline constexpr TileRows all_rows = D == 2 ? (1 << tile_span) - 1 : ~TileRows{0};
@@ -96,10 +96,10 @@ template <int D>
 struct NodeBlock {
   Index<D> at{};
   std::array<int, power(2, D)> tile{};  ///< tiles at - offset; -1: none
-  std::uint64_t on_walls = 0;           ///< its controls on flat walls, one bit each
+  std::uint64_t on_walls = 0;           ///< its nodes on flat walls, one bit each
 };
 
-/// The controls that a tile sees, aligned so that an even one and the next make one vector of eight. In
+/// The nodes that a tile sees, aligned so that an even one and the next make one vector of eight. In
 /// single precision four are taken at once, from any one on: there is room behind the last.
 template <class Node, int n>
 struct alignas(64) NodeCube : std::array<Node, n + (std::is_same_v<Node, SingleNode> ? 4 : 0)> {};
@@ -213,7 +213,7 @@ int row_in_cube(int k, int row) {
   return at;
 }
 
-/// Copies four controls.
+/// Copies four nodes.
 inline void copy_row(const NodeLanes* from, NodeLanes* to) { std::copy_n(from, tile_cells, to); }
 inline void copy_row(const NodeLanes* from, SingleNode* to) {
   Octet low, high;
@@ -222,7 +222,7 @@ inline void copy_row(const NodeLanes* from, SingleNode* to) {
   std::memcpy(to, &row, sizeof row);
 }
 
-/// Copies rows of a tile's blocks into one cube of controls.
+/// Copies rows of a tile's blocks into one cube of nodes.
 template <int D, class Node>
 void read_blocks(const Tile<D>& tile, TileRows rows, const std::vector<BlockNodes<D>>& blocks,
                  NodeCube<Node, power(tile_span, D)>& cube) {
@@ -235,7 +235,7 @@ void read_blocks(const Tile<D>& tile, TileRows rows, const std::vector<BlockNode
   }
 }
 
-/// Four controls of a row.
+/// Four nodes of a row.
 struct FourNodes {
   TwoNodes low = {}, high = {};
 };
@@ -247,7 +247,7 @@ inline void store_row(const FourNodes& four, NodeLanes* to) {
 
 namespace detail {
 
-/// Sums of four controls of a row.
+/// Sums of four nodes of a row.
 struct FourSums {
   FourNodes sum;
   void add(const NodeLanes* row) {
@@ -267,7 +267,7 @@ struct FourSingleSums {
 
 }  // namespace detail
 
-/// Visits rows of a block with the sums over its tiles' buffers: visit(row, totals of its controls). Tile by
+/// Visits rows of a block with the sums over its tiles' buffers: visit(row, totals of its nodes). Tile by
 /// tile and not row by row: whether a tile reaches the next row is anyone's guess, the processor's too.
 template <int D, class Buffer, class Visit>
 void sum_tiles(const TileGrid<D>& grid, const NodeBlock<D>& block, const std::vector<Buffer>& buffers,

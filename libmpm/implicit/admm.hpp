@@ -19,14 +19,14 @@
 namespace tremie {
 
 struct AdmmSettings {
-  double tolerance = 1e-3;  ///< of the stress mismatch, relative to the stresses
+  double tolerance = 1e-3;  ///< of the stress residuals, relative to the stresses
   int max_iterations = 1000;
   double over_relaxation = 1.6;  ///< rho
   double penalty = 3.0;          ///< r / mu
   // Where the linear systems are solved by iteration, in space:
   double penalty_by_iteration = 1.5;  ///< r / mu: softer, for the systems are then better conditioned
   double solve_reduction = 0.5;       ///< of the residual in one solve, in the energy norm
-  double solve_share = 1.0;           ///< of the tolerated mismatch (squared) that a solve may leave
+  double solve_share = 1.0;           ///< of the tolerated residuals (squared) that a solve may leave
   int direct_below = 2000;            ///< unknowns; smaller systems are factorised
   double most_band_operations = 1e9;  ///< of a factor of the pressures' matrix; beyond, by iteration
   double most_bulk_stiffness = 1e4;   ///< K dt over mu + r in a system; the rest by multipliers
@@ -45,12 +45,12 @@ inline constexpr double fastest_rate = 100.0;
 /// A rate at which the concrete is at rest [1/s]: half a millimetre a second over half a decimetre.
 inline constexpr double rate_at_rest = 0.01;
 
-/// Squares of the primal and dual mismatch and of the stress scale, of the rates and of what they miss,
+/// Squares of the primal and dual residuals and of the stress scale, of the rates and of what they miss,
 /// weighted by volume; what the pressures miss, as the energy of a solve [W].
-struct Mismatch {
+struct AdmmResiduals {
   double primal = 0.0, dual = 0.0, scale = 0.0, missed = 0.0, rate = 0.0, volume = 0.0, pressure = 0.0;
 
-  void add(const Mismatch& m) {
+  void add(const AdmmResiduals& m) {
     primal += m.primal, dual += m.dual, scale += m.scale;
     missed += m.missed, rate += m.rate, volume += m.volume, pressure += m.pressure;
   }
@@ -63,25 +63,25 @@ struct Mismatch {
   }
 };
 
-template <class Space, class Law>
-Mismatch update_duals(const YieldProblem<Space>& problem, const Law& law, const AdmmSettings& settings,
-                      double r, const std::vector<Vec<Space::dim>>& v, Duals<Space>& duals) {
-  constexpr int n = power(2, Space::dim);
+template <class Geometry, class Law>
+AdmmResiduals update_stress_and_rate(const YieldProblem<Geometry>& problem, const Law& law, const AdmmSettings& settings,
+                      double r, const std::vector<Vec<Geometry::dim>>& v, AdmmState<Geometry>& admm_state) {
+  constexpr int n = power(2, Geometry::dim);
   const auto& quad = problem.quadrature;
-  std::vector<Mismatch> part(quad.V.size());
+  std::vector<AdmmResiduals> part(quad.V.size());
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < problem.grid.n_cells(); ++c)
     for (int k = 0; k < n; ++k) {
       const double tau_y = quad.tau_y[c][k], V = quad.V[c][k];
-      auto& d = duals.rate[c][k];
-      auto& s = duals.stress[c][k];
+      auto& d = admm_state.rate[c][k];
+      auto& s = admm_state.stress[c][k];
       const auto q = strain_rate(problem, v, c, k);
-      const Vec<Space::n_strain> a =
+      const Vec<Geometry::n_strain> a =
           s + r * (settings.over_relaxation * q + (1.0 - settings.over_relaxation) * d);
       const double a_norm = a.norm();
-      const Vec<Space::n_strain> d_new = a_norm > 0.0
-                                             ? Vec<Space::n_strain>(law.prox(a_norm, tau_y, r) / a_norm * a)
-                                             : Vec<Space::n_strain>(0.0 * a);
+      const Vec<Geometry::n_strain> d_new = a_norm > 0.0
+                                             ? Vec<Geometry::n_strain>(law.prox(a_norm, tau_y, r) / a_norm * a)
+                                             : Vec<Geometry::n_strain>(0.0 * a);
       part[c].primal += V * (r * (q - d_new)).squaredNorm();
       part[c].dual += V * (r * (d_new - d)).squaredNorm();
       part[c].scale += V * std::pow(tau_y + problem.mu * q.norm() + no_stress, 2);
@@ -91,27 +91,27 @@ Mismatch update_duals(const YieldProblem<Space>& problem, const Law& law, const 
       s = a - r * d_new;
       d = d_new;
     }
-  Mismatch sum;
-  for (const Mismatch& m : part) sum.add(m);
+  AdmmResiduals sum;
+  for (const AdmmResiduals& m : part) sum.add(m);
   return sum;
 }
 
 /// Volume of the concrete around each node: an equal share of every cell that it touches [m^3].
-template <class Space>
-std::vector<double> volumes_around_nodes(const YieldProblem<Space>& problem) {
+template <class Geometry>
+std::vector<double> volumes_around_nodes(const YieldProblem<Geometry>& problem) {
   std::vector<double> V(problem.grid.node_index.size(), 0.0);
   for (int c = 0; c < problem.grid.n_cells(); ++c)
-    for (int i : problem.grid.cell_nodes[c]) V[i] += problem.quadrature.V_cell[c] / power(3, Space::dim);
-  fold_mirrors<Space::dim>(problem.grid, V);
+    for (int i : problem.grid.cell_nodes[c]) V[i] += problem.quadrature.V_cell[c] / power(3, Geometry::dim);
+  fold_mirrors<Geometry::dim>(problem.grid, V);
   return V;
 }
 
 /// Mean yield stress [Pa], by volume.
-template <class Space>
-double mean_yield_stress(const YieldProblem<Space>& problem) {
+template <class Geometry>
+double mean_yield_stress(const YieldProblem<Geometry>& problem) {
   double sum = 0.0, volume = 0.0;
   for (int c = 0; c < problem.grid.n_cells(); ++c)
-    for (int k = 0; k < power(2, Space::dim); ++k) {
+    for (int k = 0; k < power(2, Geometry::dim); ++k) {
       sum += problem.quadrature.V[c][k] * problem.quadrature.tau_y[c][k];
       volume += problem.quadrature.V[c][k];
     }
@@ -119,8 +119,8 @@ double mean_yield_stress(const YieldProblem<Space>& problem) {
 }
 
 /// What the inertia of a cell opposes to its shear over a time t, as a viscosity [Pa s]: rho h^2/t.
-template <class Space>
-double inertial_viscosity(const YieldProblem<Space>& problem, double t) {
+template <class Geometry>
+double inertial_viscosity(const YieldProblem<Geometry>& problem, double t) {
   double mass = 0.0, volume = 0.0;
   for (double m : problem.nodes.mass) mass += m;
   for (double V : problem.quadrature.V_cell) volume += V;
@@ -130,25 +130,25 @@ double inertial_viscosity(const YieldProblem<Space>& problem, double t) {
 
 /// The penalty r [Pa s]: a multiple of the viscosity, or the inertia of a cell or the yield stress over the
 /// fastest rate of a test where that is stiffer. A smaller one would hardly move the stresses in an
-/// iteration, and the mismatch r (q - d) would look converged from the start.
-template <class Space>
-double penalty(const YieldProblem<Space>& problem, double viscosities) {
+/// iteration, and the residuals r (q - d) would look converged from the start.
+template <class Geometry>
+double penalty(const YieldProblem<Geometry>& problem, double viscosities) {
   return std::max({viscosities * problem.mu, inertial_viscosity(problem, problem.dt),
                    mean_yield_stress(problem) / fastest_rate});
 }
 
 }  // namespace detail
 
-/// Solves the yield problem by ADMM from the guesses v and duals, which it overwrites with the solution.
-template <class Space, class Law>
-SolveReport solve_admm(YieldProblem<Space>& problem, const Law& law, const AdmmSettings& settings,
-                       BlockSystem<Space::dim>& system, std::vector<Vec<Space::dim>>& v,
-                       Duals<Space>& duals) {
-  constexpr int D = Space::dim;
+/// Solves the yield problem by ADMM from the guesses v and ADMM state, which it overwrites with the solution.
+template <class Geometry, class Law>
+SolveReport solve_admm(YieldProblem<Geometry>& problem, const Law& law, const AdmmSettings& settings,
+                       BlockSystem<Geometry::dim>& system, std::vector<Vec<Geometry::dim>>& v,
+                       AdmmState<Geometry>& admm_state) {
+  constexpr int D = Geometry::dim;
   const double r = detail::penalty(problem, settings.penalty);
   const auto stiffness = [&](int, int) { return problem.mu + r; };
-  const auto stress = [&](int c, int k, const Vec<Space::n_strain>& q) -> Vec<Space::n_strain> {
-    return problem.mu * q + duals.stress[c][k] + r * (q - duals.rate[c][k]);
+  const auto stress = [&](int c, int k, const Vec<Geometry::n_strain>& q) -> Vec<Geometry::n_strain> {
+    return problem.mu * q + admm_state.stress[c][k] + r * (q - admm_state.rate[c][k]);
   };
   const auto factorise = [&] {
     assemble(problem, stiffness, system);
@@ -170,9 +170,9 @@ SolveReport solve_admm(YieldProblem<Space>& problem, const Law& law, const AdmmS
     const bool contact_changed = update_active<D>(problem.contact, problem.grid.cell_nodes, v);
     const bool friction_settled =
         update_friction_admm<D>(problem.friction, v, settings.over_relaxation, settings.tolerance);
-    const auto mismatch = detail::update_duals(problem, law, settings, r, v, duals);
+    const auto residuals = detail::update_stress_and_rate(problem, law, settings, r, v, admm_state);
     if (contact_changed && !factorise()) return report;
-    report.converged = mismatch.within(settings.tolerance) && friction_settled && !contact_changed;
+    report.converged = residuals.within(settings.tolerance) && friction_settled && !contact_changed;
     if (report.converged) break;
   }
   return report;

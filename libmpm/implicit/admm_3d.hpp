@@ -1,7 +1,7 @@
 #pragma once
 
 // admm.hpp's method in space: the same iteration, the linear solves by conjugate gradients that go on from
-// the last ones and are no more exact than the iteration needs, the duals updated a batch of cells at a time.
+// the last ones and are no more exact than the iteration needs, the ADMM state updated a batch of cells at a time.
 
 #include "libmpm/implicit/admm.hpp"
 #include "libmpm/implicit/linear_system_3d.hpp"
@@ -10,38 +10,38 @@ namespace tremie {
 
 namespace detail {
 
-/// Yield stresses and rates by cells become duals, and duals those.
-inline SpaceDuals joined(const Duals<ThreeD>& duals, const Quadrature<ThreeD>& quadrature) {
-  const int n_cells = static_cast<int>(duals.stress.size());
-  SpaceDuals joined = no_duals(n_cells);
+/// Yield stresses and rates by cells become ADMM state, and ADMM state those.
+inline PackedAdmmState pack(const AdmmState<ThreeD>& admm_state, const Quadrature<ThreeD>& quadrature) {
+  const int n_cells = static_cast<int>(admm_state.stress.size());
+  PackedAdmmState joined = zero_admm_state(n_cells);
   for (int c = 0; c < n_cells; ++c)
     for (int k = 0; k < 8; ++k) {
-      SpaceDuals::Batch& b = joined.batch[c / batch_size];
+      PackedAdmmState::Batch& b = joined.batch[c / batch_size];
       b.tau_y[k][c % batch_size] = quadrature.tau_y[c][k];
       for (int j = 0; j < 5; ++j)
-        b.a[k][j][c % batch_size] = duals.stress[c][k][j] + joined.r * duals.rate[c][k][j];
+        b.a[k][j][c % batch_size] = admm_state.stress[c][k][j] + joined.r * admm_state.rate[c][k][j];
     }
   return joined;
 }
 template <class Law>
-Duals<ThreeD> split(const Law& law, const SpaceDuals& joined) {
+AdmmState<ThreeD> unpack(const Law& law, const PackedAdmmState& joined) {
   const int n_cells = static_cast<int>(joined.batch.size()) * batch_size;
-  Duals<ThreeD> duals;
-  duals.stress.resize(n_cells), duals.rate.resize(n_cells);
+  AdmmState<ThreeD> admm_state;
+  admm_state.stress.resize(n_cells), admm_state.rate.resize(n_cells);
   for (int c = 0; c < n_cells; ++c)
     for (int k = 0; k < 8; ++k) {
-      const SpaceDuals::Batch& b = joined.batch[c / batch_size];
-      duals.stress[c][k] = stress_of(law, joined, c, k);
+      const PackedAdmmState::Batch& b = joined.batch[c / batch_size];
+      admm_state.stress[c][k] = stress_of(law, joined, c, k);
       for (int j = 0; j < 5; ++j)
-        duals.rate[c][k][j] = (b.a[k][j][c % batch_size] - duals.stress[c][k][j]) / joined.r;
+        admm_state.rate[c][k][j] = (b.a[k][j][c % batch_size] - admm_state.stress[c][k][j]) / joined.r;
     }
-  return duals;
+  return admm_state;
 }
 
 /// Single precision forgets the viscosity beside a modulus that is millions of times stiffer over a step. The
 /// systems then have no more of it than `most` of K dt over the viscosity eta, and the rest is made up as in
 /// an augmented Lagrangian (Fortin, Glowinski 1983): p = p_offset - K dt div v, and p_offset moves to where p
-/// is what the mix's modulus makes of div v (follow_pressure()).
+/// is what the mix's modulus makes of div v (update_multiplier()).
 inline void lower_modulus(double most, double eta, YieldProblem<ThreeD>& problem) {
   const double ratio = problem.K * problem.dt / eta;
   if (ratio <= most) return;
@@ -51,7 +51,7 @@ inline void lower_modulus(double most, double eta, YieldProblem<ThreeD>& problem
 
 /// Moves the offset of cell c, whose pressure is p, and returns by how much: K_share of what p misses of the
 /// pressure that the mix's modulus makes of the same divergence.
-inline double follow_pressure(int c, double p, YieldProblem<ThreeD>& problem) {
+inline double update_multiplier(int c, double p, YieldProblem<ThreeD>& problem) {
   const double p_0 = problem.quadrature.p[c], before = problem.p_offset[c];
   problem.p_offset[c] = p_0 + (1.0 - problem.K_share) * (p - p_0);
   return problem.p_offset[c] - before;
@@ -67,7 +67,7 @@ inline Lanes<double> pressures_of(int batch, const Lanes<double>& fall, bool upd
     p[l] = problem.offset(std::min(batch * batch_size + l, last)) - fall[l];
   if (problem.p_offset.empty() || !update) return p;
   for (int l = 0, c = batch * batch_size; l < batch_size && c <= last; ++l, ++c) {
-    const double by = follow_pressure(c, p[l], problem);
+    const double by = update_multiplier(c, p[l], problem);
     p[l] += by;
     missed += problem.quadrature.V_cell[c] * by * by / (problem.K_share * problem.K * problem.dt);
   }
@@ -85,7 +85,7 @@ inline double mean_speed(const YieldProblem<ThreeD>& problem) {
 }
 
 /// Viscosities of an iteration [Pa s]: its penalty, and what opposes a rate. In water that is not the
-/// viscosity but the inertia, and r is as large. Measured by the viscosity the mismatch r (q - d) would have
+/// viscosity but the inertia, and r is as large. Measured by the viscosity the residuals r (q - d) would have
 /// to be the smaller the shorter a step is, and none would be short enough to converge. The inertia is that
 /// over the time in which the concrete moves some of a cell, or what a step may miss would grow as it gets
 /// shorter.
@@ -101,23 +101,23 @@ inline IterationViscosities viscosities_of(const YieldProblem<ThreeD>& problem,
           problem.mu + std::max(0.0, inertia - settings.inertia_from * problem.mu)};
 }
 
-/// One pass over the cells at the velocities v: updates the duals and pressures if asked to, adds up the
-/// mismatch, and the forces R of stress, pressure and closed contacts on the nodes.
+/// One pass over the cells at the velocities v: updates the ADMM state and pressures if asked to, adds up the
+/// residuals, and the forces R of stress, pressure and closed contacts on the nodes.
 template <class Law>
-Mismatch pass_over_cells(YieldProblem<ThreeD>& problem, const Law& law, const AdmmSettings& settings,
+AdmmResiduals pass_over_cells(YieldProblem<ThreeD>& problem, const Law& law, const AdmmSettings& settings,
                          const IterationViscosities& viscosities, const std::vector<Vec<3>>& v, bool update,
-                         SpaceSystem& system, SpaceDuals& duals, Eigen::VectorXd& R) {
+                         MatrixFreeSystem& system, PackedAdmmState& admm_state, Eigen::VectorXd& R) {
   const double mu = problem.mu, rho = settings.over_relaxation, bulk = problem.K * problem.dt;
   const auto [r, opposing] = viscosities;
   const auto& quad = problem.quadrature;
   const int last = problem.grid.n_cells() - 1;
-  std::vector<Mismatch> part(duals.batch.size());
+  std::vector<AdmmResiduals> part(admm_state.batch.size());
   R.resize(3 * problem.grid.n_nodes());
   const auto give_batch = [&](int b, double* to) {
-    PlaceTensors<double> G;
+    QuadratureTensors<double> G;
     system.batches.gradients(b, v.data()->data(), G);
     const BatchVolumes<double> vol = batch_volumes(quad, b);
-    SpaceDuals::Batch& own = duals.batch[b];
+    PackedAdmmState::Batch& own = admm_state.batch[b];
     Lanes<double> mean = Lanes<double>::Zero(), missed = mean, moved = mean, scale = mean, rate = mean,
                   volume = mean;
     double missed_p = 0.0;
@@ -127,12 +127,12 @@ Mismatch pass_over_cells(YieldProblem<ThreeD>& problem, const Law& law, const Ad
       Lanes<double> q[5], s[5], d[5], div, stress[5], tau_y;
       strain_at(G, k, q, div);
       for (int l = 0; l < batch_size; ++l) tau_y[l] = quad.tau_y[std::min(b * batch_size + l, last)][k];
-      split_dual(law, own.a[k], own.tau_y[k], duals.r, s, d);
+      unpack_stress_and_rate(law, own.a[k], own.tau_y[k], admm_state.r, s, d);
       if (update) {
         Lanes<double>(&a)[5] = own.a[k];
         Lanes<double> s_new[5], d_new[5];
         for (int j = 0; j < 5; ++j) a[j] = s[j] + r * (rho * q[j] + (1.0 - rho) * d[j]);
-        split_dual(law, a, tau_y, r, s_new, d_new);
+        unpack_stress_and_rate(law, a, tau_y, r, s_new, d_new);
         own.tau_y[k] = tau_y;
         for (int j = 0; j < 5; ++j) {
           missed += vol.V[k] * (q[j] - d_new[j]).square();
@@ -156,32 +156,32 @@ Mismatch pass_over_cells(YieldProblem<ThreeD>& problem, const Law& law, const Ad
                .volume = sum_of(volume),
                .pressure = missed_p};
   };
-  const auto give = [&](int strip, double* to) {
-    for (int b = system.batches.first_batch(strip); b < system.batches.last_batch(strip); ++b)
+  const auto give = [&](int chunk, double* to) {
+    for (int b = system.batches.first_batch(chunk); b < system.batches.last_batch(chunk); ++b)
       give_batch(b, to);
-    for_each_contact(problem.contact, system.batches.strips(), strip, [&](const ContactPoint<3>& c) {
+    for_each_contact(problem.contact, system.batches.reduction(), chunk, [&](const ContactPoint<3>& c) {
       add_at_contact(c, problem.grid.cell_nodes[c.cell],
                      c.stiffness * (c.target - normal_velocity(c, problem.grid.cell_nodes, v)), to);
     });
   };
 #pragma omp parallel
-  system.batches.strips().sweep_in_region<double>(system.forces, give, [&](int i) {
-    R.segment<3>(3 * i) = system.batches.strips().sum_at<double, 3>(i, system.forces);
+  system.batches.reduction().sweep_in_region<double>(system.forces, give, [&](int i) {
+    R.segment<3>(3 * i) = system.batches.reduction().sum_at<double, 3>(i, system.forces);
   });
-  if (update) duals.r = r;
-  Mismatch sum;
-  for (const Mismatch& m : part) sum.add(m);
+  if (update) admm_state.r = r;
+  AdmmResiduals sum;
+  for (const AdmmResiduals& m : part) sum.add(m);
   return sum;
 }
 
 /// Adds all other forces at v to what pass_over_cells() found.
-inline void residual_in_space(const YieldProblem<ThreeD>& problem, const std::vector<Vec<3>>& v,
+inline void residual_3d(const YieldProblem<ThreeD>& problem, const std::vector<Vec<3>>& v,
                               Eigen::VectorXd& R) {
 #pragma omp parallel for schedule(static)
   for (int i = 0; i < problem.grid.n_nodes(); ++i)
     R.segment<3>(3 * i) = problem.nodes.mass[i] / problem.dt * (problem.nodes.v[i] - v[i]) -
                           (problem.drag.empty() ? 0.0 : problem.drag[i]) * v[i] + R.segment<3>(3 * i);
-  add_bound_forces<3>(problem.bound, problem.grid.cell_nodes, v, R);
+  add_penalty_forces<3>(problem.bound, problem.grid.cell_nodes, v, R);
   add_friction_forces_admm<3>(problem.friction, v, R);
   fold_mirrors<3>(problem.grid, R);
   mask(problem.fixed, R);
@@ -191,8 +191,8 @@ inline void residual_in_space(const YieldProblem<ThreeD>& problem, const std::ve
 
 /// solve_admm() in space, without a matrix.
 template <class Law>
-SolveReport solve_admm_in_space(YieldProblem<ThreeD>& problem, const Law& law, const AdmmSettings& settings,
-                                SpaceSystem& system, std::vector<Vec<3>>& v, SpaceDuals& duals) {
+SolveReport solve_admm_3d(YieldProblem<ThreeD>& problem, const Law& law, const AdmmSettings& settings,
+                                MatrixFreeSystem& system, std::vector<Vec<3>>& v, PackedAdmmState& admm_state) {
   const auto viscosities = detail::viscosities_of(problem, settings);
   const double eta = problem.mu + viscosities.r;
   SolveReport report;
@@ -202,22 +202,22 @@ SolveReport solve_admm_in_space(YieldProblem<ThreeD>& problem, const Law& law, c
   // An error e of v that a solve leaves has rates q(e), whose square over the volume is at most its energy
   // (r, A^-1 r), here (r, P^-1 r), over eta, and is worth a stress of eta |q(e)|: no more of either than the
   // iteration tolerates.
-  const auto tolerated_energy = [&](const detail::Mismatch& m) {
+  const auto tolerated_energy = [&](const detail::AdmmResiduals& m) {
     return std::min(std::pow(settings.tolerance, 2) * m.scale / eta, eta * std::pow(m.tolerated_miss(), 2));
   };
   Eigen::VectorXd R;
-  auto mismatch = detail::pass_over_cells(problem, law, settings, viscosities, v, false, system, duals, R);
+  auto residuals = detail::pass_over_cells(problem, law, settings, viscosities, v, false, system, admm_state, R);
   for (; report.iterations < settings.max_iterations; ++report.iterations) {
-    detail::residual_in_space(problem, v, R);
-    const double tolerated = tolerated_energy(mismatch);
+    detail::residual_3d(problem, v, R);
+    const double tolerated = tolerated_energy(residuals);
     const double left = system.solve(
         problem, R, {.reduction = settings.solve_reduction, .enough = settings.solve_share * tolerated}, v);
     const bool contact_changed = update_active<3>(problem.contact, problem.grid.cell_nodes, v);
     const bool friction_settled =
         update_friction_admm<3>(problem.friction, v, settings.over_relaxation, settings.tolerance);
-    mismatch = detail::pass_over_cells(problem, law, settings, viscosities, v, true, system, duals, R);
-    report.converged = mismatch.within(settings.tolerance) && friction_settled && !contact_changed &&
-                       std::max(left, mismatch.pressure) <= std::min(tolerated, tolerated_energy(mismatch));
+    residuals = detail::pass_over_cells(problem, law, settings, viscosities, v, true, system, admm_state, R);
+    report.converged = residuals.within(settings.tolerance) && friction_settled && !contact_changed &&
+                       std::max(left, residuals.pressure) <= std::min(tolerated, tolerated_energy(residuals));
     if (report.converged) break;
   }
   return report;

@@ -16,7 +16,7 @@ namespace tremie {
 
 /// Takes back what points moved beyond a cell in any direction over dt, and slows them down to it.
 template <int D>
-void hold_strays(const std::array<Axis, D>& axes, double dt, Points<D>& points) {
+void hold_detached_particles(const std::array<Axis, D>& axes, double dt, Points<D>& points) {
   for (std::size_t p = 0; p < points.size(); ++p) {
     double cells = 0.0;
     for (int d = 0; d < D; ++d) cells = std::max(cells, std::abs(points.v[p][d]) * dt / axes[d].h);

@@ -18,11 +18,11 @@ namespace tremie::detail {
 
 /// Surface of what stands on the floor of a section (its lowest cells): from there up, where a cell is less
 /// than half full. What hangs on a wall higher up has none.
-template <class Space>
-std::vector<BoundPoint<Space::dim>> surface_of_pool(const ImplicitBody<Space>& body, double dt) {
-  constexpr int D = Space::dim, up = Space::up;
+template <class Geometry>
+std::vector<PenaltyPoint<Geometry::dim>> surface_of_pool(const ImplicitBody<Geometry>& body, double dt) {
+  constexpr int D = Geometry::dim, up = Geometry::up;
   static_assert(D == 2, "a section has one direction across");
-  std::vector<BoundPoint<D>> surface;
+  std::vector<PenaltyPoint<D>> surface;
   const auto& grid = body.grid;
   const double section = grid.axes[0].h * grid.axes[1].h;
   const auto fill = [&](int c) { return body.quadrature.V_cell[c] / section; };
@@ -36,10 +36,10 @@ std::vector<BoundPoint<Space::dim>> surface_of_pool(const ImplicitBody<Space>& b
       if (next < 0) break;
       top = next;
     }
-    for (const Vec<D>& across : {gauss_place<D>(0), gauss_place<D>(power(2, D) - 1)}) {
+    for (const Vec<D>& across : {quadrature_point<D>(0), quadrature_point<D>(power(2, D) - 1)}) {
       Vec<D> s = across;
       s[up] = std::min(1.0, fill(top));
-      BoundPoint<D> point;
+      PenaltyPoint<D> point;
       point.cell = top;
       point.N = stencil<D>(grid.axes, grid.cell_index[top], s).N;
       point.velocity.setZero();

@@ -13,11 +13,11 @@ namespace tremie {
 
 /// Adds what walls inside the grid do to the field x.
 template <class Vector>
-void add_bound_products(const std::vector<BoundPoint<3>>& bound,
+void add_penalty_products(const std::vector<PenaltyPoint<3>>& bound,
                         const std::vector<std::array<int, 27>>& cell_nodes, const Vector& x, Vector& out) {
   using Scalar = typename Vector::Scalar;
   constexpr int stride = node_stride<Scalar>;
-  for (const BoundPoint<3>& b : bound) {
+  for (const PenaltyPoint<3>& b : bound) {
     Vec<3> u = Vec<3>::Zero();
     for (int k = 0; k < 27; ++k)
       u += b.N[k] * x.template segment<3>(stride * cell_nodes[b.cell][k]).template cast<double>();
@@ -56,21 +56,21 @@ inline double normal_velocity(const ContactPoint<3>& c, const std::array<int, 27
   return c.normal.dot(u.head<3>().cast<double>());
 }
 
-/// Calls use(contact) for the closed ones with a moving wall in a strip of cells; they are in the cells'
+/// Calls use(contact) for the closed ones with a moving wall in a chunk of cells; they are in the cells'
 /// order.
 template <class Use>
-void for_each_contact(const std::vector<ContactPoint<3>>& contact, const CellStrips& strips, int strip,
+void for_each_contact(const std::vector<ContactPoint<3>>& contact, const NodeReduction& reduction, int chunk,
                       Use use) {
-  auto c = std::lower_bound(contact.begin(), contact.end(), strips.first_cell(strip),
+  auto c = std::lower_bound(contact.begin(), contact.end(), reduction.first_cell(chunk),
                             [](const ContactPoint<3>& one, int cell) { return one.cell < cell; });
-  for (; c != contact.end() && c->cell < strips.last_cell(strip); ++c)
+  for (; c != contact.end() && c->cell < reduction.last_cell(chunk); ++c)
     if (c->active) use(*c);
 }
 
-inline void add_bound_blocks(const std::vector<BoundPoint<3>>& bound,
+inline void add_penalty_blocks(const std::vector<PenaltyPoint<3>>& bound,
                              const std::vector<std::array<int, 27>>& cell_nodes,
                              std::vector<Mat<3, 3>>& blocks) {
-  for (const BoundPoint<3>& b : bound)
+  for (const PenaltyPoint<3>& b : bound)
     for (int k = 0; k < 27; ++k) blocks[cell_nodes[b.cell][k]] += b.N[k] * b.N[k] * b.stiffness;
 }
 
@@ -91,7 +91,7 @@ inline void invert_blocks(const std::vector<char>& fixed, std::vector<Mat<3, 3>>
 
 /// Strain rate q at place k as ThreeD has it, and the divergence.
 template <class Scalar>
-void strain_at(const PlaceTensors<Scalar>& G, int k, Lanes<Scalar> (&q)[5], Lanes<Scalar>& div) {
+void strain_at(const QuadratureTensors<Scalar>& G, int k, Lanes<Scalar> (&q)[5], Lanes<Scalar>& div) {
   const Lanes<Scalar>&xx = G.g[0][0][k], &yy = G.g[1][1][k], &zz = G.g[2][2][k];
   const Lanes<Scalar> plane = xx + yy;
   q[0] = xx - yy;
@@ -104,7 +104,7 @@ void strain_at(const PlaceTensors<Scalar>& G, int k, Lanes<Scalar> (&q)[5], Lane
 
 /// The tensor whose adjoint is that of the deviatoric stress s, with a pull p in all directions: T = s + p I.
 template <class Scalar>
-void stress_at(const Lanes<Scalar> (&s)[5], const Lanes<Scalar>& p, int k, PlaceTensors<Scalar>& T) {
+void stress_at(const Lanes<Scalar> (&s)[5], const Lanes<Scalar>& p, int k, QuadratureTensors<Scalar>& T) {
   const Lanes<Scalar> half = s[1] * static_cast<Scalar>(inv_sqrt3);
   T.g[0][0][k] = p + half + s[0];
   T.g[1][1][k] = p + half - s[0];
@@ -131,7 +131,7 @@ inline BatchVolumes<double> batch_volumes(const Quadrature<ThreeD>& quad, int ba
   return own;
 }
 
-class SpaceSystem {
+class MatrixFreeSystem {
  public:
   /// Lays out the cells.
   void set_up(YieldProblem<ThreeD>& problem, double most_band_operations);
@@ -143,25 +143,25 @@ class SpaceSystem {
   /// result too.
   void multiply(const YieldProblem<ThreeD>& problem, const Eigen::VectorXf& x, Eigen::VectorXf& out);
   /// Adds A^-1 R to v as conjugate_gradients() does it, (r, P^-1 r) in watts.
-  double solve(const YieldProblem<ThreeD>& problem, const Eigen::VectorXd& R, const SolveGoal& goal,
+  double solve(const YieldProblem<ThreeD>& problem, const Eigen::VectorXd& R, const PcgTolerances& goal,
                std::vector<Vec<3>>& v);
   /// Mean shear rate of every cell over its places, and the volume mean of all [1/s].
   void shear_rates(const YieldProblem<ThreeD>& problem, const std::vector<Vec<3>>& v,
                    std::vector<double>& of_cell, double& mean) const;
 
   /// Gives back the room of a large body until the next set_up(); false if it is none.
-  bool give_back() {
-    if (!preconditioner.give_back()) return false;
+  bool release() {
+    if (!preconditioner.release()) return false;
     batches = {};
     forces = {};
-    tremie::give_back(weights_);
+    tremie::release(weights_);
     free_.resize(0), free_diagonal_.resize(0);
     return true;
   }
 
   CellBatches batches;
-  StripRoom forces;                       ///< room for what strips of cells give their nodes
-  PressurePreconditioner preconditioner;  ///< of the last prepare(); free for others between solves
+  ReductionBuffer forces;                       ///< room for what chunks of cells give their nodes
+  SchurComplementPreconditioner preconditioner;  ///< of the last prepare(); free for others between solves
   long long products = 0;
 
  private:
@@ -179,12 +179,12 @@ class SpaceSystem {
   std::vector<BatchVolumes<float>> weights_;
 };
 
-inline void SpaceSystem::set_up(YieldProblem<ThreeD>& problem, double most_band_operations) {
+inline void MatrixFreeSystem::set_up(YieldProblem<ThreeD>& problem, double most_band_operations) {
   const auto& quad = problem.quadrature;
   batches.lay_out(problem.grid);
   preconditioner.lay_out(problem.grid, most_band_operations);
-  make_room(weights_, static_cast<std::size_t>(batches.n_batches()));
-  batches.strips().make_room(forces);
+  resize_for_overwrite(weights_, static_cast<std::size_t>(batches.n_batches()));
+  batches.reduction().resize_for_overwrite(forces);
 #pragma omp parallel for schedule(static)
   for (int b = 0; b < batches.n_batches(); ++b) {
     const BatchVolumes<double> own = batch_volumes(quad, b);
@@ -193,7 +193,7 @@ inline void SpaceSystem::set_up(YieldProblem<ThreeD>& problem, double most_band_
   }
 }
 
-inline bool SpaceSystem::prepare(YieldProblem<ThreeD>& problem, double eta) {
+inline bool MatrixFreeSystem::prepare(YieldProblem<ThreeD>& problem, double eta) {
   eta_ = eta;
   const int n = problem.grid.n_nodes();
   double trace = 0.0;
@@ -232,7 +232,7 @@ inline bool SpaceSystem::prepare(YieldProblem<ThreeD>& problem, double eta) {
 
 /// Inverse blocks of D at the nodes. A node's own viscous block is V eta (|g|^2 I + g g'/3) with its gradient
 /// g.
-inline std::vector<Mat<3, 3>> SpaceSystem::node_blocks(const YieldProblem<ThreeD>& problem,
+inline std::vector<Mat<3, 3>> MatrixFreeSystem::node_blocks(const YieldProblem<ThreeD>& problem,
                                                        const Eigen::VectorXd& diagonal) const {
   const auto& grid = problem.grid;
   using Symmetric = Eigen::Matrix<double, 8, 1>;  // xx, yy, zz, xy, yz, xz and two zeros, for whole vectors
@@ -244,7 +244,7 @@ inline std::vector<Mat<3, 3>> SpaceSystem::node_blocks(const YieldProblem<ThreeD
     if (done[kind[c]]) continue;
     done[kind[c]] = true;
     for (int k = 0; k < 8; ++k) {
-      const Stencil<3> st = stencil<3>(grid.axes, grid.cell_index[c], gauss_place<3>(k));
+      const Stencil<3> st = stencil<3>(grid.axes, grid.cell_index[c], quadrature_point<3>(k));
       for (int i = 0; i < 27; ++i) {
         const Mat<3, 3> own =
             eta_ * (st.g[i].squaredNorm() * Mat<3, 3>::Identity() + st.g[i] * st.g[i].transpose() / 3.0);
@@ -269,19 +269,19 @@ inline std::vector<Mat<3, 3>> SpaceSystem::node_blocks(const YieldProblem<ThreeD
     for (int k = 0; k < 27; ++k)
       G[grid.cell_nodes[c.cell][k]] += c.stiffness * N[k] * N[k] * c.normal * c.normal.transpose();
   }
-  add_bound_blocks(problem.bound, grid.cell_nodes, G);
+  add_penalty_blocks(problem.bound, grid.cell_nodes, G);
   fold_mirrors(grid, G);
   invert_blocks(problem.fixed, G);
   return G;
 }
 
-inline void SpaceSystem::multiply(const YieldProblem<ThreeD>& problem, const Eigen::VectorXf& x,
+inline void MatrixFreeSystem::multiply(const YieldProblem<ThreeD>& problem, const Eigen::VectorXf& x,
                                   Eigen::VectorXf& out) {
   const auto bulk = static_cast<float>(problem.K * problem.dt), eta = static_cast<float>(eta_);
   ++products;
   out.resize(x.size());
   const auto give_batch = [&](int b, float* to) {
-    PlaceTensors<float> G;
+    QuadratureTensors<float> G;
     batches.gradients(b, x.data(), G);
     const BatchVolumes<float>& v = weights_[b];
     Lanes<float> mean = Lanes<float>::Zero();
@@ -296,21 +296,21 @@ inline void SpaceSystem::multiply(const YieldProblem<ThreeD>& problem, const Eig
     }
     batches.scatter(b, G, to);
   };
-  const auto give = [&](int strip, float* to) {
-    for (int b = batches.first_batch(strip); b < batches.last_batch(strip); ++b) give_batch(b, to);
-    for_each_contact(problem.contact, batches.strips(), strip, [&](const ContactPoint<3>& c) {
+  const auto give = [&](int chunk, float* to) {
+    for (int b = batches.first_batch(chunk); b < batches.last_batch(chunk); ++b) give_batch(b, to);
+    for_each_contact(problem.contact, batches.reduction(), chunk, [&](const ContactPoint<3>& c) {
       const auto& nodes = problem.grid.cell_nodes[c.cell];
       add_at_contact(c, nodes, c.stiffness * normal_velocity(c, nodes, x.data()), to);
     });
   };
 #pragma omp parallel
-  batches.strips().sweep_in_region<float>(forces, give, [&](int i) {
+  batches.reduction().sweep_in_region<float>(forces, give, [&](int i) {
     out.segment<4>(4 * i) =
         free_diagonal_.segment<4>(4 * i).cwiseProduct(x.segment<4>(4 * i)) +
-        free_.segment<4>(4 * i).cwiseProduct(batches.strips().sum_at<float, 4>(i, forces));
+        free_.segment<4>(4 * i).cwiseProduct(batches.reduction().sum_at<float, 4>(i, forces));
   });
   if (!problem.bound.empty()) {
-    add_bound_products(problem.bound, problem.grid.cell_nodes, x, out);
+    add_penalty_products(problem.bound, problem.grid.cell_nodes, x, out);
     for_each_block(out.size(), [&](Eigen::Index i, Eigen::Index size) {
       out.segment(i, size) = out.segment(i, size).cwiseProduct(free_.segment(i, size));
     });
@@ -318,8 +318,8 @@ inline void SpaceSystem::multiply(const YieldProblem<ThreeD>& problem, const Eig
   fold_mirrors<3, 4>(problem.grid, out);
 }
 
-inline double SpaceSystem::solve(const YieldProblem<ThreeD>& problem, const Eigen::VectorXd& R,
-                                 const SolveGoal& goal, std::vector<Vec<3>>& v) {
+inline double MatrixFreeSystem::solve(const YieldProblem<ThreeD>& problem, const Eigen::VectorXd& R,
+                                 const PcgTolerances& goal, std::vector<Vec<3>>& v) {
   const int n = problem.grid.n_nodes();
   Eigen::VectorXf r(4 * n), x;
 #pragma omp parallel for schedule(static)
@@ -336,13 +336,13 @@ inline double SpaceSystem::solve(const YieldProblem<ThreeD>& problem, const Eige
   return left;
 }
 
-inline void SpaceSystem::shear_rates(const YieldProblem<ThreeD>& problem, const std::vector<Vec<3>>& v,
+inline void MatrixFreeSystem::shear_rates(const YieldProblem<ThreeD>& problem, const std::vector<Vec<3>>& v,
                                      std::vector<double>& of_cell, double& mean) const {
   of_cell.resize(batches.n_cells());
   std::vector<double> sum(batches.n_batches()), volume(batches.n_batches());
 #pragma omp parallel for schedule(static)
   for (int b = 0; b < batches.n_batches(); ++b) {
-    PlaceTensors<double> G;
+    QuadratureTensors<double> G;
     batches.gradients(b, v.data()->data(), G);
     const BatchVolumes<double> volumes = batch_volumes(problem.quadrature, b);
     Lanes<double> total = Lanes<double>::Zero(), weighted = total, V = total;

@@ -23,8 +23,8 @@ struct NewtonSettings {
 
 namespace detail {
 
-template <class Space, class Law>
-double energy(const YieldProblem<Space>& problem, const Law& law, const std::vector<Vec<Space::dim>>& v) {
+template <class Geometry, class Law>
+double energy(const YieldProblem<Geometry>& problem, const Law& law, const std::vector<Vec<Geometry::dim>>& v) {
   const auto& quad = problem.quadrature;
   double sum = 0.0;
   for (int i = 0; i < problem.grid.n_nodes(); ++i)
@@ -32,19 +32,19 @@ double energy(const YieldProblem<Space>& problem, const Law& law, const std::vec
   for (int c = 0; c < problem.grid.n_cells(); ++c) {
     const double div = divergence(problem, v, c);
     sum += quad.V_cell[c] * div * (0.5 * problem.K * problem.dt * div - problem.offset(c));
-    for (int k = 0; k < power(2, Space::dim); ++k) {
+    for (int k = 0; k < power(2, Geometry::dim); ++k) {
       const auto q = strain_rate(problem, v, c, k);
-      const double gamma_dot = q.norm(), excess = excess_divergence<Space>(q, div);
+      const double gamma_dot = q.norm(), excess = excess_divergence<Geometry>(q, div);
       sum +=
           quad.V[c][k] * (0.5 * problem.mu * gamma_dot * gamma_dot +
                           law.potential(gamma_dot, quad.tau_y[c][k]) + 0.5 * problem.zeta * excess * excess);
     }
   }
   for (std::size_t i = 0; i < problem.drag.size(); ++i) sum += 0.5 * problem.drag[i] * v[i].squaredNorm();
-  return sum + bound_energy<Space::dim>(problem.bound, problem.grid.cell_nodes, v) +
-         bound_energy<Space::dim>(problem.surface, problem.grid.cell_nodes, v) +
-         contact_energy<Space::dim>(problem.contact, problem.grid.cell_nodes, v) +
-         friction_energy<Space::dim>(problem.friction, v);
+  return sum + penalty_energy<Geometry::dim>(problem.bound, problem.grid.cell_nodes, v) +
+         penalty_energy<Geometry::dim>(problem.surface, problem.grid.cell_nodes, v) +
+         contact_energy<Geometry::dim>(problem.contact, problem.grid.cell_nodes, v) +
+         friction_energy<Geometry::dim>(problem.friction, v);
 }
 
 /// The dual's share of the tangent, kept inside |s| <= f so that the tangent stays positive.
@@ -55,50 +55,50 @@ Mat<N, N> primal_dual_tangent(const Law& law, double mu, double tau_y, const Vec
   return (mu + secant) * Mat<N, N>::Identity() + 0.5 * factor * (s * q.transpose() + q * s.transpose());
 }
 
-/// Full Newton step of the duals along dv, projected to the largest stress the yield part can carry.
-template <class Space, class Law>
-void step_duals(const YieldProblem<Space>& problem, const Law& law, const std::vector<Vec<Space::dim>>& v,
-                const std::vector<Vec<Space::dim>>& dv, Duals<Space>& duals) {
+/// Full Newton step of the ADMM state along dv, projected to the largest stress the yield part can carry.
+template <class Geometry, class Law>
+void step_dual_stress(const YieldProblem<Geometry>& problem, const Law& law, const std::vector<Vec<Geometry::dim>>& v,
+                const std::vector<Vec<Geometry::dim>>& dv, AdmmState<Geometry>& admm_state) {
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < problem.grid.n_cells(); ++c)
-    for (int k = 0; k < power(2, Space::dim); ++k) {
+    for (int k = 0; k < power(2, Geometry::dim); ++k) {
       const double tau_y = problem.quadrature.tau_y[c][k];
       const auto q = strain_rate(problem, v, c, k), dq = strain_rate(problem, dv, c, k);
       const double gamma_dot = q.norm(), secant = law.secant(gamma_dot, tau_y);
       const double factor = secant > 0.0 ? law.slope(gamma_dot, tau_y) / secant : 0.0;
-      auto& s = duals.stress[c][k];
+      auto& s = admm_state.stress[c][k];
       s = secant * (q + dq) + factor * q.dot(dq) * s;
       const double size = s.norm();
       if (size > tau_y) s *= tau_y / size;
     }
 }
 
-/// Brings the duals that are carried over from the last step inside what this one can carry: beyond it the
+/// Brings the ADMM state that are carried over from the last step inside what this one can carry: beyond it the
 /// tangent is not positive.
-template <class Space>
-void project_duals(YieldProblem<Space>& problem, Duals<Space>& duals) {
+template <class Geometry>
+void project_dual_stress(YieldProblem<Geometry>& problem, AdmmState<Geometry>& admm_state) {
   const auto inside = [](auto& s, double limit) {
     const double size = s.norm();
     if (size > limit) s *= limit / size;
   };
   for (int c = 0; c < problem.grid.n_cells(); ++c)
-    for (int k = 0; k < power(2, Space::dim); ++k) inside(duals.stress[c][k], problem.quadrature.tau_y[c][k]);
+    for (int k = 0; k < power(2, Geometry::dim); ++k) inside(admm_state.stress[c][k], problem.quadrature.tau_y[c][k]);
   for (auto& f : problem.friction) inside(f.force, f.limit);
 }
 
 }  // namespace detail
 
-/// Solves the yield problem by primal-dual Newton from the guesses v and duals, which it overwrites.
-template <class Space, class Law>
-SolveReport solve_newton(YieldProblem<Space>& problem, const Law& law, const NewtonSettings& settings,
-                         double force_scale, BlockSystem<Space::dim>& system, std::vector<Vec<Space::dim>>& v,
-                         Duals<Space>& duals) {
-  constexpr int D = Space::dim;
-  const auto stress = [&](int c, int k, const Vec<Space::n_strain>& q) -> Vec<Space::n_strain> {
+/// Solves the yield problem by primal-dual Newton from the guesses v and ADMM state, which it overwrites.
+template <class Geometry, class Law>
+SolveReport solve_newton(YieldProblem<Geometry>& problem, const Law& law, const NewtonSettings& settings,
+                         double force_scale, BlockSystem<Geometry::dim>& system, std::vector<Vec<Geometry::dim>>& v,
+                         AdmmState<Geometry>& admm_state) {
+  constexpr int D = Geometry::dim;
+  const auto stress = [&](int c, int k, const Vec<Geometry::n_strain>& q) -> Vec<Geometry::n_strain> {
     return (problem.mu + law.secant(q.norm(), problem.quadrature.tau_y[c][k])) * q;
   };
   SolveReport report;
-  detail::project_duals(problem, duals);
+  detail::project_dual_stress(problem, admm_state);
   std::vector<Vec<D>> step(v.size()), trial(v.size());
   for (; report.iterations < settings.max_iterations; ++report.iterations) {
     update_active<D>(problem.contact, problem.grid.cell_nodes, v);
@@ -111,9 +111,9 @@ SolveReport solve_newton(YieldProblem<Space>& problem, const Law& law, const New
     assemble(
         problem,
         [&](int c, int k) {
-          return detail::primal_dual_tangent<Law, Space::n_strain>(
+          return detail::primal_dual_tangent<Law, Geometry::n_strain>(
               law, problem.mu, problem.quadrature.tau_y[c][k], strain_rate(problem, v, c, k),
-              duals.stress[c][k]);
+              admm_state.stress[c][k]);
         },
         system);
     for (const FrictionNode<D>& f : problem.friction)
@@ -123,7 +123,7 @@ SolveReport solve_newton(YieldProblem<Space>& problem, const Law& law, const New
     const Eigen::VectorXd dv = system.solve(R);
     for (std::size_t i = 0; i < v.size(); ++i) step[i] = dv.segment<D>(static_cast<Eigen::Index>(i) * D);
     fill_mirrors<D>(problem.grid, step);
-    detail::step_duals(problem, law, v, step, duals);
+    detail::step_dual_stress(problem, law, v, step, admm_state);
     update_friction_newton<D>(problem.friction, v, dv);
 
     const double slope = R.dot(dv), start = detail::energy(problem, law, v);

@@ -16,7 +16,7 @@
 
 namespace tremie {
 
-struct EvenOut {
+struct ParticleShifting {
   bool on =
       false;  ///< for bodies that flow far; it keeps mass and momentum, angular momentum only to about 1e-6
   double rate = 1.0;  ///< share of a cell's misfill that is mended per unit of shear
@@ -31,10 +31,10 @@ struct CellFill {
 };
 
 /// `gamma_dot`: mean shear rate of every cell [1/s].
-template <class Space>
-CellFill cell_fill(const YieldProblem<Space>& problem, const Points<Space::dim>& points,
-                   const std::vector<double>& gamma_dot, const EvenOut& settings) {
-  constexpr int D = Space::dim;
+template <class Geometry>
+CellFill cell_fill(const YieldProblem<Geometry>& problem, const Points<Geometry::dim>& points,
+                   const std::vector<double>& gamma_dot, const ParticleShifting& settings) {
+  constexpr int D = Geometry::dim;
   const auto& grid = problem.grid;
   double part = 1.0, reach2 = 0.0;
   for (const Axis& a : grid.axes) part *= 0.5 * a.h, reach2 = std::max(reach2, a.h * a.h);
@@ -43,7 +43,7 @@ CellFill cell_fill(const YieldProblem<Space>& problem, const Points<Space::dim>&
   for (int c = 0; c < grid.n_cells(); ++c) {
     double full = 0.0, mass = 0.0, volume = 0.0;
     for (int k = 0; k < power(2, D); ++k)
-      full += part * Space::measure(cell_place<D>(grid.axes, grid.cell_index[c], gauss_place<D>(k)));
+      full += part * Geometry::measure(position_in_cell<D>(grid.axes, grid.cell_index[c], quadrature_point<D>(k)));
     for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
       mass += points.mass[grid.order[i]];
       volume += points.volume(grid.order[i]);
@@ -71,10 +71,10 @@ std::vector<char> held_by_walls(const ActiveGrid<D>& grid) {
 }
 
 /// Forces of the misfill on the nodes.
-template <class Space>
-Eigen::VectorXd fill_forces(const YieldProblem<Space>& problem, const CellFill& cells,
+template <class Geometry>
+Eigen::VectorXd fill_forces(const YieldProblem<Geometry>& problem, const CellFill& cells,
                             const std::vector<char>& fixed) {
-  constexpr int D = Space::dim;
+  constexpr int D = Geometry::dim;
   const auto& grid = problem.grid;
   Eigen::VectorXd R = Eigen::VectorXd::Zero(grid.n_nodes() * D);
   for (int c = 0; c < grid.n_cells(); ++c) {
@@ -88,10 +88,10 @@ Eigen::VectorXd fill_forces(const YieldProblem<Space>& problem, const CellFill& 
 }
 
 /// Nodal displacements [m] that even out the fill of the cells over a step.
-template <class Space>
-std::vector<Vec<Space::dim>> even_out(const YieldProblem<Space>& problem, const CellFill& cells,
-                                      BlockSystem<Space::dim>& system) {
-  constexpr int D = Space::dim, n_local = power(3, D), n_dof = n_local * D;
+template <class Geometry>
+std::vector<Vec<Geometry::dim>> shifting_displacement(const YieldProblem<Geometry>& problem, const CellFill& cells,
+                                      BlockSystem<Geometry::dim>& system) {
+  constexpr int D = Geometry::dim, n_local = power(3, D), n_dof = n_local * D;
   const auto& grid = problem.grid;
   const std::vector<char> fixed = held_by_walls<D>(grid);
   const Eigen::VectorXd R = fill_forces(problem, cells, fixed);
@@ -107,9 +107,9 @@ std::vector<Vec<Space::dim>> even_out(const YieldProblem<Space>& problem, const 
   for (int i = 0; i < grid.n_nodes(); ++i)
     for (int d = 0; d < D; ++d) system.add_diagonal(i, d, problem.nodes.mass[i]);
   // Walls inside the grid let nothing through here either.
-  std::vector<BoundPoint<D>> bound = problem.bound;
-  for (BoundPoint<D>& b : bound) b.stiffness *= problem.dt;
-  add_bound_stiffness<D>(bound, system);
+  std::vector<PenaltyPoint<D>> bound = problem.bound;
+  for (PenaltyPoint<D>& b : bound) b.stiffness *= problem.dt;
+  add_penalty_stiffness<D>(bound, system);
   system.fix(fixed);
   std::vector<Vec<D>> u(grid.node_index.size(), Vec<D>::Zero());
   if (!system.factorise()) return u;
@@ -121,7 +121,7 @@ std::vector<Vec<Space::dim>> even_out(const YieldProblem<Space>& problem, const 
 
 namespace detail {
 
-/// Value of a nodal field in cell c, of which u are the controls, at the local coordinates s.
+/// Value of a nodal field in cell c, of which u are the nodes, at the local coordinates s.
 template <int D>
 Vec<D> value_at(const ActiveGrid<D>& grid, int c, const std::array<Vec<D>, power(3, D)>& u, const Vec<D>& s) {
   const Stencil<D> st = stencil<D>(grid.axes, grid.cell_index[c], s);

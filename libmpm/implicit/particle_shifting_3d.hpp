@@ -1,6 +1,6 @@
 #pragma once
 
-// even_out.hpp's displacements in space. The mass is diagonal there, so that the preconditioner M + B' C B of
+// particle_shifting.hpp's displacements in space. The mass is diagonal there, so that the preconditioner M + B' C B of
 // pressure_preconditioner.hpp is the matrix itself, but for walls inside the grid and its single precision:
 // one or two iterations.
 
@@ -17,10 +17,10 @@ struct EveningMatrix {
   const std::vector<double>& stiffness;  ///< C, of the cells
   const std::vector<char>& fixed;
   const CellBatches& batches;
-  const PressureRows& rows;
+  const DivergenceOperator& rows;
   std::vector<Quadrature<ThreeD>::DivergenceRows> b;  ///< as many as there are different ones
   std::vector<double> mass;                           ///< of the nodes
-  std::vector<BoundPoint<3>> bound;
+  std::vector<PenaltyPoint<3>> bound;
 
   void make_rows() {
     b.resize(rows.n_rows());
@@ -58,7 +58,7 @@ struct EveningMatrix {
 #pragma omp parallel for schedule(static)
     for (int i = 0; i < grid.n_nodes(); ++i)
       out.segment<3>(3 * i) = push(i, pull, mass[i] * x.segment<3>(3 * i));
-    add_bound_products(bound, grid.cell_nodes, x, out);
+    add_penalty_products(bound, grid.cell_nodes, x, out);
     fold_mirrors<3>(grid, out);
     mask(fixed, out);
   }
@@ -66,30 +66,30 @@ struct EveningMatrix {
 
 }  // namespace detail
 
-inline std::vector<Vec<3>> even_out_in_space(const YieldProblem<ThreeD>& problem, const CellFill& cells,
-                                             SpaceSystem& system) {
+inline std::vector<Vec<3>> shifting_displacement_3d(const YieldProblem<ThreeD>& problem, const CellFill& cells,
+                                             MatrixFreeSystem& system) {
   const auto& grid = problem.grid;
-  PressurePreconditioner& preconditioner = system.preconditioner;  // its room: the step's solve is done
+  SchurComplementPreconditioner& preconditioner = system.preconditioner;  // its room: the step's solve is done
   const std::vector<char> fixed = held_by_walls<3>(grid);
   detail::EveningMatrix matrix{problem, cells.stiffness, fixed, system.batches, preconditioner.rows(), {},
                                {},      problem.bound};
   double trace = 0.0;
   for (double m : problem.nodes.mass) trace = std::max(trace, 1e-12 * m);
-  make_room(matrix.mass, problem.nodes.mass.size());
+  resize_for_overwrite(matrix.mass, problem.nodes.mass.size());
   for (std::size_t i = 0; i < matrix.mass.size(); ++i)
     matrix.mass[i] = std::max(trace, problem.nodes.mass[i]);
-  for (BoundPoint<3>& wall : matrix.bound) wall.stiffness *= problem.dt;
+  for (PenaltyPoint<3>& wall : matrix.bound) wall.stiffness *= problem.dt;
 
   std::vector<Mat<3, 3>> G(grid.node_index.size());
 #pragma omp parallel for schedule(static)
   for (int i = 0; i < grid.n_nodes(); ++i) G[i] = matrix.mass[i] * Mat<3, 3>::Identity();
-  add_bound_blocks(matrix.bound, grid.cell_nodes, G);
+  add_penalty_blocks(matrix.bound, grid.cell_nodes, G);
   fold_mirrors(grid, G);
   invert_blocks(fixed, G);
   std::vector<Vec<3>> u(grid.node_index.size(), Vec<3>::Zero());
   if (!preconditioner.build(grid, system.batches, problem.quadrature, G, cells.stiffness, fill_stiffness))
     return u;
-  give_back(G);
+  release(G);
   matrix.make_rows();
 
   Eigen::VectorXd R = matrix.forces(cells.misfill), x;

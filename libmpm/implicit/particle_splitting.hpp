@@ -37,7 +37,7 @@ int nearest_beside(const ActiveGrid<D>& grid, const Points<D>& points, const Ind
 
 /// Halves point p; the new half goes to x.
 template <int D>
-void halve_point(Points<D>& points, int p, const Vec<D>& x) {
+void split_particle(Points<D>& points, int p, const Vec<D>& x) {
   points.mass[p] *= 0.5;
   points.V0[p] *= 0.5;
   add_point<D>(points, x, points.mass[p], points.V0[p], points.ln_J[p]);
@@ -54,7 +54,7 @@ void halve_point(Points<D>& points, int p, const Vec<D>& x) {
 /// Puts a point into every cell of a grid that is bounded on all sides, blocks left out; returns how many
 /// were empty. Mass and volume are kept.
 template <int D>
-int refill(const std::array<Axis, D>& axes, const std::vector<Block<D>>& blocks, Points<D>& points) {
+int split_particles(const std::array<Axis, D>& axes, const std::vector<Block<D>>& blocks, Points<D>& points) {
   ActiveGrid<D> grid;
   grid.axes = axes;
   grid.blocks = blocks;
@@ -68,7 +68,7 @@ int refill(const std::array<Axis, D>& axes, const std::vector<Block<D>>& blocks,
     if (grid.cell_map.at(cell) >= 0 || block_of_cell<D>(grid, cell)) return;
     const int p = detail::nearest_beside<D>(grid, points, cell);
     if (p < 0) return;
-    detail::halve_point<D>(points, p, cell_place<D>(axes, cell, Vec<D>(Vec<D>::Constant(0.5))));
+    detail::split_particle<D>(points, p, position_in_cell<D>(axes, cell, Vec<D>(Vec<D>::Constant(0.5))));
     ++empty;
   });
   return empty;

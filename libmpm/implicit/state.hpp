@@ -21,7 +21,7 @@ struct StepSettings {
   AdmmSettings admm;
   NewtonSettings newton;
   Transfer transfer;
-  EvenOut even_out;
+  ParticleShifting particle_shifting;
   std::optional<double> fixed_dt;  ///< [s]; empty: chosen at every step
   double dt_max = 0.1;             ///< [s]
   double time_error = 0.0;         ///< a step beyond dt_max may err by so much, in cells; 0: none goes beyond
@@ -29,12 +29,12 @@ struct StepSettings {
   double time_left = 1e300;        ///< no step goes beyond it [s]
   double cfl = 0.6;                ///< largest move in a step, in cells
   double growth = 1.3;             ///< largest ratio of successive steps
-  double strays = 0.0;             ///< share of the points that may be drops in the air (strays.hpp)
+  double detached = 0.0;             ///< share of the points that may be drops in the air (strays.hpp)
   double friction_coefficient = 0.0;
   bool keep_forces = false;            ///< fill Body::wall_force and Body::dissipation
   double boundary_stiffness = 1000.0;  ///< of walls inside the grid, in m/dt
   double alternating_viscosity = 0.0;  ///< zeta of yield_problem.hpp, in mu; plane strain alone
-  bool fitted_places = false;       ///< stresses of partly filled cells where the points are; sections alone
+  bool cut_cell_rule = false;       ///< stresses of partly filled cells where the points are; sections alone
   bool moving_surface = false;      ///< gravity where the step leaves the free surface; sections alone
   double side_wall_distance = 0.0;  ///< of a width-averaged section [m]; 0: plane strain, no side walls
   double wall_gap = 0.0;            ///< how near a point may come to a rigid wall [m]
@@ -42,16 +42,16 @@ struct StepSettings {
 };
 
 /// A body with what its implicit steps carry over from one to the next.
-template <class Space>
-struct ImplicitBody : Body<Space> {
-  static constexpr int D = Space::dim;
-  Quadrature<Space> quadrature{};
-  Duals<Space> duals{};
+template <class Geometry>
+struct ImplicitBody : Body<Geometry> {
+  static constexpr int D = Geometry::dim;
+  Quadrature<Geometry> quadrature{};
+  AdmmState<Geometry> admm_state{};
   std::vector<FrictionNode<D>> friction{};
-  std::vector<BoundPoint<D>> bound{};  ///< walls inside the grid that touched concrete in the last step
+  std::vector<PenaltyPoint<D>> bound{};  ///< walls inside the grid that touched concrete in the last step
   double time_error = 0.0;             ///< of the last step: its local error, if it was asked for [m]
   BlockSystem<D> system{};
-  std::conditional_t<D == 3, SpaceSystem, Nothing> space_system{};  ///< for large bodies in 3D
+  std::conditional_t<D == 3, MatrixFreeSystem, Nothing> matrix_free{};  ///< for large bodies in 3D
 };
 
 struct StepReport {

@@ -15,58 +15,58 @@
 namespace tremie::detail {
 
 /// Whether the linear systems of a step are solved by iteration: a body in space that is not tiny.
-template <class Space>
-bool by_iteration(const ImplicitBody<Space>& body, const StepSettings& settings) {
-  return Space::dim == 3 && settings.method != YieldMethod::newton &&
-         body.grid.n_nodes() * Space::dim >= settings.admm.direct_below;
+template <class Geometry>
+bool by_iteration(const ImplicitBody<Geometry>& body, const StepSettings& settings) {
+  return Geometry::dim == 3 && settings.method != YieldMethod::newton &&
+         body.grid.n_nodes() * Geometry::dim >= settings.admm.direct_below;
 }
 
-/// Duals of cells that were active before go on from where they were; new cells start unstressed.
-template <class Space>
-void carry_duals(const IndexMap<Space::dim>& old_map, const ActiveGrid<Space::dim>& grid,
-                 Duals<Space>& duals) {
-  Duals<Space> now;
+/// AdmmState of cells that were active before go on from where they were; new cells start unstressed.
+template <class Geometry>
+void carry_over_admm_state(const IndexMap<Geometry::dim>& old_map, const ActiveGrid<Geometry::dim>& grid,
+                 AdmmState<Geometry>& admm_state) {
+  AdmmState<Geometry> now;
   now.stress.resize(grid.cell_index.size());
   now.rate.resize(grid.cell_index.size());
   for (int c = 0; c < grid.n_cells(); ++c) {
     const int old = old_map.value.empty() ? -1 : old_map.at(grid.cell_index[c]);
-    for (int k = 0; k < power(2, Space::dim); ++k) {
+    for (int k = 0; k < power(2, Geometry::dim); ++k) {
       now.stress[c][k].setZero();
       now.rate[c][k].setZero();
       if (old < 0) continue;
-      now.stress[c][k] = duals.stress[old][k];
-      now.rate[c][k] = duals.rate[old][k];
+      now.stress[c][k] = admm_state.stress[old][k];
+      now.rate[c][k] = admm_state.rate[old][k];
     }
   }
-  duals = std::move(now);
+  admm_state = std::move(now);
 }
 
 /// The same in the form that this step's solver takes, which may not be the last one's.
-template <class Space, class Law>
-void carry_duals(const IndexMap<Space::dim>& old_map, const Law& law, const StepSettings& settings,
-                 ImplicitBody<Space>& body) {
-  if constexpr (Space::dim == 3) {
-    Duals<ThreeD>& duals = body.duals;
+template <class Geometry, class Law>
+void carry_over_admm_state(const IndexMap<Geometry::dim>& old_map, const Law& law, const StepSettings& settings,
+                 ImplicitBody<Geometry>& body) {
+  if constexpr (Geometry::dim == 3) {
+    AdmmState<ThreeD>& admm_state = body.admm_state;
     if (by_iteration(body, settings)) {
-      if (!duals.stress.empty()) {
-        const SpaceDuals now = joined(duals, body.quadrature);
-        duals = {};
-        duals.space = now;
+      if (!admm_state.stress.empty()) {
+        const PackedAdmmState now = pack(admm_state, body.quadrature);
+        admm_state = {};
+        admm_state.space = now;
       }
-      duals.space = carried(old_map, body.grid, duals.space);
+      admm_state.space = carried(old_map, body.grid, admm_state.space);
       return;
     }
-    if (!duals.space.empty()) duals = split(law, duals.space);
+    if (!admm_state.space.empty()) admm_state = unpack(law, admm_state.space);
   }
-  carry_duals<Space>(old_map, body.grid, body.duals);
+  carry_over_admm_state<Geometry>(old_map, body.grid, body.admm_state);
 }
 
 /// Stress of the yield part at place k of cell c.
-template <class Space, class Law>
-Vec<Space::n_strain> stress_of(const Law& law, const Duals<Space>& duals, int c, int k) {
-  if constexpr (Space::dim == 3)
-    if (!duals.space.empty()) return stress_of(law, duals.space, c, k);
-  return duals.stress[c][k];
+template <class Geometry, class Law>
+Vec<Geometry::n_strain> stress_of(const Law& law, const AdmmState<Geometry>& admm_state, int c, int k) {
+  if constexpr (Geometry::dim == 3)
+    if (!admm_state.space.empty()) return stress_of(law, admm_state.space, c, k);
+  return admm_state.stress[c][k];
 }
 
 /// Walls at the ends of the axes: which components they prescribe, and where friction acts. Nodes behind a
@@ -113,9 +113,9 @@ void apply_blocks(const ActiveGrid<D>& grid, std::vector<char>& fixed, std::vect
 }
 
 /// ln J of the points from the mean divergence of their cells, the same that the step's pressure used.
-template <class Space>
-void update_volumes(const YieldProblem<Space>& problem, const std::vector<Vec<Space::dim>>& v,
-                    Points<Space::dim>& points) {
+template <class Geometry>
+void update_volumes(const YieldProblem<Geometry>& problem, const std::vector<Vec<Geometry::dim>>& v,
+                    Points<Geometry::dim>& points) {
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < problem.grid.n_cells(); ++c) {
     const double d_ln_J = problem.dt * divergence(problem, v, c);
@@ -125,10 +125,10 @@ void update_volumes(const YieldProblem<Space>& problem, const std::vector<Vec<Sp
 }
 
 /// lambda of every point, equation (3).
-template <class Space>
-void update_flocculation(const ImplicitBody<Space>& body, double dt, Points<Space::dim>& points) {
+template <class Geometry>
+void update_flocculation(const ImplicitBody<Geometry>& body, double dt, Points<Geometry::dim>& points) {
   std::vector<double> gamma_dot;
-  shear_rate_at_points<Space>(body.grid, body.v, points, gamma_dot);
+  shear_rate_at_points<Geometry>(body.grid, body.v, points, gamma_dot);
 #pragma omp parallel for schedule(static)
   for (std::size_t p = 0; p < points.size(); ++p)
     points.lambda[p] = flocculation_step(points.lambda[p], *body.mix.thixotropy, body.mix.tau_0,
@@ -137,20 +137,20 @@ void update_flocculation(const ImplicitBody<Space>& body, double dt, Points<Spac
 }
 
 /// Mean shear rate of every cell over its Gauss places, and the volume mean of all [1/s].
-template <class Space>
-double shear_rates(const YieldProblem<Space>& problem, const StepSettings& settings, const ImplicitBody<Space>& body,
+template <class Geometry>
+double shear_rates(const YieldProblem<Geometry>& problem, const StepSettings& settings, const ImplicitBody<Geometry>& body,
                    std::vector<double>& of_cell) {
   double sum = 0.0, volume = 0.0;
-  if constexpr (Space::dim == 3)
+  if constexpr (Geometry::dim == 3)
     if (by_iteration(body, settings)) {
-      body.space_system.shear_rates(problem, body.v, of_cell, sum);
+      body.matrix_free.shear_rates(problem, body.v, of_cell, sum);
       return sum;
     }
   of_cell.assign(body.grid.cell_index.size(), 0.0);
   for (int c = 0; c < problem.grid.n_cells(); ++c)
-    for (int k = 0; k < power(2, Space::dim); ++k) {
+    for (int k = 0; k < power(2, Geometry::dim); ++k) {
       const double gamma_dot = strain_rate(problem, body.v, c, k).norm();
-      of_cell[c] += gamma_dot / power(2, Space::dim);
+      of_cell[c] += gamma_dot / power(2, Geometry::dim);
       sum += problem.quadrature.V[c][k] * gamma_dot;
       volume += problem.quadrature.V[c][k];
     }
@@ -158,18 +158,18 @@ double shear_rates(const YieldProblem<Space>& problem, const StepSettings& setti
 }
 
 /// Displacements that even out the fill of the cells.
-template <class Space>
-std::vector<Vec<Space::dim>> evening_shift(const YieldProblem<Space>& problem, const StepSettings& settings,
-                                           const std::vector<double>& gamma_dot, ImplicitBody<Space>& body) {
-  const CellFill cells = cell_fill(problem, body.points, gamma_dot, settings.even_out);
-  if constexpr (Space::dim == 3)
-    if (by_iteration(body, settings)) return even_out_in_space(problem, cells, body.space_system);
-  return even_out(problem, cells, body.system);
+template <class Geometry>
+std::vector<Vec<Geometry::dim>> particle_shift(const YieldProblem<Geometry>& problem, const StepSettings& settings,
+                                           const std::vector<double>& gamma_dot, ImplicitBody<Geometry>& body) {
+  const CellFill cells = cell_fill(problem, body.points, gamma_dot, settings.particle_shifting);
+  if constexpr (Geometry::dim == 3)
+    if (by_iteration(body, settings)) return shifting_displacement_3d(problem, cells, body.matrix_free);
+  return shifting_displacement(problem, cells, body.system);
 }
 
 /// Weight and inertia that the residual of a Newton step is measured against [N].
-template <class Space>
-double force_scale(const ImplicitBody<Space>& body, double dt) {
+template <class Geometry>
+double force_scale(const ImplicitBody<Geometry>& body, double dt) {
   double scale = 0.0;
   for (int i = 0; i < body.grid.n_nodes(); ++i)
     scale += body.nodes.mass[i] * (body.gravity.norm() + 1e-3 * body.nodes.v[i].norm() / dt);
@@ -177,31 +177,31 @@ double force_scale(const ImplicitBody<Space>& body, double dt) {
 }
 
 /// Solves with the chosen method; `automatic` is ADMM, and Newton where ADMM does not converge.
-template <class Space, class Law>
-SolveReport solve_yield(YieldProblem<Space>& problem, const Law& law, const StepSettings& settings,
-                        ImplicitBody<Space>& body) {
-  if constexpr (Space::dim == 3)
+template <class Geometry, class Law>
+SolveReport solve_yield(YieldProblem<Geometry>& problem, const Law& law, const StepSettings& settings,
+                        ImplicitBody<Geometry>& body) {
+  if constexpr (Geometry::dim == 3)
     if (by_iteration(body, settings))
-      return solve_admm_in_space(problem, law, settings.admm, body.space_system, body.v, body.duals.space);
+      return solve_admm_3d(problem, law, settings.admm, body.matrix_free, body.v, body.admm_state.space);
   const double scale = force_scale(body, problem.dt);
   body.system.set_pattern(body.grid);
   if (settings.method == YieldMethod::newton)
-    return solve_newton(problem, law, settings.newton, scale, body.system, body.v, body.duals);
-  SolveReport report = solve_admm(problem, law, settings.admm, body.system, body.v, body.duals);
+    return solve_newton(problem, law, settings.newton, scale, body.system, body.v, body.admm_state);
+  SolveReport report = solve_admm(problem, law, settings.admm, body.system, body.v, body.admm_state);
   if (report.converged || settings.method == YieldMethod::admm) return report;
   const int before = report.iterations;
-  report = solve_newton(problem, law, settings.newton, scale, body.system, body.v, body.duals);
+  report = solve_newton(problem, law, settings.newton, scale, body.system, body.v, body.admm_state);
   report.iterations += before;
   return report;
 }
 
 /// Normal forces of the friction nodes from the reactions; returns the relative change of their sum.
-template <class Space, class Law>
-double update_normal_forces(YieldProblem<Space>& problem, const Law& law, double coefficient,
-                            const ImplicitBody<Space>& body) {
-  constexpr int D = Space::dim;
-  const auto stress = [&](int c, int k, const Vec<Space::n_strain>& q) -> Vec<Space::n_strain> {
-    return problem.mu * q + stress_of(law, body.duals, c, k);
+template <class Geometry, class Law>
+double update_normal_forces(YieldProblem<Geometry>& problem, const Law& law, double coefficient,
+                            const ImplicitBody<Geometry>& body) {
+  constexpr int D = Geometry::dim;
+  const auto stress = [&](int c, int k, const Vec<Geometry::n_strain>& q) -> Vec<Geometry::n_strain> {
+    return problem.mu * q + stress_of(law, body.admm_state, c, k);
   };
   const Eigen::VectorXd R = residual(problem, body.v, stress);
   double change = 0.0, sum = 0.0;
@@ -223,12 +223,12 @@ double update_normal_forces(YieldProblem<Space>& problem, const Law& law, double
 
 /// Forces of the flat walls, which balance what is left of every prescribed component, and the dissipated
 /// power.
-template <class Space, class Law>
-void keep_forces(const YieldProblem<Space>& problem, const Law& law, ImplicitBody<Space>& body) {
-  constexpr int D = Space::dim;
+template <class Geometry, class Law>
+void keep_forces(const YieldProblem<Geometry>& problem, const Law& law, ImplicitBody<Geometry>& body) {
+  constexpr int D = Geometry::dim;
   body.dissipation = 0.0;
-  const auto stress = [&](int c, int k, const Vec<Space::n_strain>& q) -> Vec<Space::n_strain> {
-    return problem.mu * q + stress_of(law, body.duals, c, k);
+  const auto stress = [&](int c, int k, const Vec<Geometry::n_strain>& q) -> Vec<Geometry::n_strain> {
+    return problem.mu * q + stress_of(law, body.admm_state, c, k);
   };
   for (int c = 0; c < problem.grid.n_cells(); ++c)
     for (int k = 0; k < power(2, D); ++k) {
@@ -245,9 +245,9 @@ void keep_forces(const YieldProblem<Space>& problem, const Law& law, ImplicitBod
 /// The side walls of a section averaged over the width W: the concrete sticks to them, so they hold each node
 /// with the yield stress and, for the parabola between two plates, the viscous stress 6 mu v / W on both
 /// sides.
-template <class Space>
-void add_side_walls(double W, YieldProblem<Space>& problem) {
-  constexpr int D = Space::dim;
+template <class Geometry>
+void add_side_walls(double W, YieldProblem<Geometry>& problem) {
+  constexpr int D = Geometry::dim;
   const auto& grid = problem.grid;
   std::vector<double> V(grid.node_index.size(), 0.0), limit(grid.node_index.size(), 0.0);
   for (int c = 0; c < grid.n_cells(); ++c)
@@ -274,16 +274,16 @@ void add_side_walls(double W, YieldProblem<Space>& problem) {
 }
 
 /// Friction goes on from the forces of the last step at the same nodes.
-template <class Space>
-void carry_friction(const std::vector<FrictionNode<Space::dim>>& old, const IndexMap<Space::dim>& old_nodes,
-                    const ActiveGrid<Space::dim>& grid, std::vector<FrictionNode<Space::dim>>& friction) {
+template <class Geometry>
+void carry_friction(const std::vector<FrictionNode<Geometry::dim>>& old, const IndexMap<Geometry::dim>& old_nodes,
+                    const ActiveGrid<Geometry::dim>& grid, std::vector<FrictionNode<Geometry::dim>>& friction) {
   std::vector<int> last_at(old_nodes.value.size(),
                            -1);  // by old node: the last of its entries, walls before held nodes
   for (std::size_t k = 0; k < old.size(); ++k) last_at[old[k].node] = static_cast<int>(k);
   for (auto& f : friction) {
     const int node = old_nodes.value.empty() ? -1 : old_nodes.at(grid.node_index[f.node]);
     if (node < 0 || last_at[node] < 0 || old[last_at[node]].normal_axis != f.normal_axis) continue;
-    const FrictionNode<Space::dim>* it = &old[last_at[node]];
+    const FrictionNode<Geometry::dim>* it = &old[last_at[node]];
     if (f.normal_axis >= 0) f.limit = it->limit;
     f.force = it->force;
     f.slip = it->slip;
@@ -291,33 +291,33 @@ void carry_friction(const std::vector<FrictionNode<Space::dim>>& old, const Inde
 }
 
 /// The step's convex problem over dt: inertia with gravity, viscosity and yield, bulk, walls.
-template <class Space>
-void pose(ImplicitBody<Space>& body, const StepSettings& settings, const RigidWall<Space::dim>& wall,
-          const std::vector<Vec<Space::dim>>& v_old, const IndexMap<Space::dim>& old_nodes, double dt,
-          std::optional<YieldProblem<Space>>& posed) {
-  constexpr int D = Space::dim;
+template <class Geometry>
+void pose(ImplicitBody<Geometry>& body, const StepSettings& settings, const RigidWall<Geometry::dim>& wall,
+          const std::vector<Vec<Geometry::dim>>& v_old, const IndexMap<Geometry::dim>& old_nodes, double dt,
+          std::optional<YieldProblem<Geometry>>& posed) {
+  constexpr int D = Geometry::dim;
   body.v = v_old;
   for (std::size_t i = 0; i < v_old.size(); ++i) body.nodes.v[i] = v_old[i] + dt * body.gravity;
-  posed.emplace(YieldProblem<Space>{
+  posed.emplace(YieldProblem<Geometry>{
       body.grid, body.quadrature, body.nodes, dt, body.mix.mu, body.mix.K, {}, {}, {}, {}, {}, {}});
   posed->zeta = settings.alternating_viscosity * body.mix.mu;
   apply_flat_walls<D>(body.grid, body.walls, posed->fixed, posed->friction, body.v);
   apply_blocks<D>(body.grid, posed->fixed, body.v);
   fill_mirrors<D>(body.grid, body.v);
   if (settings.side_wall_distance > 0.0) add_side_walls(settings.side_wall_distance, *posed);
-  posed->bound = find_bound_points(body.grid, body.nodes, body.boundary, dt, settings.boundary_stiffness);
-  if constexpr (D == 2 && requires { Space::up; })
+  posed->bound = find_penalty_points(body.grid, body.nodes, body.boundary, dt, settings.boundary_stiffness);
+  if constexpr (D == 2 && requires { Geometry::up; })
     if (settings.moving_surface) posed->surface = surface_of_pool(body, dt);
-  carry_friction<Space>(body.friction, old_nodes, body.grid, posed->friction);
+  carry_friction<Geometry>(body.friction, old_nodes, body.grid, posed->friction);
   posed->contact = find_contact(body.grid, body.points, wall, body.time + dt, dt, settings.wall_gap,
                                 settings.wall_penalty, body.mix.K);
   update_active<D>(posed->contact, body.grid.cell_nodes, body.v);
 }
 
 /// Solves, with the normal forces of Coulomb friction frozen inside and renewed until they settle.
-template <class Space, class Law>
-SolveReport solve_step(YieldProblem<Space>& problem, const Law& law, const StepSettings& settings,
-                       ImplicitBody<Space>& body) {
+template <class Geometry, class Law>
+SolveReport solve_step(YieldProblem<Geometry>& problem, const Law& law, const StepSettings& settings,
+                       ImplicitBody<Geometry>& body) {
   SolveReport solve = solve_yield(problem, law, settings, body);
   for (int i = 0; i < 20 && !problem.friction.empty(); ++i) {
     if (update_normal_forces(problem, law, settings.friction_coefficient, body) < 0.02) break;
@@ -330,35 +330,35 @@ SolveReport solve_step(YieldProblem<Space>& problem, const Law& law, const StepS
 
 /// Whether the step would carry concrete so many cells or to nowhere: more of it than the share that may be
 /// drops in the air. Nodes with next to no mass do not count: what they do moves no point.
-template <class Space>
-bool runs_away(const ImplicitBody<Space>& body, double share, double dt, double cells = 100.0) {
+template <class Geometry>
+bool runs_away(const ImplicitBody<Geometry>& body, double share, double dt, double cells = 100.0) {
   const double reach = cells * body.grid.cell_size_min();
   double heaviest = 0.0, total = 0.0, gone = 0.0;
   for (double m : body.nodes.mass) heaviest = std::max(heaviest, m), total += m;
   for (std::size_t i = 0; i < body.v.size(); ++i) {
     if (!body.v[i].allFinite()) return true;
     const double m = body.nodes.mass[i];
-    if (Space::advects && m > 1e-3 * heaviest && body.v[i].norm() * dt > reach) gone += m;
+    if (Geometry::advects && m > 1e-3 * heaviest && body.v[i].norm() * dt > reach) gone += m;
   }
   return gone > share * total;
 }
 
 /// Whether a long step carries more than some drops beyond a cell, or anything beyond ten: the speeds that it
 /// was chosen for say nothing of what comes loose in it.
-template <class Space>
-bool starts_to_fall(const ImplicitBody<Space>& body, const StepSettings& settings, double dt) {
-  return runs_away(body, drops, dt, 1.0) || runs_away(body, settings.strays, dt, 10.0);
+template <class Geometry>
+bool starts_to_fall(const ImplicitBody<Geometry>& body, const StepSettings& settings, double dt) {
+  return runs_away(body, detached_share, dt, 1.0) || runs_away(body, settings.detached, dt, 10.0);
 }
 
-/// The duals that another try at a step over dt starts from: those that the step began with; in a large body,
+/// The ADMM state that another try at a step over dt starts from: those that the step began with; in a large body,
 /// where no room is spent on them, what the last try found, or none if that ran away.
-template <class Space>
-void guess_again(const std::optional<Duals<Space>>& first, const StepSettings& settings, double dt,
-                 ImplicitBody<Space>& body) {
+template <class Geometry>
+void guess_again(const std::optional<AdmmState<Geometry>>& first, const StepSettings& settings, double dt,
+                 ImplicitBody<Geometry>& body) {
   if (first)
-    body.duals = *first;
-  else if constexpr (Space::dim == 3)
-    if (runs_away(body, settings.strays, dt)) body.duals.space = no_duals(body.grid.n_cells());
+    body.admm_state = *first;
+  else if constexpr (Geometry::dim == 3)
+    if (runs_away(body, settings.detached, dt)) body.admm_state.space = zero_admm_state(body.grid.n_cells());
 }
 
 }  // namespace tremie::detail

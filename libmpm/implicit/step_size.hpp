@@ -11,7 +11,7 @@
 
 namespace tremie::detail {
 
-inline constexpr double drops = 0.005;  ///< share of the points that may be drops in the air
+inline constexpr double detached_share = 0.005;  ///< share of the points that may be drops in the air
 
 template <int D>
 double max_speed(const Points<D>& points) {
@@ -41,8 +41,8 @@ double local_error(const Points<D>& points, const std::vector<Vec<D>>& v_old, do
 }
 
 /// The longest step: dt_max, or longer where that keeps the local error, which grows with dt^2, small enough.
-template <class Space>
-double longest_dt(const ImplicitBody<Space>& body, const StepSettings& settings) {
+template <class Geometry>
+double longest_dt(const ImplicitBody<Geometry>& body, const StepSettings& settings) {
   const double allowed = settings.time_error * body.grid.cell_size_min();
   if (body.dt == 0.0 || body.time_error == 0.0) return settings.dt_max;
   return std::clamp(body.dt * std::sqrt(allowed / body.time_error), settings.dt_max,
@@ -50,13 +50,13 @@ double longest_dt(const ImplicitBody<Space>& body, const StepSettings& settings)
 }
 
 /// Largest step that keeps every point's move, gravity's pull included, within settings.cfl cells.
-template <class Space>
-double choose_dt(const ImplicitBody<Space>& body, const StepSettings& settings) {
+template <class Geometry>
+double choose_dt(const ImplicitBody<Geometry>& body, const StepSettings& settings) {
   if (settings.fixed_dt) return *settings.fixed_dt;
   double dt = longest_dt(body, settings);
   if (body.dt > 0.0) dt = std::min(dt, settings.growth * body.dt);
-  for (int d = 0; d < Space::dim && Space::advects; ++d) {
-    const double v = speed_of_most(body.points, settings.strays, [&](std::size_t p) {
+  for (int d = 0; d < Geometry::dim && Geometry::advects; ++d) {
+    const double v = speed_of_most(body.points, settings.detached, [&](std::size_t p) {
       return std::abs(body.motion.rate(body.points.x[p], body.points.v[p])[d]);
     });
     const double reach = settings.cfl * body.grid.axes[d].h;

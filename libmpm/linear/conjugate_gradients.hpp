@@ -34,7 +34,7 @@ std::array<double, sizeof...(Others)> block_dots(const Vector& z, const Others&.
   return sum;
 }
 
-struct SolveGoal {
+struct PcgTolerances {
   double reduction = 1e-6;  ///< of the residual's energy norm, the root of (r, P^-1 r)
   double enough = 0.0;      ///< a (r, P^-1 r) that needs no more work
   int most = 500;           ///< iterations
@@ -44,7 +44,7 @@ struct SolveGoal {
 /// multiply(x, out) and precondition(r, z) apply A and P^-1, both symmetric and positive definite; it ends
 /// where rounding makes them seem not to be.
 template <class Vector, class Multiply, class Precondition>
-double conjugate_gradients(Multiply multiply, Precondition precondition, const SolveGoal& goal, Vector& R,
+double conjugate_gradients(Multiply multiply, Precondition precondition, const PcgTolerances& goal, Vector& R,
                            Vector& x) {
   using Scalar = typename Vector::Scalar;
   const Eigen::Index n = R.size();

@@ -17,7 +17,7 @@
 namespace tremie {
 
 template <class Scalar>
-class TwoEndedCholesky {
+class TwistedCholesky {
  public:
   using Vector = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
   using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;

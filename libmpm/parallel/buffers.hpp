@@ -15,12 +15,12 @@ namespace tremie {
 
 /// Gives back what a vector holds; `v = {}` would keep its room.
 template <class T>
-void give_back(std::vector<T>& v) {
+void release(std::vector<T>& v) {
   std::vector<T>().swap(v);
 }
 
 /// Gives the system back what lies free within the heap, some twentieth of a large body's room.
-inline void give_back_free_heap() {
+inline void release_free_heap() {
 #ifdef __GLIBC__
   malloc_trim(0);
 #endif
@@ -40,9 +40,9 @@ inline void ask_for_large_pages([[maybe_unused]] void* block, [[maybe_unused]] s
 
 /// Room for n values that are to be written anew: no more than n, and never the old ones beside the new.
 template <class T>
-void make_room(std::vector<T>& v, std::size_t n) {
+void resize_for_overwrite(std::vector<T>& v, std::size_t n) {
   if (n > v.capacity()) {
-    give_back(v);
+    release(v);
     v.reserve(n);
     ask_for_large_pages(v.data(), n * sizeof(T));
   }

@@ -26,7 +26,7 @@ struct StraightAhead {
   }
 };
 
-template <class Space>
+template <class Geometry>
 struct Motion : StraightAhead {};
 
 /// In circles, by arcs: a point that turns about the axis keeps its radius, whatever the step. The grid may

@@ -9,10 +9,10 @@ namespace tremie {
 
 /// Fills the box [low, high] with points on a regular raster, `n` of them in each direction, where inside(x)
 /// holds. Each carries the volume of its own raster cell and the pressure pressure_at(x) [Pa] at the time 0.
-template <class Space, class Inside, class Pressure>
-void seed_box(const Vec<Space::dim>& low, const Vec<Space::dim>& high, const std::array<int, Space::dim>& n,
-              double density, double K, Inside inside, Pressure pressure_at, Points<Space::dim>& points) {
-  constexpr int D = Space::dim;
+template <class Geometry, class Inside, class Pressure>
+void seed_box(const Vec<Geometry::dim>& low, const Vec<Geometry::dim>& high, const std::array<int, Geometry::dim>& n,
+              double density, double K, Inside inside, Pressure pressure_at, Points<Geometry::dim>& points) {
+  constexpr int D = Geometry::dim;
   Vec<D> spacing;
   std::size_t total = 1;
   for (int d = 0; d < D; ++d) {
@@ -31,7 +31,7 @@ void seed_box(const Vec<Space::dim>& low, const Vec<Space::dim>& high, const std
   for (std::size_t i = 0; i < total; ++i) {
     const Vec<D> x = place(i);
     if (!inside(x)) continue;
-    const double V = spacing.prod() * Space::measure(x);
+    const double V = spacing.prod() * Geometry::measure(x);
     const double ln_J = ln_J_under(pressure_at(x), K);
     add_point<D>(points, x, density * V, V * std::exp(-ln_J), ln_J);
   }

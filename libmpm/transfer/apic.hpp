@@ -27,13 +27,13 @@ struct NodalState {
 
 namespace detail {
 
-/// Positions of a cell's three controls in each direction.
+/// Positions of a cell's three nodes in each direction.
 template <int D>
-std::array<std::array<double, 3>, D> control_positions(const std::array<Axis, D>& axes,
+std::array<std::array<double, 3>, D> node_positions(const std::array<Axis, D>& axes,
                                                        const Index<D>& cell) {
   std::array<std::array<double, 3>, D> xi;
   for (int d = 0; d < D; ++d)
-    for (int k = 0; k < 3; ++k) xi[d][k] = axes[d].control_position(axes[d].first_control(cell[d]) + k);
+    for (int k = 0; k < 3; ++k) xi[d][k] = axes[d].node_position(axes[d].first_node(cell[d]) + k);
   return xi;
 }
 
@@ -117,11 +117,11 @@ void keep_in_domain(const ActiveGrid<D>& grid, const Vec<D>& from, Vec<D>& x) {
 
 namespace detail {
 
-/// Momenta and masses that the points of a cell give its controls.
+/// Momenta and masses that the points of a cell give its nodes.
 template <int D>
 void cell_momenta(const ActiveGrid<D>& grid, const Points<D>& points, int c,
                   std::array<Vec<D + 1>, power(3, D)>& local) {
-  const auto xi = control_positions<D>(grid.axes, grid.cell_index[c]);
+  const auto xi = node_positions<D>(grid.axes, grid.cell_index[c]);
   for (auto& sum : local) sum.setZero();
   for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
     const int p = grid.order[i];
@@ -136,7 +136,7 @@ void cell_momenta(const ActiveGrid<D>& grid, const Points<D>& points, int c,
   }
 }
 inline CellQuads cell_momenta(const ActiveGrid<3>& grid, const Points<3>& points, int c) {
-  const auto xi = control_positions<3>(grid.axes, grid.cell_index[c]);
+  const auto xi = node_positions<3>(grid.axes, grid.cell_index[c]);
   CellQuads sum{};
   for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
     const int p = grid.order[i];
@@ -169,30 +169,30 @@ void add_momenta(const ActiveGrid<D>& grid, const Points<D>& points, NodalState<
       }
   }
 }
-/// In space in strips of cells.
+/// In space in chunks of cells.
 inline void add_momenta(const ActiveGrid<3>& grid, const Points<3>& points, NodalState<3>& nodes) {
-  make_room(nodes.mass, grid.node_index.size());
-  make_room(nodes.v, grid.node_index.size());
-  CellStrips strips;
-  strips.lay_out(grid);
-  StripRoom room;
-  strips.make_room(room);
-  const auto give = [&](int strip, double* to) {
-    for (int c = strips.first_cell(strip); c < strips.last_cell(strip); ++c) {
+  resize_for_overwrite(nodes.mass, grid.node_index.size());
+  resize_for_overwrite(nodes.v, grid.node_index.size());
+  NodeReduction reduction;
+  reduction.lay_out(grid);
+  ReductionBuffer room;
+  reduction.resize_for_overwrite(room);
+  const auto give = [&](int chunk, double* to) {
+    for (int c = reduction.first_cell(chunk); c < reduction.last_cell(chunk); ++c) {
       const CellQuads momenta = cell_momenta(grid, points, c);
       for (std::size_t k = 0; k < 27; ++k)
         add_to_node(momenta[k], to + 4 * std::ptrdiff_t{grid.cell_nodes[c][k]});
     }
   };
 #pragma omp parallel
-  strips.sweep_in_region<double>(room, give, [&](int i) {
-    const Vec<4> sum = strips.sum_at<double, 4>(i, room);
+  reduction.sweep_in_region<double>(room, give, [&](int i) {
+    const Vec<4> sum = reduction.sum_at<double, 4>(i, room);
     nodes.v[i] = sum.head<3>();
     nodes.mass[i] = sum[3];
   });
 }
 
-/// Nodal vectors of the controls of a cell.
+/// Nodal vectors of the nodes of a cell.
 template <int D>
 std::array<Vec<D>, power(3, D)> at_controls(const ActiveGrid<D>& grid, const std::vector<Vec<D>>& v, int c) {
   std::array<Vec<D>, power(3, D)> u;
@@ -203,7 +203,7 @@ inline CellQuads at_controls(const ActiveGrid<3>& grid, const std::vector<Vec<3>
   return of_cell(grid, v, c);
 }
 
-/// What the controls of a cell say of the place of a point: velocity and, column by column, its moments about
+/// What the nodes of a cell say of the place of a point: velocity and, column by column, its moments about
 /// it.
 template <int D>
 void velocity_at(const std::array<Vec<D>, power(3, D)>& u, const PointStencil<D>& st, Vec<D>& vp,
@@ -253,7 +253,7 @@ void grid_to_point(const ActiveGrid<D>& grid, const std::vector<Vec<D>>& v, cons
   points.C.resize(points.size());
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < grid.n_cells(); ++c) {
-    const auto xi = detail::control_positions<D>(grid.axes, grid.cell_index[c]);
+    const auto xi = detail::node_positions<D>(grid.axes, grid.cell_index[c]);
     const auto u = detail::at_controls(grid, v, c);
     for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
       const int p = grid.order[i];
@@ -278,7 +278,7 @@ void affine_from_grid(const ActiveGrid<D>& grid, const std::vector<Vec<D>>& v, P
   points.C.resize(points.size());
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < grid.n_cells(); ++c) {
-    const auto xi = detail::control_positions<D>(grid.axes, grid.cell_index[c]);
+    const auto xi = detail::node_positions<D>(grid.axes, grid.cell_index[c]);
     const auto u = detail::at_controls(grid, v, c);
     for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
       const int p = grid.order[i];
@@ -292,14 +292,14 @@ void affine_from_grid(const ActiveGrid<D>& grid, const std::vector<Vec<D>>& v, P
 }
 
 /// Shear rate [1/s] at every point from the nodal velocities.
-template <class Space>
-void shear_rate_at_points(const ActiveGrid<Space::dim>& grid, const std::vector<Vec<Space::dim>>& v,
-                          const Points<Space::dim>& points, std::vector<double>& gamma_dot) {
-  constexpr int D = Space::dim;
+template <class Geometry>
+void shear_rate_at_points(const ActiveGrid<Geometry::dim>& grid, const std::vector<Vec<Geometry::dim>>& v,
+                          const Points<Geometry::dim>& points, std::vector<double>& gamma_dot) {
+  constexpr int D = Geometry::dim;
   gamma_dot.resize(points.size());
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < grid.n_cells(); ++c) {
-    const auto xi = detail::control_positions<D>(grid.axes, grid.cell_index[c]);
+    const auto xi = detail::node_positions<D>(grid.axes, grid.cell_index[c]);
     const auto u = detail::at_controls(grid, v, c);
     for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
       const int p = grid.order[i];
@@ -313,10 +313,10 @@ void shear_rate_at_points(const ActiveGrid<Space::dim>& grid, const std::vector<
         const Mat<3, 3> rate = L + L.transpose();  // 2 D
         gamma_dot[p] = std::sqrt(0.5 * (rate.squaredNorm() - rate.trace() * rate.trace() / 3.0));
       } else {
-        Vec<Space::n_strain> q = Vec<Space::n_strain>::Zero();
+        Vec<Geometry::n_strain> q = Vec<Geometry::n_strain>::Zero();
         for (int k = 0; k < power(3, D); ++k) {
           const Index<D> o = local_offset<D>(k);
-          q += Space::strain_rows(st.N(o), st.gradient(o), points.x[p]) * u[k];
+          q += Geometry::strain_rows(st.N(o), st.gradient(o), points.x[p]) * u[k];
         }
         gamma_dot[p] = q.norm();
       }

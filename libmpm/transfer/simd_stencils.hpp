@@ -1,6 +1,6 @@
 #pragma once
 
-// Shape functions of eight points at once, and the sums over a point's 3^D controls.
+// Shape functions of eight points at once, and the sums over a point's 3^D nodes.
 
 #include "libmpm/grid/tiles.hpp"
 #include "libmpm/parallel/simd.hpp"
@@ -19,16 +19,16 @@ struct Shape {
   std::array<double, D> half{};  ///< GIMP: half of a point's extent, in cells; at most 1/2
 
   double stencil_shift() const { return kind == ShapeFunctions::gimp ? 0.5 : 0.0; }
-  /// Control that lies on a low wall.
+  /// Node that lies on a low wall.
   int low_wall() const { return kind == ShapeFunctions::gimp ? 1 : 0; }
-  /// Place of a control [m].
-  double control_position(const Axis& axis, int control) const {
-    if (kind == ShapeFunctions::gimp) return axis.origin + (control - 1) * axis.h;
-    return axis.control_position(control);
+  /// Place of a node [m].
+  double node_position(const Axis& axis, int node) const {
+    if (kind == ShapeFunctions::gimp) return axis.origin + (node - 1) * axis.h;
+    return axis.node_position(node);
   }
 };
 
-/// Values, slopes [1/m] and arms times values [m] of eight points' three controls in each direction, and
+/// Values, slopes [1/m] and arms times values [m] of eight points' three nodes in each direction, and
 /// where their stencils begin in the tile's cube.
 template <int D>
 struct Weights {
@@ -104,7 +104,7 @@ template <class Real, class Lanes>
 }
 
 /// u: distance from the nearest corner, in cells. A point whose extent would reach beyond a wall is taken
-/// without extent: linear hats, whose control on the wall sets the velocity of the whole wall.
+/// without extent: linear hats, whose node on the wall sets the velocity of the whole wall.
 template <class Real, class Lanes>
 [[gnu::always_inline]] inline void gimp_weights(const StencilAxisOf<Real>& axis, const Lanes& corner,
                                                 const Lanes& u, Lanes (&w)[3], Lanes (&dw)[3],
@@ -188,7 +188,7 @@ void weigh(const std::array<Axis, D>& axes, const Shape<D>& shape, const Index<D
   weigh<D>(stencil_frame<D>(axes, shape, tile), x, weights);
 }
 
-/// Weights of one point: what the sums below take. n: controls a direction.
+/// Weights of one point: what the sums below take. n: nodes a direction.
 template <int D, int n>
 struct PointWeights {
   static constexpr int n_controls = n;
@@ -238,7 +238,7 @@ template <int D, int n, Wanted wanted, int d = 0, class Node>
   return sum;
 }
 
-/// Adds to every control value times w plus, for each direction e, slope[e] times the gradient's and
+/// Adds to every node value times w plus, for each direction e, slope[e] times the gradient's and
 /// moment[e] times the arm's component e.
 template <int D, int n, int d = 0, class Node>
 [[gnu::always_inline]] inline void scatter(Node* node, const PointWeights<D, n>& p,

@@ -1,9 +1,9 @@
 #pragma once
 
-// Sums over the 3^D controls of eight points at once.
+// Sums over the 3^D nodes of eight points at once.
 //
-// Points whose stencils begin at the same place are gathered side by side: one lane a point, a control's
-// value read once for all. Sums to the grid go point by point, two neighbouring controls in one vector of
+// Points whose stencils begin at the same place are gathered side by side: one lane a point, a node's
+// value read once for all. Sums to the grid go point by point, two neighbouring nodes in one vector of
 // eight.
 
 #include "libmpm/transfer/simd_stencils.hpp"
@@ -50,7 +50,7 @@ struct GatheredLanes {
 
 /// Component c at eight points whose stencils all begin at `node`; otherwise as gather() for one point. The
 /// weights of a direction add up to 1, and their slopes and first moments to 0: the differences of the outer
-/// controls from the middle one are all that they see.
+/// nodes from the middle one are all that they see.
 template <int D, Wanted wanted, int d = 0>
 [[gnu::always_inline]] inline GatheredLanes<D - d, wanted> gather_together(const NodeLanes* node, int c,
                                                                            const Weights<D>& p) {
@@ -132,7 +132,7 @@ inline void to_rows(const Octet (&column)[4], NodeLanes (&row)[octet_size]) {
   for (std::size_t l = 0; l < octet_size; ++l) row[l] = of_point(four, l);
 }
 
-/// Products of the weights of all directions but the last: those of the rows of controls that a point sees.
+/// Products of the weights of all directions but the last: those of the rows of nodes that a point sees.
 template <int D>
 using RowWeights = std::array<Octet, power(3, D - 1)>;
 
@@ -144,7 +144,7 @@ void multiply_rows(const Weights<D>& weights, RowWeights<D>& rows) {
   }
 }
 
-/// What eight points add to their controls: values, and for each direction d what goes with the gradient's
+/// What eight points add to their nodes: values, and for each direction d what goes with the gradient's
 /// and with the arm's component d, one vector a component. What is not `given` is not read.
 template <int D>
 struct Spread {
@@ -156,7 +156,7 @@ struct Given {
   bool values = true, slopes = true, moments = true;
 };
 
-/// slope[d] times the gradient plus moment[d] times the arm, at the controls k of direction d.
+/// slope[d] times the gradient plus moment[d] times the arm, at the nodes k of direction d.
 template <int D, Given given>
 [[gnu::always_inline]] inline void along_direction(const Weights<D>& weights, const Spread<D>& spread, int d,
                                                    int k, Octet (&along)[D]) {
@@ -167,7 +167,7 @@ template <int D, Given given>
   }
 }
 
-/// What each row of controls gets before the weights of the last direction.
+/// What each row of nodes gets before the weights of the last direction.
 template <int D, Given given>
 void carry_to_rows(const Weights<D>& weights, const Spread<D>& spread,
                    FourAPoint (&carried)[power(3, D - 1)]) {
@@ -194,20 +194,20 @@ void carry_to_rows(const Weights<D>& weights, const Spread<D>& spread,
   }
 }
 
-/// What a group of eight brings to the last direction: along each row, and at each of the three controls.
+/// What a group of eight brings to the last direction: along each row, and at each of the three nodes.
 template <int D>
 struct CarriedRows {
   RowWeights<D> weight;
   FourAPoint value[power(3, D - 1)], along[3];
 };
 
-/// Distance of row r of a stencil from its first control in a tile's cube.
+/// Distance of row r of a stencil from its first node in a tile's cube.
 template <int D>
 constexpr int row_offset(int r) {
   return D == 2 ? r * tile_span : (r / 3 * tile_span + r % 3) * tile_span;
 }
 
-/// Adds points first ... last - 1, whose stencils all begin where that of `first` does, to their controls:
+/// Adds points first ... last - 1, whose stencils all begin where that of `first` does, to their nodes:
 /// the sums stay in registers.
 template <int D>
 [[gnu::always_inline]] inline void add_run(const Weights<D>& weights, const CarriedRows<D>& rows,
@@ -251,7 +251,7 @@ template <int D>
   }
 }
 
-/// Adds what the first n of eight points spread to their controls in the tile's cube; the others spread
+/// Adds what the first n of eight points spread to their nodes in the tile's cube; the others spread
 /// nothing.
 template <int D, Given given>
 void scatter_group(const Weights<D>& weights, const Spread<D>& spread, int n, NodeLanes* sums) {

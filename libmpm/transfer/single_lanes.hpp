@@ -1,6 +1,6 @@
 #pragma once
 
-// Sixteen numbers in single precision as four controls of a row, four entries each, and how the entries of
+// Sixteen numbers in single precision as four nodes of a row, four entries each, and how the entries of
 // sixteen points, one lane a point, come there and back.
 
 #include "libmpm/grid/tiles.hpp"
@@ -11,7 +11,7 @@
 
 namespace tremie::detail {
 
-/// Four controls of a row, from any one on.
+/// Four nodes of a row, from any one on.
 inline Singles load_controls(const SingleNode* from) {
   Singles four;
   std::memcpy(&four, from, sizeof four);
@@ -34,7 +34,7 @@ inline Singles rounded(Singles a) {
   return a;
 }
 
-/// The same control's entries four times; the entries 0 to 3 four times each.
+/// The same node's entries four times; the entries 0 to 3 four times each.
 inline Singles four_times(const SingleNode& a) {
 #ifdef __AVX512F__  // one load; a shuffle would take an arithmetic unit
   return _mm512_maskz_broadcast_f32x4(0xffff, a);

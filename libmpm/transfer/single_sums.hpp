@@ -1,16 +1,16 @@
 #pragma once
 
-// Sums over the 3^D controls of sixteen points in single precision.
+// Sums over the 3^D nodes of sixteen points in single precision.
 //
-// A row of four controls is one vector of sixteen, so that a point reads and adds to its 3^(D-1) rows one
+// A row of four nodes is one vector of sixteen, so that a point reads and adds to its 3^(D-1) rows one
 // vector each, wherever its stencil begins: points of different cells cost what those of one cell do. Shape
 // functions are made for the sixteen points at once, one lane a point.
 //
 // On some processors additions have units of their own, and multiply-adds are what binds: so sums are made of
 // as few of these as there may be. The weights of a direction add up to 1, their slopes to 0, which leaves
-// two numbers of three: slopes are read from differences to the middle control, and of impulses the middle
-// row has what the others leave. (The middle control has half of the weight at least, but for splines next to
-// a wall.) Across the rows moments are read, and momenta given, about the middle control, whose neighbours
+// two numbers of three: slopes are read from differences to the middle node, and of impulses the middle
+// row has what the others leave. (The middle node has half of the weight at least, but for splines next to
+// a wall.) Across the rows moments are read, and momenta given, about the middle node, whose neighbours
 // are a cell away (splines next to a wall: half a cell): each row has one product with its weight, the rest
 // is sums.
 
@@ -26,7 +26,7 @@ enum class WeighedFor {
   giving    ///< scatter_momenta
 };
 
-/// Shape functions of sixteen points at their three controls in each direction, and where their stencils
+/// Shape functions of sixteen points at their three nodes in each direction, and where their stencils
 /// begin in the tile's cube.
 template <int D>
 struct SingleWeights {
@@ -34,7 +34,7 @@ struct SingleWeights {
   Singles dw[D][2];                 ///< slopes at the first and the last [1/m]
   Singles across[power(3, D - 1)];  ///< of rows: the product of all directions but the last
   Singles wa[2];       ///< arm from the point times weight, first and last of the last direction [m]
-  Singles middle[D];   ///< arm of the middle control from the point [m]
+  Singles middle[D];   ///< arm of the middle node from the point [m]
   Singles arm[D][2];   ///< of the first and the last from the middle one [m]
   Singles inertia[D];  ///< sum of w times the arm from the point squared [m^2]
   std::array<int, singles_size> base;
@@ -100,7 +100,7 @@ struct SingleFields {
 
 namespace detail {
 
-/// A stencil's rows of controls: those that differ in the second direction alone by their differences.
+/// A stencil's rows of nodes: those that differ in the second direction alone by their differences.
 template <int D>
 struct Rows {
   std::conditional_t<D == 2, Singles, Differences<Singles>> at[3];
@@ -199,7 +199,7 @@ template <ShapeFunctions kind, int D>
   };
   const auto sum = [&](std::size_t l, Singles(&of)[D]) {
     const auto share = [&](int r) { return detail::rounded(p.across[r][l] * row[r]); };
-    // Moment about the middle control in direction d, where its arms are even in units of them.
+    // Moment about the middle node in direction d, where its arms are even in units of them.
     const auto moment = [&](int d, const Singles& low, const Singles& high) {
       return even ? high - low : p.arm[d][0][l] * low + p.arm[d][1][l] * high;
     };
@@ -231,7 +231,7 @@ struct Reached {
   int runs = 0;
 };
 
-/// What moving points give: mass, last, and momentum where their middle controls are; moment[d] times the arm
+/// What moving points give: mass, last, and momentum where their middle nodes are; moment[d] times the arm
 /// from there in direction d comes to the momentum.
 template <int D>
 struct SingleMomenta {
@@ -247,7 +247,7 @@ struct SingleImpulses {
 namespace detail {
 
 /// Visits the first n of sixteen points by runs of one stencil: add(l) each point, end(node) each run, whose
-/// stencil begins at that control.
+/// stencil begins at that node.
 template <int D, class Add, class End>
 [[gnu::always_inline]] inline Reached for_each_run(const SingleWeights<D>& p, std::size_t n, SingleNode* sums,
                                                    Add add, End end) {
@@ -264,8 +264,8 @@ template <int D, class Add, class End>
 
 }  // namespace detail
 
-/// Adds momenta and masses of the first n of sixteen points to their controls in the tile's cube,
-/// w_i w_j w_k (value + moment[0] a_i + moment[1] a_j + moment[2] a_k). The control behind a stencil's row is
+/// Adds momenta and masses of the first n of sixteen points to their nodes in the tile's cube,
+/// w_i w_j w_k (value + moment[0] a_i + moment[1] a_j + moment[2] a_k). The node behind a stencil's row is
 /// added nothing. noipa: as add_by_runs() of lane_sums.hpp.
 template <ShapeFunctions kind, int D>
 [[gnu::noipa]] Reached scatter_momenta(const SingleWeights<D>& p, const SingleMomenta<D>& of, std::size_t n,

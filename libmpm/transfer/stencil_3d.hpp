@@ -1,6 +1,6 @@
 #pragma once
 
-// What a point in space has to do with the 27 controls of its cell, one direction at a time: a third of the
+// What a point in space has to do with the 27 nodes of its cell, one direction at a time: a third of the
 // operations of 27 products, and four components side by side.
 
 #include <array>
@@ -22,7 +22,7 @@ struct SpaceWeights {
   double N[3][3], slope[3][3];
 };
 
-/// Sum over the controls of N u, and of the same with the slope's weights in direction d.
+/// Sum over the nodes of N u, and of the same with the slope's weights in direction d.
 inline void contract(const CellQuads& u, const SpaceWeights& w, Quad& value, std::array<Quad, 3>& slope) {
   const auto &x = w.N[0], &y = w.N[1], &z = w.N[2];
   const auto &dx = w.slope[0], &dy = w.slope[1], &dz = w.slope[2];
@@ -44,7 +44,7 @@ inline void contract(const CellQuads& u, const SpaceWeights& w, Quad& value, std
   }
 }
 
-/// The adjoint of contract(), added to the controls.
+/// The adjoint of contract(), added to the nodes.
 inline void spread(const SpaceWeights& w, const Quad& value, const std::array<Quad, 3>& slope, CellQuads& u) {
   const auto &x = w.N[0], &y = w.N[1], &z = w.N[2];
   const auto &dx = w.slope[0], &dy = w.slope[1], &dz = w.slope[2];

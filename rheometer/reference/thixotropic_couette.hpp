@@ -39,7 +39,7 @@ struct CouetteOptions {
   /// false: the nodes are spent on the radii that can be sheared, with a margin; the far plug is left out.
   bool whole_gap = true;
   /// true: a node that passes the gate is found as a root, and the integration starts anew behind it. false:
-  /// the error control steps over the kink.
+  /// the error node steps over the kink.
   bool find_gate = true;
 };
 

@@ -16,16 +16,16 @@ namespace {
 const Papanastasiou law{5.0};
 
 /// About 14,000 points unless said otherwise.
-template <class Space>
-Body<Space> block(bool thixotropic, int cells = Space::dim == 3 ? 12 : 60) {
-  constexpr int D = Space::dim;
+template <class Geometry>
+Body<Geometry> block(bool thixotropic, int cells = Geometry::dim == 3 ? 12 : 60) {
+  constexpr int D = Geometry::dim;
   const double h = 0.015, height = cells * h;
-  Body<Space> body;
+  Body<Geometry> body;
   body.mix = test::concrete(54.0, 35.8, 33e3);
-  body.gravity[Space::up] = -9.81;
+  body.gravity[Geometry::up] = -9.81;
   for (Axis& a : body.grid.axes) a = {.h = h, .low = FaceKind::free_slip};
-  test::fill_box<Space>(body, Vec<D>::Zero(), Vec<D>::Constant(height), 2,
-                        [&](const auto& x) { return 2400.0 * 9.81 * (height - x[Space::up]); });
+  test::fill_box<Geometry>(body, Vec<D>::Zero(), Vec<D>::Constant(height), 2,
+                        [&](const auto& x) { return 2400.0 * 9.81 * (height - x[Geometry::up]); });
   if (!thixotropic) return body;
   body.mix.thixotropy = Thixotropy{1.3, 0.01};
   body.points.lambda.assign(body.points.size(), 1.0);
@@ -33,22 +33,22 @@ Body<Space> block(bool thixotropic, int cells = Space::dim == 3 ? 12 : 60) {
   return body;
 }
 
-template <class Space>
+template <class Geometry>
 struct Set {
-  Body<Space> body;
+  Body<Geometry> body;
   ExplicitSettings settings;
-  ExplicitState<Space> state;
+  ExplicitState<Geometry> state;
 
   Set(bool thixotropic, bool gimp, StressUpdate stress, bool cell_pressure, bool single = false)
-      : Set(block<Space>(thixotropic), gimp, stress, cell_pressure, single) {}
-  Set(Body<Space> filled, bool gimp, StressUpdate stress, bool cell_pressure, bool single = false)
+      : Set(block<Geometry>(thixotropic), gimp, stress, cell_pressure, single) {}
+  Set(Body<Geometry> filled, bool gimp, StressUpdate stress, bool cell_pressure, bool single = false)
       : body(std::move(filled)) {
     settings.stress = stress;
     settings.single_precision = single;
     settings.cell_pressure = cell_pressure;
     settings.keep_affine = false;
     settings.fixed_dt = 1e-5;
-    Shape<Space::dim> shape;
+    Shape<Geometry::dim> shape;
     if (gimp) shape = {ShapeFunctions::gimp, {}}, shape.half.fill(0.25);
     state = start_explicit(body, law, settings, shape);
   }
@@ -59,37 +59,37 @@ struct Set {
 };
 
 /// One pass over the points, without the grid: what pass names.
-template <class Space, detail::Pass pass, bool thixotropic>
+template <class Geometry, detail::Pass pass, bool thixotropic>
 void pass_of(benchmark::State& run) {
   omp_set_num_threads(1);
-  Set<Space> set(thixotropic, false, StressUpdate::last, false);
+  Set<Geometry> set(thixotropic, false, StressUpdate::last, false);
   const detail::PassInput input{1e-9, 1e-9};
   for (auto _ : run) detail::pass_over_points<pass>(set.body.mix, law, set.settings, input, set.state);
   set.count(run);
 }
 
-template <class Space, bool thixotropic>
+template <class Geometry, bool thixotropic>
 void law_alone(benchmark::State& run) {
-  Set<Space> set(thixotropic, false, StressUpdate::last, false);
-  Octet slope[Space::dim][Space::dim] = {};
+  Set<Geometry> set(thixotropic, false, StressUpdate::last, false);
+  Octet slope[Geometry::dim][Geometry::dim] = {};
   slope[0][0] = all_lanes(0.3), slope[0][1] = all_lanes(0.7);
   detail::LaneSums sums;
   for (auto _ : run)
     for (std::size_t g = 0; g < set.state.points.groups(); ++g) {
       benchmark::DoNotOptimize(slope);
-      const auto rate = detail::strain_rate<Space, Octet>(slope, Octet{}, set.state.points.x[0][g]);
+      const auto rate = detail::strain_rate<Geometry, Octet>(slope, Octet{}, set.state.points.x[0][g]);
       const auto resistance =
-          detail::update_state<Space::dim>(set.body.mix, law, 1e-9, rate.gamma_dot, rate.divergence,
+          detail::update_state<Geometry::dim>(set.body.mix, law, 1e-9, rate.gamma_dot, rate.divergence,
                                            all_lanes(1.0), set.state.points, g, sums);
       benchmark::DoNotOptimize(
-          detail::stress_of<Space, Octet>(rate, resistance.viscosity, resistance.pressure));
+          detail::stress_of<Geometry, Octet>(rate, resistance.viscosity, resistance.pressure));
     }
   set.count(run);
 }
 
-template <class Space>
+template <class Geometry>
 void sort_alone(benchmark::State& run) {
-  Set<Space> set(true, false, StressUpdate::last, false);
+  Set<Geometry> set(true, false, StressUpdate::last, false);
   for (auto _ : run) {
     detail::sort_points(set.settings, set.state);
   }
@@ -97,11 +97,11 @@ void sort_alone(benchmark::State& run) {
 }
 
 /// range(0): threads.
-template <class Space, bool thixotropic, bool gimp, StressUpdate stress, bool cell_pressure,
+template <class Geometry, bool thixotropic, bool gimp, StressUpdate stress, bool cell_pressure,
           bool single = false>
 void whole_step(benchmark::State& run) {
   omp_set_num_threads(static_cast<int>(run.range(0)));
-  Set<Space> set(thixotropic, gimp, stress, cell_pressure, single);
+  Set<Geometry> set(thixotropic, gimp, stress, cell_pressure, single);
   for (auto _ : run) explicit_step(set.body, law, set.settings, set.state);
   set.count(run);
 }

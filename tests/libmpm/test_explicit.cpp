@@ -13,8 +13,8 @@ namespace {
 using namespace test;
 
 /// Steps a body from here to there; returns the reports' worst.
-template <class Space>
-ExplicitReport advance(Body<Space>& body, const ExplicitSettings& settings, const Shape<Space::dim>& shape,
+template <class Geometry>
+ExplicitReport advance(Body<Geometry>& body, const ExplicitSettings& settings, const Shape<Geometry::dim>& shape,
                        int steps, const Papanastasiou& of = law) {
   auto state = start_explicit(body, of, settings, shape);
   ExplicitReport worst;
@@ -28,7 +28,7 @@ ExplicitReport advance(Body<Space>& body, const ExplicitSettings& settings, cons
   return worst;
 }
 
-template <class Space>
+template <class Geometry>
 class ExplicitSpaces : public testing::Test {
  protected:
   void SetUp() override { omp_set_num_threads(1); }
@@ -37,16 +37,16 @@ using SpaceTypes = testing::Types<Axisymmetric, PlaneStrain, ThreeD>;
 TYPED_TEST_SUITE(ExplicitSpaces, SpaceTypes);
 
 /// A body in free fall, and how far its points are at most from where they belong.
-template <class Space>
+template <class Geometry>
 void expect_free_fall(const Scheme& scheme, double off_v, double off_x, double off_ln_J) {
-  constexpr int D = Space::dim, up = Space::up;
+  constexpr int D = Geometry::dim, up = Geometry::up;
   const double dt = 5e-4, t = 400 * dt;
-  Body<Space> body;
+  Body<Geometry> body;
   body.mix = concrete(54.0, 35.8);
   body.gravity[up] = -g;
   for (Axis& a : body.grid.axes) a.h = 0.05;
-  if (std::is_same_v<Space, Axisymmetric>) body.grid.axes[0].low = FaceKind::free_slip;
-  fill_box<Space>(body, Vec<D>::Zero(), Vec<D>::Constant(0.1), 2);
+  if (std::is_same_v<Geometry, Axisymmetric>) body.grid.axes[0].low = FaceKind::free_slip;
+  fill_box<Geometry>(body, Vec<D>::Zero(), Vec<D>::Constant(0.1), 2);
   const Points<D> start = body.points;
   EXPECT_FALSE(advance(body, settings_of(scheme, dt), shape_of<D>(scheme.shape), 400).failed);
   for (std::size_t p = 0; p < start.size(); ++p) {
@@ -78,13 +78,13 @@ TYPED_TEST(ExplicitSpaces, FreeFallInSinglePrecision) {
 }
 
 /// A block that turns and is deformed by nothing but its own inertia.
-template <class Space>
-Body<Space> turning(const Eigen::Vector3d& omega) {
-  constexpr int D = Space::dim;
-  Body<Space> body;
+template <class Geometry>
+Body<Geometry> turning(const Eigen::Vector3d& omega) {
+  constexpr int D = Geometry::dim;
+  Body<Geometry> body;
   body.mix = concrete(54.0, 35.8);
   for (Axis& a : body.grid.axes) a.h = 0.05;
-  fill_box<Space>(body, Vec<D>::Constant(-0.1), Vec<D>::Constant(0.1), 2);
+  fill_box<Geometry>(body, Vec<D>::Constant(-0.1), Vec<D>::Constant(0.1), 2);
   Eigen::Matrix3d W;
   W << 0, -omega[2], omega[1], omega[2], 0, -omega[0], -omega[1], omega[0], 0;
   for (std::size_t p = 0; p < body.points.size(); ++p) {
@@ -96,14 +96,14 @@ Body<Space> turning(const Eigen::Vector3d& omega) {
 
 // APIC and stresses that are symmetric keep angular momentum, with pressure by the point. With one row a cell
 // a pressure still has no moment: its row is a gradient at one place.
-template <class Space>
+template <class Geometry>
 void expect_angular_momentum_kept(const Eigen::Vector3d& omega, StressUpdate stress, bool cell_pressure) {
   omp_set_num_threads(1);
-  auto body = turning<Space>(omega);
-  const auto start = angular_momentum<Space::dim>(body);
+  auto body = turning<Geometry>(omega);
+  const auto start = angular_momentum<Geometry::dim>(body);
   const Scheme scheme{stress, false, ShapeFunctions::b_spline, cell_pressure};
   EXPECT_FALSE(advance(body, settings_of(scheme, 5e-4), {}, 400).failed);
-  const double drift = (angular_momentum<Space::dim>(body) - start).norm() / start.norm();
+  const double drift = (angular_momentum<Geometry::dim>(body) - start).norm() / start.norm();
   std::printf("angular momentum after 400 explicit steps: relative drift %.2g\n", drift);
   EXPECT_LE(drift, 1e-10);
   EXPECT_LE(momentum(body.points).norm(), 1e-10 * start.norm());
@@ -186,19 +186,19 @@ TYPED_TEST(ExplicitSpaces, HydrostaticStart) {
 
 /// Kinetic energy after 400 steps of `share` times the limit over that at the start, from random velocities,
 /// walls all around or free in space; infinite if the points ran away.
-template <class Space>
+template <class Geometry>
 double growth_of_energy(const Mix& mix, const Papanastasiou& of, ShapeFunctions kind, bool walls,
                         double share) {
-  constexpr int D = Space::dim;
-  Body<Space> body;
+  constexpr int D = Geometry::dim;
+  Body<Geometry> body;
   body.mix = mix;
   for (Axis& a : body.grid.axes) {
     a = {.h = 0.02};
     if (walls)
       a = {.h = 0.02, .low = FaceKind::free_slip, .high = FaceKind::free_slip, .n_cells = D == 3 ? 3 : 5};
   }
-  if (std::is_same_v<Space, Axisymmetric>) body.grid.axes[0].low = FaceKind::free_slip;
-  fill_box<Space>(body, Vec<D>::Zero(), Vec<D>::Constant(D == 3 ? 0.06 : 0.1), 2);
+  if (std::is_same_v<Geometry, Axisymmetric>) body.grid.axes[0].low = FaceKind::free_slip;
+  fill_box<Geometry>(body, Vec<D>::Zero(), Vec<D>::Constant(D == 3 ? 0.06 : 0.1), 2);
   std::mt19937 random(1);
   std::uniform_real_distribution<double> u(-1e-6, 1e-6);  // so slow that no point leaves its place
   for (auto& v : body.points.v)
@@ -262,11 +262,11 @@ TEST(ExplicitWalls, HollowCellsHoldAsFullOnes) {
 /// ln J of a point alone in open space, over what it was at first, after 20 steps of `share` times the step
 /// that its own ringing allows. `place`: in its cell, in each direction; `inertia`: the second moment of its
 /// weights there, in cells squared.
-template <class Space>
+template <class Geometry>
 double ringing_of_one_point(double place, double inertia, double share) {
-  constexpr int D = Space::dim;
+  constexpr int D = Geometry::dim;
   constexpr double h = 0.02, ln_J = 1e-14;
-  Body<Space> body;
+  Body<Geometry> body;
   body.mix = concrete(0.0, 1e-9, 2e9);
   for (Axis& a : body.grid.axes) a = {.h = h};
   const double V = std::pow(0.5 * h, D);
@@ -278,7 +278,7 @@ double ringing_of_one_point(double place, double inertia, double share) {
   return std::abs(body.points.ln_J[0]) / ln_J;
 }
 
-// A point that shares its controls with no other swells and shrinks with its affine velocity C: the pressure
+// A point that shares its nodes with no other swells and shrinks with its affine velocity C: the pressure
 // gives it dt p/(rho D_d) in direction d, D_d the second moment of its weights, so that it rings at omega^2 =
 // K/rho sum 1/D_d, and the second step bears omega dt < 2. GIMP's moment is h^2/4 in the middle of a cell and
 // half of that at its corner: chi of explicit_limits.hpp is 12 and 24 then in space, more than in any body.
@@ -317,7 +317,7 @@ double ringing_of_few_points(const std::vector<Vec<3>>& places) {
   return largest;
 }
 
-// Points at two or three faces of a cell all but leave out the controls across. One row between them would
+// Points at two or three faces of a cell all but leave out the nodes across. One row between them would
 // push those all the same, and blow them up at any step.
 TEST(ExplicitAlone, AFewPointsAcrossACellRingNoMoreThanOne) {
   omp_set_num_threads(1);

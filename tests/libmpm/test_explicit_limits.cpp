@@ -35,7 +35,7 @@ enum class Row { strain, cell_divergence, point_divergence };
 /// A patch of 4 cells a direction of size 1, two points a cell in each.
 template <int D>
 Pencil patch(const std::array<Axis, D>& axes, const Shape<D>& shape, Row row) {
-  using Space = std::conditional_t<D == 2, PlaneStrain, ThreeD>;
+  using Geometry = std::conditional_t<D == 2, PlaneStrain, ThreeD>;
   const int nodes = power(tile_span, D);
   Pencil p{Eigen::MatrixXd::Zero(nodes * D, nodes * D), Eigen::VectorXd::Zero(nodes * D)};
   const double V = 1.0 / power(2, D);
@@ -52,7 +52,7 @@ Pencil patch(const std::array<Axis, D>& axes, const Shape<D>& shape, Row row) {
     const bool at_cell = row == Row::cell_divergence;
     weigh<D>(axes, at_cell ? hats : shape, {}, at_cell ? centre : x, place);
     const auto w = of_lane<D>(mass, 0), b = of_lane<D>(place, 0);
-    constexpr int n = power(3, D), rows = Space::n_strain;
+    constexpr int n = power(3, D), rows = Geometry::n_strain;
     Eigen::MatrixXd B = Eigen::MatrixXd::Zero(row == Row::strain ? rows : 1, n * D);
     std::array<int, n> at;
     for (int k = 0; k < n; ++k) {
@@ -70,9 +70,9 @@ Pencil patch(const std::array<Axis, D>& axes, const Shape<D>& shape, Row row) {
       for (int d = 0; d < D; ++d) p.M[in_mass * D + d] += V * N;
       const Vec<D> somewhere = Vec<D>::Ones();
       if (row == Row::strain)
-        B.middleCols(k * D, D) = Space::strain_rows(0.0, g, somewhere);
+        B.middleCols(k * D, D) = Geometry::strain_rows(0.0, g, somewhere);
       else
-        B.middleCols(k * D, D) = Space::divergence_row(0.0, g, somewhere).transpose();
+        B.middleCols(k * D, D) = Geometry::divergence_row(0.0, g, somewhere).transpose();
     }
     const Eigen::MatrixXd K = V * B.transpose() * B;
     for (int k = 0; k < n; ++k)
@@ -86,9 +86,9 @@ std::vector<char> fixed_by_walls(const std::array<Axis, D>& axes, const Shape<D>
   std::vector<char> fixed(power(tile_span, D) * D, 0);
   for (int node = 0; node < power(tile_span, D); ++node)
     for (int d = 0; d < D; ++d) {
-      const int control = node / stride<D>(tile_span, d) % tile_span - 1;
-      const bool wall = (axes[d].wall_low() && control == shape.low_wall()) ||
-                        (axes[d].wall_high() && control == axes[d].n_cells + 1);
+      const int node = node / stride<D>(tile_span, d) % tile_span - 1;
+      const bool wall = (axes[d].wall_low() && node == shape.low_wall()) ||
+                        (axes[d].wall_high() && node == axes[d].n_cells + 1);
       for (int e = 0; e < D && wall; ++e)
         if (e == d || axes[d].low == FaceKind::no_slip) fixed[node * D + e] = 1;
     }

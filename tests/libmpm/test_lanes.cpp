@@ -131,7 +131,7 @@ TEST(LaneLaws, FlocculationAsTheScalarUpdate) {
     }
 }
 
-template <class Space>
+template <class Geometry>
 class Gradients : public testing::Test {};
 using SpaceTypes = testing::Types<Axisymmetric, PlaneStrain, ThreeD>;
 TYPED_TEST_SUITE(Gradients, SpaceTypes);
@@ -175,7 +175,7 @@ TYPED_TEST(Gradients, AreTheRowsSummedUp) {
 class ShapeFunctionsOfLanes : public testing::TestWithParam<ShapeFunctions> {};
 
 // Everywhere between two walls, in both shapes: values sum to one and give back the place, slopes those of
-// the place; none is negative, so that a control's mass is not. On a wall its control has all the weight.
+// the place; none is negative, so that a node's mass is not. On a wall its node has all the weight.
 TEST_P(ShapeFunctionsOfLanes, PartitionOfUnityAndLinearFields) {
   const std::array<Axis, 2> axes = {
       Axis{.h = 0.02, .origin = -0.1, .low = FaceKind::no_slip, .high = FaceKind::no_slip, .n_cells = 6},
@@ -195,7 +195,7 @@ TEST_P(ShapeFunctionsOfLanes, PartitionOfUnityAndLinearFields) {
                                 : weights.base[static_cast<std::size_t>(l)] % tile_span;
         double one = 0.0, place = 0.0, flat = 0.0, slope = 0.0;
         for (int k = 0; k < 3; ++k) {
-          const double at = shape.control_position(axes[d], (d == 0 ? tile : 0) * tile_cells - 1 + base + k);
+          const double at = shape.node_position(axes[d], (d == 0 ? tile : 0) * tile_cells - 1 + base + k);
           const double w = weights.w[d][k][l], dw = weights.dw[d][k][l];
           EXPECT_GE(w, -1e-16);
           EXPECT_NEAR(weights.wa[d][k][l], w * (at - x[d][l]), 1e-15);
@@ -215,7 +215,7 @@ INSTANTIATE_TEST_SUITE_P(Shapes, ShapeFunctionsOfLanes,
                          testing::Values(ShapeFunctions::b_spline, ShapeFunctions::gimp));
 
 // Two points whose weights come from the factored sums see a quadratic field's values and slopes as the plain
-// sum over 27 controls does.
+// sum over 27 nodes does.
 TEST(FactoredSums, GatherAndScatterAreAdjoint) {
   constexpr int D = 3;
   std::array<Axis, D> axes;
@@ -254,7 +254,7 @@ TEST(FactoredSums, GatherAndScatterAreAdjoint) {
   EXPECT_NEAR(left, right, 1e-12);
 }
 
-/// Eight points in neighbouring cells, or all in one, next to a wall or not, and what a tile's controls
+/// Eight points in neighbouring cells, or all in one, next to a wall or not, and what a tile's nodes
 /// carry.
 struct EightPoints {
   static constexpr int D = 3;

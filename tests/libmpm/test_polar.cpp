@@ -82,8 +82,8 @@ TEST(Polar, APointWithoutForcesGoesStraight) {
 // inside the body.
 TEST(Polar, ABlockHoldsItsNodesAndKeepsConcreteOut) {
   auto body = turning_ring(0.0, 1.0);  // the grid turns with the block
-  body.grid.axes[0].creases = {3};
-  body.grid.axes[1].creases = {3, 5};
+  body.grid.axes[0].repeated_knots = {3};
+  body.grid.axes[1].repeated_knots = {3, 5};
   body.grid.blocks = {{{0, 3}, {3, 5}, [](const Vec<2>& x) { return Vec<2>(0.0, x[0]); }}};
   Points<2> outside;
   for (const Vec<2>& x : body.points.x)

@@ -47,14 +47,14 @@ const std::pair<Index<3>, std::array<bool, 3>> cases[] = {{{5, 9, 37}, {}},
                                                           {{3, 5, 18}, {false, true, false}}};
 
 // S by its entries against a dense matrix: columns along each axis, longer and shorter than a batch, up to
-// four strips of them, holes, one and two periodic axes, one so short that a cell sees another from both
+// four chunks of them, holes, one and two periodic axes, one so short that a cell sees another from both
 // sides. A product adds up 125 numbers of the order 1 in single precision.
 TEST(Pressures, EntriesMultiplyLikeADenseMatrix) {
   omp_set_num_threads(1);
   for (const auto& [extent, periodic] : cases) {
     const ActiveGrid<3> grid = holey_grid(extent, periodic);
     const int n = grid.n_cells();
-    PressureEntries entries;
+    SchurMatrix entries;
     entries.reset(grid);
     Eigen::MatrixXd S = Eigen::MatrixXd::Zero(n, n);
     for (int c = 0; c < n; ++c)
@@ -86,7 +86,7 @@ TEST(Pressures, EntriesMultiplyLikeADenseMatrix) {
   }
 }
 
-/// B' B + 1, B(i, c) of the 27 controls i around a cell c.
+/// B' B + 1, B(i, c) of the 27 nodes i around a cell c.
 Eigen::MatrixXd of_controls(const ActiveGrid<3>& grid) {
   std::map<Index<3>, Eigen::Index> numbers;
   std::vector<std::array<Eigen::Index, 27>> around(grid.cell_index.size());
@@ -106,7 +106,7 @@ Eigen::MatrixXd of_controls(const ActiveGrid<3>& grid) {
   return Eigen::MatrixXd::Identity(grid.n_cells(), grid.n_cells()) + B.transpose() * B;
 }
 
-/// The rows of F by their definition (near_inverse.hpp), from dense matrices.
+/// The rows of F by their definition (fsai.hpp), from dense matrices.
 Eigen::MatrixXd factor(const ActiveGrid<3>& grid, const Eigen::MatrixXd& S) {
   const int n = grid.n_cells();
   Eigen::MatrixXd F = Eigen::MatrixXd::Zero(n, n);
@@ -136,12 +136,12 @@ TEST(Pressures, NearInverseIsWhatItIsDefinedAs) {
     const ActiveGrid<3> grid = holey_grid(extent, periodic);
     const int n = grid.n_cells();
     const Eigen::MatrixXd S = of_controls(grid);
-    PressureEntries entries;
+    SchurMatrix entries;
     entries.reset(grid);
     for (int c = 0; c < n; ++c)
       for (int other = 0; other <= c; ++other)
         if (S(c, other) != 0.0) entries.add(grid, c, other, static_cast<float>(S(c, other)));
-    NearInverse near;
+    Fsai near;
     near.build(entries);
     Eigen::VectorXf r(n), Sr(n), z(n), by_threads(n);
     for (int c = 0; c < n; ++c) r[c] = static_cast<float>(std::cos(0.7 * c));
@@ -168,13 +168,13 @@ TEST(Pressures, NearInverseOfCellsWithoutOthers) {
   ActiveGrid<3> grid;
   grid.cell_map.reset({0, 0, 0}, {0, 0, 9});
   for (int k : {0, 1, 4, 5, 9}) grid.cell_index.push_back({0, 0, k});
-  PressureEntries entries;
+  SchurMatrix entries;
   entries.reset(grid);
   entries.add(grid, 0, 0, 4.0f);
   for (const auto& [c, other] : {std::pair(2, 2), std::pair(3, 3), std::pair(3, 2)})
     entries.add(grid, c, other, 1.0f);
   entries.add(grid, 4, 4, 1e-20f);
-  NearInverse near;
+  Fsai near;
   near.build(entries);
   near.apply_in_region(entries.layout, Eigen::VectorXf::Ones(5));
   const float expected[] = {0.25f, 0.0f, 1.0f, 1.0f, 1e20f};
@@ -214,7 +214,7 @@ TEST(Pressures, NearInverseLeavesHalfTheIterationsOfTheDiagonal) {
       }
   const int n = grid.n_cells();
   Eigen::MatrixXd S(n, n);
-  PressureEntries entries;
+  SchurMatrix entries;
   entries.reset(grid);
   for (int c = 0; c < n; ++c)
     for (int other = 0; other <= c; ++other) {
@@ -222,7 +222,7 @@ TEST(Pressures, NearInverseLeavesHalfTheIterationsOfTheDiagonal) {
       S(c, other) = S(other, c) = inside({a[0] - b[0], a[1] - b[1], a[2] - b[2]}) * (c == other ? 1.01 : 1.0);
       if (S(c, other) != 0.0) entries.add(grid, c, other, static_cast<float>(S(c, other)));
     }
-  NearInverse near;
+  Fsai near;
   near.build(entries);
   Eigen::MatrixXd F_F(n, n);
   for (int c = 0; c < n; ++c) {

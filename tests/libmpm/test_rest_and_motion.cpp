@@ -14,10 +14,10 @@ constexpr double rho = 2400.0, g = 9.81, height = 0.3;
 
 /// A column of concrete, `levels` cells high, on a floor between free-slip walls; `hydrostatic`: it starts
 /// under its own weight, otherwise without pressure.
-template <class Space>
-ImplicitBody<Space> column(int levels, int across, bool hydrostatic, double tau_0) {
-  constexpr int D = Space::dim, up = Space::up;
-  ImplicitBody<Space> body;
+template <class Geometry>
+ImplicitBody<Geometry> column(int levels, int across, bool hydrostatic, double tau_0) {
+  constexpr int D = Geometry::dim, up = Geometry::up;
+  ImplicitBody<Geometry> body;
   body.mix = concrete(tau_0, 35.8);
   body.gravity[up] = -g;
   const double h = height / levels;
@@ -26,23 +26,23 @@ ImplicitBody<Space> column(int levels, int across, bool hydrostatic, double tau_
     a = {.h = h, .low = FaceKind::free_slip, .high = FaceKind::free_slip, .n_cells = across};
   body.grid.axes[up] = {.h = h, .low = FaceKind::no_slip};
   high[up] = height;
-  fill_box<Space>(body, low, high, 2,
+  fill_box<Geometry>(body, low, high, 2,
                   [&](const auto& x) { return hydrostatic ? rho * g * (height - x[up]) : 0.0; });
   return body;
 }
 
 /// Largest error of the pressure in a point, in units of rho g H, for a surface at `top`.
-template <class Space>
-double worst_pressure(const ImplicitBody<Space>& body, double top) {
+template <class Geometry>
+double worst_pressure(const ImplicitBody<Geometry>& body, double top) {
   double worst = 0.0;
   for (std::size_t p = 0; p < body.points.size(); ++p) {
     const double head = pressure(body.points.ln_J[p], body.mix.K) / (rho * g);
-    worst = std::max(worst, std::abs(head - (top - body.points.x[p][Space::up])) / height);
+    worst = std::max(worst, std::abs(head - (top - body.points.x[p][Geometry::up])) / height);
   }
   return worst;
 }
 
-template <class Space>
+template <class Geometry>
 class AllSpaces : public testing::Test {
  protected:
   void SetUp() override { omp_set_num_threads(1); }
@@ -154,10 +154,10 @@ TYPED_TEST(AllSpaces, Translation) {
 }
 
 /// A rotating body far from walls, without gravity.
-template <class Space>
-ImplicitBody<Space> rotating(const Eigen::Vector3d& omega, double h, int per_cell) {
-  constexpr int D = Space::dim;
-  ImplicitBody<Space> body;
+template <class Geometry>
+ImplicitBody<Geometry> rotating(const Eigen::Vector3d& omega, double h, int per_cell) {
+  constexpr int D = Geometry::dim;
+  ImplicitBody<Geometry> body;
   body.mix = concrete(54.0, 35.8);
   for (Axis& a : body.grid.axes) a.h = h;
   fill_box(body, Vec<D>(Vec<D>::Constant(-0.1)), Vec<D>(Vec<D>::Constant(0.1)), per_cell);
@@ -173,17 +173,17 @@ ImplicitBody<Space> rotating(const Eigen::Vector3d& omega, double h, int per_cel
 /// Angular momentum over `steps` steps of 1 ms, relative to its start. Transfer and forces keep it to
 /// round-off. Points that are moved to even out the fill of cells carry their momentum elsewhere: with it on,
 /// 1e-5 is allowed.
-template <class Space>
-void expect_angular_momentum_kept(ImplicitBody<Space> body, int steps, bool even_out, double tolerance) {
+template <class Geometry>
+void expect_angular_momentum_kept(ImplicitBody<Geometry> body, int steps, bool particle_shifting, double tolerance) {
   omp_set_num_threads(1);
-  const auto start = angular_momentum<Space::dim>(body);
+  const auto start = angular_momentum<Geometry::dim>(body);
   StepSettings settings;
   settings.fixed_dt = 1e-3;
-  settings.even_out.on = even_out;
+  settings.particle_shifting.on = particle_shifting;
   int unconverged = 0;
   for (int i = 0; i < steps; ++i) unconverged += !implicit_step(body, ExactBingham{}, settings).converged;
   EXPECT_EQ(unconverged, 0);
-  const double drift = (angular_momentum<Space::dim>(body) - start).norm() / start.norm();
+  const double drift = (angular_momentum<Geometry::dim>(body) - start).norm() / start.norm();
   std::printf("angular momentum after %d steps: relative drift %.2g\n", steps, drift);
   EXPECT_LE(drift, tolerance);
   EXPECT_LE(momentum(body.points).norm(), tolerance * start.norm());
@@ -217,7 +217,7 @@ TEST(Rotation, StaysRigid) {
   EXPECT_LE(worst, 2e-3);
 }
 
-// Across a periodic seam: a strip of concrete that fills the period slides on with its speed, for one to five
+// Across a periodic seam: a chunk of concrete that fills the period slides on with its speed, for one to five
 // cells.
 TEST(Periodic, UniformFlowWraps) {
   for (int n : {1, 2, 5}) {
@@ -273,7 +273,7 @@ TEST(Motion, StraysAreHeld) {
   const auto before = points.x;
   for (std::size_t p = 0; p < 2; ++p) points.x[p] += 0.1 * points.v[p];
   const auto moved = points.x;
-  hold_strays<2>({Axis{.h = 0.01}, Axis{.h = 0.01}}, 0.1, points);
+  hold_detached_particles<2>({Axis{.h = 0.01}, Axis{.h = 0.01}}, 0.1, points);
   EXPECT_NEAR(points.x[0][1], before[0][1] - 0.01, 1e-15);
   EXPECT_NEAR(points.v[0][1], -0.1, 1e-15);
   EXPECT_EQ(points.x[1], moved[1]);

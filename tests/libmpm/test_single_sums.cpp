@@ -63,7 +63,7 @@ Shape<D> shape_of(ShapeFunctions kind) {
 }
 
 /// Sixteen points in cells next to a wall and away from it, with their weights in both precisions and what a
-/// tile's controls carry. Weights that a pass does not ask for are not numbers.
+/// tile's nodes carry. Weights that a pass does not ask for are not numbers.
 template <int D>
 struct SixteenPoints {
   Weights<D> weights[2];
@@ -112,7 +112,7 @@ struct SixteenPoints {
   PointWeights<D, 3> one(std::size_t l) const { return of_lane<D>(of(l), static_cast<int>(l % octet_size)); }
 };
 
-// A smooth field is read the same wherever a rounding puts a point's stencil; these controls are random, so
+// A smooth field is read the same wherever a rounding puts a point's stencil; these nodes are random, so
 // that points which the two put into different stencils, at most one in a million, must not be among them.
 template <int D>
 void stencils_begin_alike(const Case& c) {
@@ -275,7 +275,7 @@ std::pair<NodeLanes, double> total_of(const Cube& cube) {
   return {total, largest};
 }
 
-// Stresses move no momentum but from one control to another, and what points give in mass and momentum about
+// Stresses move no momentum but from one node to another, and what points give in mass and momentum about
 // themselves all arrives: to a rounding, 6e-8, of each of the 3^D entries of every point.
 template <int D>
 void nothing_is_lost(const Case& of) {
@@ -296,7 +296,7 @@ void nothing_is_lost(const Case& of) {
     double given = 0.0;
     for (std::size_t l = 0; l < singles_size; ++l) {
       given += static_cast<double>(momenta.value[c][l]);
-      // The arms of a point's controls from its middle one average to minus the middle one's from the point.
+      // The arms of a point's nodes from its middle one average to minus the middle one's from the point.
       for (int d = 0; d < D && c < D; ++d)
         given -=
             static_cast<double>(momenta.moment[d][c][l]) * static_cast<double>(points.with_arms.middle[d][l]);
@@ -331,7 +331,7 @@ TEST_P(SingleSums, ImpulsesAsDoubleHasThem) {
 }
 TEST_P(SingleSums, NothingIsLost) { nothing_is_lost<2>(GetParam()), nothing_is_lost<3>(GetParam()); }
 
-// A point on a wall, wherever the axis begins, is in the wall's cell for all who ask, and its control on the
+// A point on a wall, wherever the axis begins, is in the wall's cell for all who ask, and its node on the
 // wall has all the weight; GIMP's hats there are as wide as 1e-16 of a cell.
 TEST(OnAWall, TheWallsControlHasAllTheWeight) {
   constexpr int D = 2;

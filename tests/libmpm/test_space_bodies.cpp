@@ -93,7 +93,7 @@ std::array<double, 2> couette_errors(int cells) {
     const double v = r / mu * (0.5 * c * (1.0 / (r * r) - 1.0 / (b * b)) - tau_0 * std::log(b / r));
     error += (body.points.v[p] - v / r * Vec<3>(-x[1], x[0], 0.0)).squaredNorm(), norm += v * v;
   }
-  for (const BoundPoint<3>& at : body.bound) {
+  for (const PenaltyPoint<3>& at : body.bound) {
     const auto source = static_cast<std::size_t>(at.source);
     const Vec<3> x = body.boundary[source].x - axis, force = wall_force<3>(at, body.grid.cell_nodes, body.v);
     if (source < inner) torque += x[0] * force[1] - x[1] * force[0];
@@ -167,7 +167,7 @@ TEST(SpaceBodies, ALargerBoxCostsNothing) {
   EXPECT_EQ(small.grid.n_nodes(), large.grid.n_nodes());
   EXPECT_EQ(small.grid.cell_map.value.size(), large.grid.cell_map.value.size());
   EXPECT_EQ(small.grid.node_map.value.size(), large.grid.node_map.value.size());
-  EXPECT_EQ(small.space_system.products, large.space_system.products);
+  EXPECT_EQ(small.matrix_free.products, large.matrix_free.products);
   for (std::size_t p = 0; p < small.points.size(); ++p) EXPECT_EQ(small.points.x[p], large.points.x[p]);
 }
 

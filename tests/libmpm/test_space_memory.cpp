@@ -24,7 +24,7 @@ bool slumps(int n) {
   body.points.lambda.assign(body.points.size(), 0.0);
   body.points.gamma_dot.assign(body.points.size(), 0.0);
   StepSettings settings;
-  settings.even_out.on = true;
+  settings.particle_shifting.on = true;
   settings.time_error = 0.005;
   settings.admm.tolerance = 4e-3;
   for (int i = 0; i < 2; ++i)

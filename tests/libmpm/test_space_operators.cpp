@@ -16,12 +16,12 @@ struct Holes {
   Points<3> points;
   Quadrature<ThreeD> quadrature;
 
-  Holes(const Index<3>& extent, const std::array<bool, 3>& periodic = {}, std::vector<int> creases = {}) {
+  Holes(const Index<3>& extent, const std::array<bool, 3>& periodic = {}, std::vector<int> repeated_knots = {}) {
     for (int d = 0; d < 3; ++d) {
       grid.axes[d].periodic = periodic[d];
       if (periodic[d]) grid.axes[d].n_cells = extent[d];
     }
-    grid.axes[2].creases = std::move(creases);
+    grid.axes[2].repeated_knots = std::move(repeated_knots);
     for (int i = 0; i < extent[0]; ++i)
       for (int j = 0; j < extent[1]; ++j)
         for (int k = 0; k < extent[2]; ++k)
@@ -32,8 +32,8 @@ struct Holes {
   }
 };
 
-/// Boxes that make one strip and several; periodic axes, where a strip sees both ends of a column or of the
-/// grid; a crease, which adds a control within a column.
+/// Boxes that make one chunk and several; periodic axes, where a chunk sees both ends of a column or of the
+/// grid; a repeated knot, which adds a node within a column.
 std::vector<Holes> boxes() {
   std::vector<Holes> all;
   all.emplace_back(Index<3>{4, 3, 5});
@@ -47,7 +47,7 @@ std::vector<Holes> boxes() {
 
 // Sums of at most 27 numbers of the order 1, in whatever order: to rounding. Bits do not depend on the
 // threads.
-TEST(CellStrips, AddUpLikeOneLoop) {
+TEST(NodeReduction, AddUpLikeOneLoop) {
   int most = 0;
   for (const Holes& box : boxes())
     for (int unit : {1, 16}) {
@@ -59,27 +59,27 @@ TEST(CellStrips, AddUpLikeOneLoop) {
           for (int a = 0; a < 4; ++a)
             expected[static_cast<std::size_t>(box.grid.cell_nodes[static_cast<std::size_t>(c)][k])][a] +=
                 value(c, k, a);
-      CellStrips strips;
-      strips.lay_out(box.grid, unit);
-      most = std::max(most, strips.size());
-      for (int s = 0; s < strips.size(); ++s) EXPECT_EQ(strips.first_cell(s) % unit, 0);
-      StripRoom room;
-      strips.make_room(room);
+      NodeReduction reduction;
+      reduction.lay_out(box.grid, unit);
+      most = std::max(most, reduction.size());
+      for (int s = 0; s < reduction.size(); ++s) EXPECT_EQ(reduction.first_cell(s) % unit, 0);
+      ReductionBuffer room;
+      reduction.resize_for_overwrite(room);
       std::vector<Vec<4>> sums[2];
       for (int threads : {1, 3}) {
         auto& sum = sums[threads / 3];
         sum.resize(expected.size());
         const auto give = [&](int s, double* to) {
-          for (int c = strips.first_cell(s); c < strips.last_cell(s); ++c)
+          for (int c = reduction.first_cell(s); c < reduction.last_cell(s); ++c)
             for (int k = 0; k < 27; ++k)
               for (int a = 0; a < 4; ++a)
                 to[4 * box.grid.cell_nodes[static_cast<std::size_t>(c)][k] + a] += value(c, k, a);
         };
         const auto take = [&](int i) {
-          sum[static_cast<std::size_t>(i)] = strips.sum_at<double, 4>(i, room);
+          sum[static_cast<std::size_t>(i)] = reduction.sum_at<double, 4>(i, room);
         };
 #pragma omp parallel num_threads(threads)
-        strips.sweep_in_region<double>(room, give, take);
+        reduction.sweep_in_region<double>(room, give, take);
         for (std::size_t i = 0; i < sum.size(); ++i)
           EXPECT_LE((sum[i] - expected[i]).cwiseAbs().maxCoeff(), 1e-13);
       }
@@ -108,7 +108,7 @@ struct Parts {
 // P = G + B' C B undoes what the preconditioner does, by a factor of S and by iteration, with cells that have
 // no stiffness among the others or alone. Single precision leaves 1e-5 of r; an iteration leaves 5e-4 of its
 // residual, which C, some 50 times G, makes up to ten times as large.
-TEST(PressurePreconditioner, IsTheInverse) {
+TEST(SchurComplementPreconditioner, IsTheInverse) {
   omp_set_num_threads(1);
   for (const Holes& box : boxes())
     for (bool by_band : {true, false})
@@ -118,15 +118,15 @@ TEST(PressurePreconditioner, IsTheInverse) {
         const Parts parts(grid, left_out == 1, left_out == 2);
         CellBatches batches;
         batches.lay_out(grid);
-        PressurePreconditioner P;
+        SchurComplementPreconditioner P;
         P.lay_out(grid, by_band ? 1e15 : 0.0);
         ASSERT_EQ(P.factorised(), by_band);
         ASSERT_TRUE(P.build(grid, batches, box.quadrature, parts.G_inverse, parts.C, 1000.0));
         Eigen::VectorXf r = Eigen::VectorXf::Zero(4 * n), z;
         for (int i = 0; i < n; ++i)
           for (int d = 0; d < 3; ++d) r[4 * i + d] = std::sin(1.7f * static_cast<float>(3 * i + d));
-        StripRoom room;
-        batches.strips().make_room(room);
+        ReductionBuffer room;
+        batches.reduction().resize_for_overwrite(room);
         P.apply(batches, grid, r, room, z);
         Eigen::VectorXd Pz = Eigen::VectorXd::Zero(4 * n);
         for (int i = 0; i < n; ++i)
@@ -145,7 +145,7 @@ TEST(PressurePreconditioner, IsTheInverse) {
 }
 
 // A product with the system counts each closed contact with a moving wall once: stiffness times N N' n n'.
-TEST(SpaceSystem, ProductsKnowClosedContacts) {
+TEST(MatrixFreeSystem, ProductsKnowClosedContacts) {
   ImplicitBody<ThreeD> body;
   body.mix = concrete(54.0, 35.8);
   for (Axis& a : body.grid.axes) a.h = 0.02;
@@ -166,10 +166,10 @@ TEST(SpaceSystem, ProductsKnowClosedContacts) {
   for (std::size_t p = 0; p < contact.size(); ++p) contact[p].active = p % 3 != 0;
   ASSERT_GE(contact.size(), 100u);
 
-  SpaceSystem system;
+  MatrixFreeSystem system;
   system.set_up(*problem, 1e9);
   ASSERT_TRUE(system.prepare(*problem, 100.0));
-  ASSERT_GE(system.batches.strips().size(), 8);
+  ASSERT_GE(system.batches.reduction().size(), 8);
   const int n = body.grid.n_nodes();
   Eigen::VectorXf x = Eigen::VectorXf::Zero(4 * n), with, without;
   for (int i = 0; i < n; ++i)

@@ -70,8 +70,8 @@ TEST(SpaceSolver, TakesSmallBodiesToo) {
   EXPECT_FALSE(detail::by_iteration(few, StepSettings{}));
 }
 
-/// Large enough for four strips of cells.
-const Vec<3> some_strips(0.24, 0.32, 0.12);
+/// Large enough for four chunks of cells.
+const Vec<3> some_chunks(0.24, 0.32, 0.12);
 
 // The same bits with one thread and with two, beside a rigid wall, the pressures with a factor and by
 // iteration.
@@ -81,10 +81,10 @@ TEST(SpaceSolver, BitsDoNotDependOnTheThreads) {
     return WallView<3>{0.32 - x[1], Vec<3>(0.0, -1.0, 0.0), Vec<3>::Zero()};
   };
   for (const auto& [K, most_band_operations] : {std::pair{1e6, 1e9}, {1e6, 0.0}, {2e9, 1e9}}) {
-    ImplicitBody<ThreeD> one = block(K, some_strips), two = block(K, some_strips);
+    ImplicitBody<ThreeD> one = block(K, some_chunks), two = block(K, some_chunks);
     StepSettings settings = by_iteration(1e-3);
     settings.admm.most_band_operations = most_band_operations;
-    settings.even_out.on = true;
+    settings.particle_shifting.on = true;
     settings.wall_gap = 0.005;
     for (int i = 0; i < 2; ++i) {
       omp_set_num_threads(1);
@@ -93,9 +93,9 @@ TEST(SpaceSolver, BitsDoNotDependOnTheThreads) {
       implicit_step(two, ExactBingham{}, settings, wall);
     }
     omp_set_num_threads(1);
-    CellStrips strips;
-    strips.lay_out(one.grid, batch_size);
-    EXPECT_GE(strips.size(), 4);
+    NodeReduction reduction;
+    reduction.lay_out(one.grid, batch_size);
+    EXPECT_GE(reduction.size(), 4);
     for (std::size_t p = 0; p < one.points.size(); ++p) {
       EXPECT_EQ(one.points.x[p], two.points.x[p]);
       EXPECT_EQ(one.points.v[p], two.points.v[p]);
@@ -111,9 +111,9 @@ TEST(SpaceSolver, StiffBulkCostsNoMore) {
   for (int i = 0; i < 2; ++i) {
     ImplicitBody<ThreeD> body = block(i == 0 ? 33e3 : 1e6);
     StepSettings settings = by_iteration(1e-3);
-    settings.even_out.on = true;
+    settings.particle_shifting.on = true;
     for (int step = 0; step < 5; ++step) EXPECT_TRUE(implicit_step(body, ExactBingham{}, settings).converged);
-    products[i] = body.space_system.products;
+    products[i] = body.matrix_free.products;
   }
   std::printf("matrix products in five steps: K = 33 kPa %lld, 1 MPa %lld\n", products[0], products[1]);
   EXPECT_LE(products[1], 2 * products[0]);
@@ -123,25 +123,25 @@ TEST(SpaceSolver, StiffBulkCostsNoMore) {
 // away.
 TEST(SpaceSolver, GradientsAndTheirAdjoint) {
   omp_set_num_threads(1);
-  ImplicitBody<ThreeD> body = block(1e6, some_strips);
+  ImplicitBody<ThreeD> body = block(1e6, some_chunks);
   activate(body.grid, body.points.x);
   CellBatches batches;
   batches.lay_out(body.grid);
-  const CellStrips& strips = batches.strips();
-  ASSERT_GE(strips.size(), 4);
-  StripRoom forces;
-  strips.make_room(forces);
+  const NodeReduction& reduction = batches.reduction();
+  ASSERT_GE(reduction.size(), 4);
+  ReductionBuffer forces;
+  reduction.resize_for_overwrite(forces);
   const int n = body.grid.n_nodes();
   Eigen::VectorXd v(3 * n), sum = Eigen::VectorXd::Zero(3 * n);
   for (int i = 0; i < 3 * n; ++i) v[i] = std::sin(1.7 * i);
   double worst = 0.0, work_on_gradients = 0.0;
   const auto give_batch = [&](int b, double* to) {
-    PlaceTensors<double> G;
+    QuadratureTensors<double> G;
     batches.gradients(b, v.data(), G);
     batches.scatter(b, G, to);
     for (int c = b * batch_size; c < std::min((b + 1) * batch_size, body.grid.n_cells()); ++c)
       for (int k = 0; k < 8; ++k) {
-        const Stencil<3> st = stencil<3>(body.grid.axes, body.grid.cell_index[c], gauss_place<3>(k));
+        const Stencil<3> st = stencil<3>(body.grid.axes, body.grid.cell_index[c], quadrature_point<3>(k));
         Mat<3, 3> L = Mat<3, 3>::Zero();
         for (int i = 0; i < 27; ++i) L += v.segment<3>(3 * body.grid.cell_nodes[c][i]) * st.g[i].transpose();
         for (int d = 0; d < 3; ++d)
@@ -150,11 +150,11 @@ TEST(SpaceSolver, GradientsAndTheirAdjoint) {
         work_on_gradients += L.squaredNorm();
       }
   };
-  const auto give = [&](int strip, double* to) {
-    for (int b = batches.first_batch(strip); b < batches.last_batch(strip); ++b) give_batch(b, to);
+  const auto give = [&](int chunk, double* to) {
+    for (int b = batches.first_batch(chunk); b < batches.last_batch(chunk); ++b) give_batch(b, to);
   };
-  strips.sweep_in_region<double>(forces, give,
-                                 [&](int i) { sum.segment<3>(3 * i) = strips.sum_at<double, 3>(i, forces); });
+  reduction.sweep_in_region<double>(forces, give,
+                                 [&](int i) { sum.segment<3>(3 * i) = reduction.sum_at<double, 3>(i, forces); });
   EXPECT_LE(worst, 1e-11 * 100.0);  // gradients are of the order 1/h = 100 1/s
   EXPECT_NEAR(sum.dot(v) / work_on_gradients, 1.0, 1e-12);
 }
@@ -175,7 +175,7 @@ TEST(SpaceSolver, BallCollapsesSymmetrically) {
       body.points);
   const Points<3> start = body.points;
   StepSettings settings = by_iteration(1e-8);
-  settings.even_out.on = true;
+  settings.particle_shifting.on = true;
   while (body.time < 0.1) ASSERT_TRUE(implicit_step(body, ExactBingham{}, settings).converged);
   const auto& x = body.points.x;
   double worst = 0.0, top = 0.0, top_before = 0.0;

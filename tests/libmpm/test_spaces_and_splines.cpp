@@ -21,32 +21,32 @@ double shear_rate_of(const Eigen::Matrix3d& L) {
 }
 
 /// The 3x3 velocity gradient of the field v = v0 + L x at x.
-template <class Space>
-Eigen::Matrix3d gradient_3d(const Vec<Space::dim>& v, const Mat<Space::dim, Space::dim>& L,
-                            const Vec<Space::dim>& x) {
+template <class Geometry>
+Eigen::Matrix3d gradient_3d(const Vec<Geometry::dim>& v, const Mat<Geometry::dim, Geometry::dim>& L,
+                            const Vec<Geometry::dim>& x) {
   Eigen::Matrix3d G = Eigen::Matrix3d::Zero();
-  G.topLeftCorner(Space::dim, Space::dim) = L;
-  if constexpr (std::is_same_v<Space, Axisymmetric>) {  // order r, z, theta; the hoop rate is v_r / r
+  G.topLeftCorner(Geometry::dim, Geometry::dim) = L;
+  if constexpr (std::is_same_v<Geometry, Axisymmetric>) {  // order r, z, theta; the hoop rate is v_r / r
     G(2, 2) = v[0] / x[0];
   }
-  if constexpr (std::is_same_v<Space, Polar>) {  // derivatives along theta are over r, and the basis turns
+  if constexpr (std::is_same_v<Geometry, Polar>) {  // derivatives along theta are over r, and the basis turns
     G(0, 1) = (L(0, 1) - v[1]) / x[0];
     G(1, 1) = (L(1, 1) + v[0]) / x[0];
   }
   return G;
 }
 
-template <class Space>
+template <class Geometry>
 class Spaces : public testing::Test {};
 using AllSpaces = testing::Types<Axisymmetric, PlaneStrain, Polar, ThreeD>;
 TYPED_TEST_SUITE(Spaces, AllSpaces);
 
-// A linear velocity field, sampled at the controls of cells in the open and next to walls, must give the
+// A linear velocity field, sampled at the nodes of cells in the open and next to walls, must give the
 // exact shear rate and divergence anywhere in the cell: |q| = sqrt(2 D':D') with the hoop terms, linear
 // completeness of the splines.
 TYPED_TEST(Spaces, ShearRateAndDivergenceOfLinearFields) {
-  using Space = TypeParam;
-  constexpr int D = Space::dim;
+  using Geometry = TypeParam;
+  constexpr int D = Geometry::dim;
   std::mt19937 engine(11);
   std::uniform_real_distribution<double> number(-1.0, 1.0);
   for (int trial = 0; trial < 200; ++trial) {
@@ -64,19 +64,19 @@ TYPED_TEST(Spaces, ShearRateAndDivergenceOfLinearFields) {
       v0[d] = number(engine);
       for (int e = 0; e < D; ++e) L(d, e) = number(engine);
     }
-    const Vec<D> x = cell_place<D>(axes, cell, s);
+    const Vec<D> x = position_in_cell<D>(axes, cell, s);
     const Stencil<D> st = stencil<D>(axes, cell, s);
-    Vec<Space::n_strain> q = Vec<Space::n_strain>::Zero();
+    Vec<Geometry::n_strain> q = Vec<Geometry::n_strain>::Zero();
     double div = 0.0;
     for (int k = 0; k < Stencil<D>::n; ++k) {
-      Vec<D> control;
-      for (int d = 0; d < D; ++d) control[d] = axes[d].control_position(cell[d] + local_offset<D>(k)[d]);
-      const Vec<D> u = v0 + L * control;
-      q += Space::strain_rows(st.N[k], st.g[k], x) * u;
-      div += Space::divergence_row(st.N[k], st.g[k], x).dot(u);
+      Vec<D> node;
+      for (int d = 0; d < D; ++d) node[d] = axes[d].node_position(cell[d] + local_offset<D>(k)[d]);
+      const Vec<D> u = v0 + L * node;
+      q += Geometry::strain_rows(st.N[k], st.g[k], x) * u;
+      div += Geometry::divergence_row(st.N[k], st.g[k], x).dot(u);
     }
-    const Eigen::Matrix3d G = gradient_3d<Space>(v0 + L * x, L, x);
-    // Round-off: controls are some h apart and the gradients of size 1/h cancel to size 1.
+    const Eigen::Matrix3d G = gradient_3d<Geometry>(v0 + L * x, L, x);
+    // Round-off: nodes are some h apart and the gradients of size 1/h cancel to size 1.
     EXPECT_NEAR(q.norm() / shear_rate_of(G), 1.0, 1e-11);
     EXPECT_NEAR(div, G.trace(), 1e-11 * (1.0 + G.norm()));
   }
@@ -92,13 +92,13 @@ std::vector<Axis> axes() {
   return all;
 }
 
-/// The same with creases: one, two next to each other, two apart.
-std::vector<Axis> axes_and_creased() {
+/// The same with repeated knots: one, two next to each other, two apart.
+std::vector<Axis> axes_and_repeated() {
   std::vector<Axis> all = axes();
   for (Axis a : axes()) {
     if (a.n_cells < 7) continue;
-    for (const std::vector<int>& creases : {std::vector{1}, {6}, {3, 4}, {2, 5}}) {
-      a.creases = creases;
+    for (const std::vector<int>& repeated_knots : {std::vector{1}, {6}, {3, 4}, {2, 5}}) {
+      a.repeated_knots = repeated_knots;
       all.push_back(a);
     }
   }
@@ -106,7 +106,7 @@ std::vector<Axis> axes_and_creased() {
 }
 
 TEST(Splines, PartitionOfUnityAndLinearCompleteness) {
-  for (const Axis& a : axes_and_creased())
+  for (const Axis& a : axes_and_repeated())
     for (int c = 0; c < a.n_cells; ++c)
       for (double s = 0.0; s <= 1.0; s += 0.05) {
         const SplineValues v = splines(a, c, s);
@@ -114,8 +114,8 @@ TEST(Splines, PartitionOfUnityAndLinearCompleteness) {
         for (int k = 0; k < 3; ++k) {
           EXPECT_GE(v.N[k], 0.0);
           sum += v.N[k], slope_sum += v.dN[k];
-          const double control = a.control_position(a.first_control(c) + k);
-          place += v.N[k] * control, slope += v.dN[k] * control;
+          const double node = a.node_position(a.first_node(c) + k);
+          place += v.N[k] * node, slope += v.dN[k] * node;
         }
         EXPECT_NEAR(sum, 1.0, 1e-14);
         EXPECT_NEAR(slope_sum, 0.0, 1e-13);
@@ -152,19 +152,19 @@ TEST(Splines, SmoothAndInterpolatoryOnWalls) {
   }
 }
 
-// A crease belongs to one control, the last of the cell below and the first of the cell above; elsewhere the
-// splines go on smoothly, a control further for every crease.
+// A repeated knot belongs to one node, the last of the cell below and the first of the cell above; elsewhere the
+// splines go on smoothly, a node further for every repeated knot.
 TEST(Splines, BendAtCreasesAlone) {
-  for (const Axis& a : axes_and_creased())
+  for (const Axis& a : axes_and_repeated())
     for (int c = 0; c + 1 < a.n_cells; ++c) {
       const SplineValues left = splines(a, c, 1.0), right = splines(a, c + 1, 0.0);
-      if (a.creased(c + 1)) {
-        EXPECT_EQ(a.first_control(c) + 2, a.first_control(c + 1));
-        EXPECT_EQ(a.control_position(a.first_control(c + 1)), a.origin + (c + 1) * a.h);
+      if (a.repeated(c + 1)) {
+        EXPECT_EQ(a.first_node(c) + 2, a.first_node(c + 1));
+        EXPECT_EQ(a.node_position(a.first_node(c + 1)), a.origin + (c + 1) * a.h);
         EXPECT_EQ(left.N[2], 1.0);
         EXPECT_EQ(right.N[0], 1.0);
       } else {
-        EXPECT_EQ(a.first_control(c) + 1, a.first_control(c + 1));
+        EXPECT_EQ(a.first_node(c) + 1, a.first_node(c + 1));
         for (int k = 0; k < 2; ++k) EXPECT_NEAR(left.dN[k + 1], right.dN[k], 1e-13);
       }
     }
@@ -193,8 +193,8 @@ TEST(Transfer, MomentumOnShortPeriodicAxes) {
   for (int n : {1, 2, 3}) {
     ActiveGrid<2> grid;
     grid.axes[0] = {.h = 0.1, .periodic = true, .n_cells = n};
-    grid.axes[1] = {.h = 0.07, .low = FaceKind::free_slip, .creases = {1}};
-    if (n == 3) grid.axes[0].creases = {1, 2};
+    grid.axes[1] = {.h = 0.07, .low = FaceKind::free_slip, .repeated_knots = {1}};
+    if (n == 3) grid.axes[0].repeated_knots = {1, 2};
     Points<2> points;
     double mass = 0.0;
     Vec<2> momentum = Vec<2>::Zero();

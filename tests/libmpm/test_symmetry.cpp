@@ -39,8 +39,8 @@ double difference(const Points<D>& part, const Points<D>& start, const Points<D>
   return worst;
 }
 
-template <class Space>
-double difference_after(int steps, ImplicitBody<Space> part, ImplicitBody<Space> whole, const StepSettings& settings) {
+template <class Geometry>
+double difference_after(int steps, ImplicitBody<Geometry> part, ImplicitBody<Geometry> whole, const StepSettings& settings) {
   omp_set_num_threads(1);
   const auto part_start = part.points, whole_start = whole.points;
   for (int i = 0; i < steps; ++i) {
@@ -54,7 +54,7 @@ StepSettings settings_with(int direct_below) {
   StepSettings settings;
   settings.admm.direct_below = direct_below;
   settings.admm.max_iterations = 4000;
-  settings.even_out.on = true;
+  settings.particle_shifting.on = true;
   settings.fixed_dt = 0.01;
   settings.friction_coefficient = 0.3;
   return settings;
@@ -124,17 +124,17 @@ TEST(Symmetry, PressuresByIterationAgreeWithTheFactor) {
     }
     EXPECT_LE(difference(iterated.points, start, factorised.points, start), 2e-5);
     std::printf("K = %.0f kPa: %lld products with a factor, %lld by iteration\n", 1e-3 * K,
-                factorised.space_system.products, iterated.space_system.products);
-    EXPECT_LE(iterated.space_system.products, 2 * factorised.space_system.products);
+                factorised.matrix_free.products, iterated.matrix_free.products);
+    EXPECT_LE(iterated.matrix_free.products, 2 * factorised.matrix_free.products);
   }
 }
 
-// The control behind the plane: half a cell behind it, the splines those of an axis without an end.
+// The node behind the plane: half a cell behind it, the splines those of an axis without an end.
 TEST(Symmetry, SplinesAreThoseInside) {
   const Axis axis{
       .h = 0.3, .origin = -1.0, .low = FaceKind::symmetry, .high = FaceKind::symmetry, .n_cells = 2},
       inside{.h = 0.3, .origin = -1.0};
-  EXPECT_DOUBLE_EQ(axis.control_position(0), -1.15);
+  EXPECT_DOUBLE_EQ(axis.node_position(0), -1.15);
   EXPECT_EQ(axis.mirrored(0), 1);
   EXPECT_EQ(axis.mirrored(1), 1);
   EXPECT_EQ(axis.mirrored(2), 2);

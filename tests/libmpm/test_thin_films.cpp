@@ -24,7 +24,7 @@ double surface_speed(double thickness, bool fitted) {
   auto body = film_on_a_wall(thickness);
   StepSettings settings;
   settings.fixed_dt = 0.01;
-  settings.fitted_places = fitted;
+  settings.cut_cell_rule = fitted;
   for (int i = 0; i < 6; ++i) EXPECT_TRUE(implicit_step(body, ExactBingham{}, settings).converged);
   double speed = 0.0;
   for (const auto& v : body.points.v) speed = std::max(speed, -v[1]);
@@ -59,8 +59,8 @@ double tilt_after_long_steps(bool moving_surface) {
       [&](const Vec<2>& x) { return rho_g * (depth(x[0]) - x[1]); }, body.points);
   StepSettings settings;
   settings.fixed_dt = 1.0;
-  settings.even_out.on = true;
-  settings.strays = 0.005;
+  settings.particle_shifting.on = true;
+  settings.detached = 0.005;
   settings.alternating_viscosity = 100.0;
   settings.moving_surface = moving_surface;
   for (int i = 0; i < 40; ++i) implicit_step(body, ExactBingham{}, settings);

@@ -1,4 +1,4 @@
-// The tiles of the explicit grid: rows of controls, and passes over them by several threads.
+// The tiles of the explicit grid: rows of nodes, and passes over them by several threads.
 
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ TileGrid<D> row_of_tiles(int n, int n_threads) {
 }
 
 /// Every row of a tile's cube is a row of those of its blocks that lie beside each other along it, and of no
-/// other: blocks of four controls, two a direction.
+/// other: blocks of four nodes, two a direction.
 template <int D>
 void expect_rows_in_blocks() {
   constexpr int n_rows = power(tile_span, D - 1);

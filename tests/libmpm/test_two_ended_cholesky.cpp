@@ -38,7 +38,7 @@ struct System {
   /// What the factor makes of A times the solution with so many threads.
   Eigen::VectorXf solved(int threads) const {
     omp_set_num_threads(threads);
-    TwoEndedCholesky<float> factor;
+    TwistedCholesky<float> factor;
     factor.reset(first);
     const int n = static_cast<int>(A.rows());
     for (int i = 0; i < n; ++i)
@@ -72,46 +72,46 @@ void expect_solved(const System& system) {
   EXPECT_EQ(one, two);  // the bits do not depend on the threads
 }
 
-TEST(TwoEndedCholesky, SolvesABandOfOneWidth) {
+TEST(TwistedCholesky, SolvesABandOfOneWidth) {
   std::vector<int> first;
   for (int i = 0; i < 700; ++i) first.push_back(std::max(0, i - 90));
   expect_solved(System(first));
 }
 
-TEST(TwoEndedCholesky, SolvesABandThatIsNarrowTowardsTheEndsOfARoundBody) {
+TEST(TwistedCholesky, SolvesABandThatIsNarrowTowardsTheEndsOfARoundBody) {
   std::vector<int> cells;
   for (int i = -14; i <= 14; ++i) cells.push_back(2 + static_cast<int>(3.0 * std::sqrt(225.0 - i * i)));
   expect_solved(System(lines(cells)));
 }
 
-TEST(TwoEndedCholesky, SolvesPiecesThatDoNotTouch) {
+TEST(TwistedCholesky, SolvesPiecesThatDoNotTouch) {
   std::vector<int> first;
   for (int i = 0; i < 600; ++i) first.push_back(std::max(i / 150 * 150, i - 70));
   expect_solved(System(first));
 }
 
-TEST(TwoEndedCholesky, SolvesARowThatReachesFarBackAmongShortOnes) {
+TEST(TwistedCholesky, SolvesARowThatReachesFarBackAmongShortOnes) {
   std::vector<int> first;
   for (int i = 0; i < 500; ++i) first.push_back(std::max(0, i - 3));
   first[200] = 60, first[320] = 310, first[430] = 300;
   expect_solved(System(first));
 }
 
-TEST(TwoEndedCholesky, SolvesWhatIsSmallerThanItsBand) {
+TEST(TwistedCholesky, SolvesWhatIsSmallerThanItsBand) {
   expect_solved(System({0}));
   expect_solved(System({0, 0, 1, 0, 2}));
   expect_solved(System(std::vector<int>(130, 0)));
 }
 
-TEST(TwoEndedCholesky, SolvesWhatIsNotCoupledAtAll) {
+TEST(TwistedCholesky, SolvesWhatIsNotCoupledAtAll) {
   std::vector<int> first;
   for (int i = 0; i < 100; ++i) first.push_back(i);
   expect_solved(System(first));
 }
 
-TEST(TwoEndedCholesky, RefusesWhatIsNotPositiveDefinite) {
+TEST(TwistedCholesky, RefusesWhatIsNotPositiveDefinite) {
   for (int wrong : {3, 250, 497}) {  // at the first end, in the middle, at the last
-    TwoEndedCholesky<float> factor;
+    TwistedCholesky<float> factor;
     std::vector<int> first;
     for (int i = 0; i < 500; ++i) first.push_back(std::max(0, i - 40));
     factor.reset(first);

@@ -85,7 +85,7 @@ l_box::Outcome over_two_seconds(SpaceKind space, bool side_walls_slip, int bars)
 }
 
 // Between side walls that let it slip the concrete moves as in the plane, and half of the box as the whole.
-// The front is faster by 7 %: partly filled cells keep the places of full ones in space (fitted_places.hpp),
+// The front is faster by 7 %: partly filled cells keep the places of full ones in space (cut_cell_rule.hpp),
 // which leaves what is thin less friction.
 TEST(LBoxInSpace, IsThePlaneBetweenWallsThatSlip) {
   const auto plane = over_two_seconds(SpaceKind::plane, false, 0);

@@ -15,7 +15,7 @@
 
 namespace tremie {
 
-/// Space for a law that takes engineering shear rates for components of D: simple shear at the rate g yields,
+/// Geometry for a law that takes engineering shear rates for components of D: simple shear at the rate g yields,
 /// flows and breaks lambda down as if at 2 g; extension is as it should be.
 struct Unhalved : ThreeD {};
 
@@ -130,8 +130,8 @@ class LinearElements {
 };
 
 /// L of every point from the velocities on the grid.
-template <class Space>
-void gradients(ExplicitState<Space>& state, std::vector<Mat<D, D>>& L) {
+template <class Geometry>
+void gradients(ExplicitState<Geometry>& state, std::vector<Mat<D, D>>& L) {
   for (int t = 0; t < state.grid.n_tiles(); ++t) {
     const Tile<D>& tile = state.grid.tiles[static_cast<std::size_t>(t)];
     TileGrid<D>::Buffer v;
@@ -154,8 +154,8 @@ void gradients(ExplicitState<Space>& state, std::vector<Mat<D, D>>& L) {
   }
 }
 
-template <class Space>
-Rates rates_of(const Body<Space>& body, const std::vector<Mat<D, D>>& L) {
+template <class Geometry>
+Rates rates_of(const Body<Geometry>& body, const std::vector<Mat<D, D>>& L) {
   Rates r{};
   const LinearElements elements(body.points, body.grid.axes[0].h);
   double volume = 0.0;
@@ -174,17 +174,17 @@ Rates rates_of(const Body<Space>& body, const std::vector<Mat<D, D>>& L) {
   return r;
 }
 
-template <class Space>
+template <class Geometry>
 void print_rates(const Asked& asked) {
   const auto [cell, rest, seconds, flip, mix, alpha, gate] = asked;
   const Scene scene = paper_scene(asked);
-  Body<Space> body = filled_cone<Space>(scene);
+  Body<Geometry> body = filled_cone<Geometry>(scene);
   ExplicitSettings settings = explicit_settings(scene);
   settings.keep_affine = true;
   RigidWall<D> wall;
   lifted_wall(scene, settings.wall_gap + 0.6 * cell, wall);
   const Papanastasiou law{scene.model.regularisation};
-  auto state = start_explicit(body, law, settings, shape_of<Space>(scene.model));
+  auto state = start_explicit(body, law, settings, shape_of<Geometry>(scene.model));
   std::vector<Mat<D, D>> L(state.points.n);
   Rates peak{}, total{};
   constexpr double interval = 0.01;

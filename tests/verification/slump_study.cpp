@@ -42,7 +42,7 @@ struct Run {
   double cpu = 0.0;
 };
 
-Run run(const Mixture& mix, const Grid& grid, MethodKind method, bool instant, bool even_out,
+Run run(const Mixture& mix, const Grid& grid, MethodKind method, bool instant, bool particle_shifting,
         double duration) {
   slump_flow::Scene scene;
   scene.mix.tau_0 = mix.tau_0;
@@ -52,7 +52,7 @@ Run run(const Mixture& mix, const Grid& grid, MethodKind method, bool instant, b
   scene.model.cell = {1e-3 * grid.cell[0], 1e-3 * grid.cell[1]};
   scene.model.points_per_cell = grid.points;
   scene.model.method = method;
-  scene.model.even_out = even_out;
+  scene.model.particle_shifting = particle_shifting;
   const std::clock_t start = std::clock();
   Run r{slump_flow::run(scene), 0.0};
   r.cpu = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
@@ -71,11 +71,11 @@ void against_finite_elements(std::ofstream& md, std::ofstream& csv) {
         "height | steps | CPU s |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n| finite elements | | "
         "435.4 | "
         "442.4 | 444.8 | 446.0 | 447.8 | 448.8 | | 48.1 | | |\n";
-  for (bool even_out : {false, true})
+  for (bool particle_shifting : {false, true})
     for (const Grid& grid : grids) {
-      const Run r = run(mixes[2], grid, MethodKind::automatic, true, even_out, 20.0);
+      const Run r = run(mixes[2], grid, MethodKind::automatic, true, particle_shifting, 20.0);
       double worst = 0.0;
-      md << fmt::format("| {} | {} |", name(grid), even_out ? "yes" : "no");
+      md << fmt::format("| {} | {} |", name(grid), particle_shifting ? "yes" : "no");
       for (const auto& [time, mm] : verification::finite_elements_mix_c) {
         const double spread = spread_at(r.outcome, time);
         worst = std::max(worst, std::abs(spread / mm - 1.0));
@@ -84,7 +84,7 @@ void against_finite_elements(std::ofstream& md, std::ofstream& csv) {
       md << fmt::format(" {:.1f} % | {:.1f} | {} | {:.2f} |\n", 100 * worst, 1e3 * r.outcome.results.height,
                         r.outcome.cost.steps, r.cpu);
       csv << fmt::format("C instant,{},{},{},{:.4f},{:.4f},{}\n", name(grid),
-                         even_out ? "evened" : "as they fall", "auto", r.cpu, worst, r.outcome.cost.steps);
+                         particle_shifting ? "evened" : "as they fall", "auto", r.cpu, worst, r.outcome.cost.steps);
     }
 }
 

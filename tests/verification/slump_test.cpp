@@ -55,7 +55,7 @@ Outcome at_one_second(SchemeKind scheme, ContactKind contact, int points_per_cel
 // GIMP on a floor without slip, against implicit steps of the same law on the same cells: within 4 %
 // (measured 1.5 %), and a floor that the concrete sticks to lets it go less far than one with friction. A
 // floor whose cells are hollow holds too little: 8 % further with stress first, and the steps of stress last
-// ran away where a pressure pushed controls without mass.
+// ran away where a pressure pushed nodes without mass.
 TEST(Slump, ExplicitGimpOnAFloorThatHolds) {
   const double implicit = at_one_second(SchemeKind::implicit, ContactKind::no_slip, 4).results.spread;
   for (const SchemeKind scheme : {SchemeKind::explicit_usl, SchemeKind::explicit_usf}) {

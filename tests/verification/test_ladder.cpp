@@ -26,9 +26,9 @@ TEST(Ladder, NamesTheBoundsThatAreBroken) {
   one.bounds = {{.what = "order", .value = 1.4, .limit = 1.5, .at_least = true},
                 {.what = "error", .value = 1e-4, .limit = 1e-3},
                 {.what = "not a number", .value = std::nan(""), .limit = 1.0}};
-  const std::vector<Rung> rungs{{4, "Film", {one}}};
-  EXPECT_FALSE(all_kept(rungs));
-  const auto lines = broken_bounds(rungs);
+  const std::vector<CaseGroup> groups{{4, "Film", {one}}};
+  EXPECT_FALSE(all_kept(groups));
+  const auto lines = broken_bounds(groups);
   ASSERT_EQ(lines.size(), 2u);
   EXPECT_EQ(lines[0], "rung 4, film: order 1.4, at least 1.5 wanted");
 }

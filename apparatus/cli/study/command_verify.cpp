@@ -17,12 +17,12 @@ namespace tremie::cli {
 namespace {
 
 struct Options {
-  std::vector<std::string> rungs;
+  std::vector<std::string> groups;
   std::string out = "runs/verification";
   bool quick = false, full = false, force = false;
 };
 
-std::string known_rungs() {
+std::string known_groups() {
   std::string text;
   for (const auto& step : verification::ladder())
     text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", step.name, step.number);
@@ -30,50 +30,50 @@ std::string known_rungs() {
 }
 
 /// The steps asked for by name or number, all without any, in the ladder's order.
-std::vector<verification::Step> chosen(const std::vector<std::string>& rungs) {
+std::vector<verification::Step> chosen(const std::vector<std::string>& groups) {
   const auto ladder = verification::ladder();
   const auto is = [](const verification::Step& step, const std::string& name) {
     return name == step.name || name == std::to_string(step.number);
   };
-  for (const std::string& name : rungs)
+  for (const std::string& name : groups)
     if (std::none_of(ladder.begin(), ladder.end(), [&](const auto& step) { return is(step, name); }))
       throw scene::InputError(
-          fmt::format("verify: there is no rung \"{}\"; there are {}", name, known_rungs()));
+          fmt::format("verify: there is no rung \"{}\"; there are {}", name, known_groups()));
   std::vector<verification::Step> steps;
   for (const auto& step : ladder)
-    if (rungs.empty() ||
-        std::any_of(rungs.begin(), rungs.end(), [&](const auto& name) { return is(step, name); }))
+    if (groups.empty() ||
+        std::any_of(groups.begin(), groups.end(), [&](const auto& name) { return is(step, name); }))
       steps.push_back(step);
   return steps;
 }
 
 std::string command_line(const Options& options) {
   std::string text = "tremie verify";
-  for (const auto& rung : options.rungs) text += " " + rung;
+  for (const auto& group : options.groups) text += " " + group;
   return text + (options.full ? " --full" : " --quick");
 }
 
 int verify(const Options& options) {
-  const auto steps = chosen(options.rungs);
+  const auto steps = chosen(options.groups);
   report::RunFolder folder(options.out, options.force);
   const auto depth = options.full ? verification::Depth::full : verification::Depth::quick;
-  std::vector<verification::Rung> rungs;
+  std::vector<verification::CaseGroup> groups;
   for (const auto& step : steps) {
     fmt::print("rung {}: {}\n", step.number, step.what);
     std::fflush(stdout);
     const double start = verification::cpu_seconds();
-    rungs.push_back(step.run(depth));
-    const bool kept = verification::all_kept({rungs.back()});
+    groups.push_back(step.run(depth));
+    const bool kept = verification::all_kept({groups.back()});
     fmt::print("        {} in {:.1f} s of CPU\n", kept ? "all bounds kept" : "a bound is broken",
                verification::cpu_seconds() - start);
     std::fflush(stdout);
   }
-  const std::string note = verification::write_document(rungs, command_line(options), folder.staging());
+  const std::string note = verification::write_document(groups, command_line(options), folder.staging());
   folder.publish();
-  for (const auto& line : verification::broken_bounds(rungs)) fmt::print(stderr, "not kept: {}\n", line);
+  for (const auto& line : verification::broken_bounds(groups)) fmt::print(stderr, "not kept: {}\n", line);
   if (!note.empty()) fmt::print("note: {}\n", note);
   fmt::print("written to {}\n", (folder.target() / "VERIFICATION.md").string());
-  return verification::all_kept(rungs) ? done : not_to_be_trusted;
+  return verification::all_kept(groups) ? done : not_to_be_trusted;
 }
 
 }  // namespace
@@ -81,7 +81,7 @@ int verify(const Options& options) {
 void add_command_verify(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand(verify_command.name, verify_command.description);
-  command->add_option("rungs", options->rungs, "Rungs by name or number (default: all): " + known_rungs());
+  command->add_option("rungs", options->groups, "Rungs by name or number (default: all): " + known_groups());
   auto* quick =
       command->add_flag("--quick", options->quick, "Coarser cells, under five minutes (the default)");
   command->add_flag("--full", options->full, "All cells, under an hour")->excludes(quick);

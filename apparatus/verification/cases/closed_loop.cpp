@@ -33,7 +33,7 @@ Loop flow_curve_and_back(const Bingham& bingham, double cell_mm) {
 
 }  // namespace
 
-Rung closed_loop_rung(Depth depth) {
+CaseGroup closed_loop_cases(Depth depth) {
   Case one{.name = "closed_loop",
            .title = "Flow curve of Mix A, Couette section",
            .equation = "(τ0, μ) → torque at seven speeds → (τ0, μ)",

@@ -169,6 +169,6 @@ Case blades(Depth depth) {
 
 }  // namespace
 
-Rung couette_rung(Depth depth) { return {5, "Couette flow", {steady(depth), decay(depth), blades(depth)}}; }
+CaseGroup couette_cases(Depth depth) { return {5, "Couette flow", {steady(depth), decay(depth), blades(depth)}}; }
 
 }  // namespace tremie::verification

@@ -46,7 +46,7 @@ double reading_of(const scene::Outcome& outcome, const std::string& name) {
 
 }  // namespace
 
-Rung error_bars_rung(Depth depth) {
+CaseGroup error_bars_cases(Depth depth) {
   Table table{.name = "Error bars against the answer on cells of half the size",
               .text = "",
               .columns = {"scene", "value", "bar", "finer", "inside", "extra CPU", "basis"},

@@ -36,7 +36,7 @@ std::string in_a_table(std::string text) {
 
 }  // namespace
 
-Rung extremes_rung(Depth depth) {
+CaseGroup extremes_cases(Depth depth) {
   const double limit = depth == Depth::full ? 120.0 : 2.0;
   std::vector<Extreme> cases = extremes();
   if (depth == Depth::quick) {  // every seventh

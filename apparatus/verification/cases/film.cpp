@@ -123,22 +123,22 @@ Case schemes(const Flow& flow, Depth depth) {
 
 }  // namespace
 
-Rung film_rung(Depth depth) {
-  Rung rung{4, "Film down a plane, plane Poiseuille flow", {}};
+CaseGroup film_cases(Depth depth) {
+  CaseGroup group{4, "Film down a plane, plane Poiseuille flow", {}};
   for (const bool is_film : {true, false}) {
     const Flow flow{is_film};
     const std::string name = is_film ? "film" : "poiseuille",
                       title = is_film ? "Film" : "Plane Poiseuille flow";
-    rung.cases.push_back(flow_case(
+    group.cases.push_back(flow_case(
         name + "_exact", title + ", exact yield", flow, ExactBingham{},
         [&](double y) { return film::exact_velocity(flow, y); }, 1.5, depth));
-    rung.cases.back().reference = "closed form: a parabola up to the plug";
-    rung.cases.push_back(flow_case(name + "_regularised", title + ", Papanastasiou m = 100 s", flow,
+    group.cases.back().reference = "closed form: a parabola up to the plug";
+    group.cases.push_back(flow_case(name + "_regularised", title + ", Papanastasiou m = 100 s", flow,
                                    Papanastasiou{100.0}, film::RegularisedProfile(flow, 100.0), 1.8, depth));
-    rung.cases.back().reference = "τ(γ̇) = ρ g_x (…) solved for γ̇ and summed by Gauss' rule on 4000 intervals";
-    rung.cases.push_back(schemes(flow, depth));
+    group.cases.back().reference = "τ(γ̇) = ρ g_x (…) solved for γ̇ and summed by Gauss' rule on 4000 intervals";
+    group.cases.push_back(schemes(flow, depth));
   }
-  return rung;
+  return group;
 }
 
 }  // namespace tremie::verification

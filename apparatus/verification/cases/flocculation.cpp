@@ -100,8 +100,8 @@ Case constant_rate() {
 
 }  // namespace
 
-Rung flocculation_rung(Depth depth) {
-  Rung rung{2, "The flocculation state", {constant_rate()}};
+CaseGroup flocculation_cases(Depth depth) {
+  CaseGroup group{2, "The flocculation state", {constant_rate()}};
   const Thixotropy roussel{.A_thix = 1.3, .alpha = 0.0358, .kinetics = Kinetics::roussel};
   Thixotropy gated = roussel;
   gated.kinetics = Kinetics::gated;
@@ -109,10 +109,10 @@ Rung flocculation_rung(Depth depth) {
                              .rate = [](double t) { return 5.0 * (1.0 - std::cos(0.5 * t)); }};
   const study::Case smooth{
       .name = "cosine", .title = "", .history = {cosine}, .thixotropy = roussel, .times = every_second(20.0)};
-  rung.cases.push_back(
+  group.cases.push_back(
       history_case("smooth_rate", "Smooth rate, 5 (1 − cos t/2) 1/s for 20 s", smooth, depth));
-  const double order = observed_order(rung.cases.back().series[0]);
-  rung.cases.back().bounds = {{.what = "update: order", .value = order, .limit = 1.9, .at_least = true}};
+  const double order = observed_order(group.cases.back().series[0]);
+  group.cases.back().bounds = {{.what = "update: order", .value = order, .limit = 1.9, .at_least = true}};
   const ShearPiece up = {.duration = 10.0, .rate = [](double t) { return 0.5 * t; }};
   const ShearPiece down = {.duration = 10.0, .rate = [](double t) { return 5.0 - 0.5 * t; }};
   const study::Case gate{.name = "gate",
@@ -121,12 +121,12 @@ Rung flocculation_rung(Depth depth) {
                          .thixotropy = gated,
                          .times = every_second(20.0),
                          .largest_dt = 0.1};
-  rung.cases.push_back(
+  group.cases.push_back(
       history_case("gated", "Up and down through the gate, 0 to 5 to 0 1/s in 20 s", gate, depth));
-  rung.cases.back().bounds = {{.what = "update: error at 0.01 s",
-                               .value = rung.cases.back().series[0].runs[3].error,
+  group.cases.back().bounds = {{.what = "update: error at 0.01 s",
+                               .value = group.cases.back().series[0].runs[3].error,
                                .limit = 1e-10}};
-  return rung;
+  return group;
 }
 
 }  // namespace tremie::verification

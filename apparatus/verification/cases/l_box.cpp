@@ -21,7 +21,7 @@ Run at_rest(double cell, bool side_walls) {
 
 }  // namespace
 
-Rung l_box_rung(Depth depth) {
+CaseGroup l_box_cases(Depth depth) {
   Case one{
       .name = "l_box_at_rest",
       .title = "The profile of the L-box at rest",

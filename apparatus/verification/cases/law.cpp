@@ -63,7 +63,7 @@ Series worst_over_frames(const std::string& name, const Law& law, const std::vec
 
 }  // namespace
 
-Rung law_rung(Depth depth) {
+CaseGroup law_cases(Depth depth) {
   const auto frames = rotations(depth == Depth::full ? 5000 : 500);
   Case one{.name = "law",
            .title = "Simple shear in rotated frames",

@@ -35,7 +35,7 @@ std::string mm(double metres) { return fmt::format("{:.0f}", 1e3 * metres); }
 
 }  // namespace
 
-Rung paper_rung(Depth) {
+CaseGroup paper_cases(Depth) {
   Table table{
       .name = "Slump flow without and after 240 s of rest",
       .text =

@@ -132,21 +132,21 @@ Series peer(std::initializer_list<Run> runs) { return {"interFoam (measured else
 
 }  // namespace
 
-Rung pareto_rung(Depth depth) {
+CaseGroup pareto_cases(Depth depth) {
   const Test tests[] = {{"pareto_mix_a", "Mix A at 20 s", 54.0, 35.8, 20.0, 15.0, finite_elements_mix_a},
                         {"pareto_mix_c", "Mix C from 1 to 3 s", 130.0, 30.2, 3.0, 10.0,
                          std::span(finite_elements_mix_c).first(3)}};
-  Rung rung{12, "Which scheme for which budget", {}, {}};
-  for (const Test& test : tests) rung.cases.push_back(measured(test, depth));
-  for (const Case& one : rung.cases) rung.tables.push_back(budgets(one));
+  CaseGroup group{12, "Which scheme for which budget", {}, {}};
+  for (const Test& test : tests) group.cases.push_back(measured(test, depth));
+  for (const Case& one : group.cases) group.tables.push_back(budgets(one));
   const double mix_a = finite_elements_mix_a[0].mm;
-  rung.cases[0].series.push_back(
+  group.cases[0].series.push_back(
       peer({{"10 mm", 10.0, 585.0 / mix_a - 1.0, 5.6},
             {"5 mm", 5.0, 621.0 / mix_a - 1.0, 35.0},
             {"2.5 mm", 2.5, 654.0 / mix_a - 1.0, 480.0, "14 s of 20, still moving"}}));
-  rung.cases[0].notes = {
+  group.cases[0].notes = {
       "CB-GEO MPM, explicit and in 3D with the paper's grid, needs 8 h (2.9e4 s) for the same 20 s."};
-  return rung;
+  return group;
 }
 
 }  // namespace tremie::verification

@@ -12,11 +12,11 @@ namespace {
 constexpr double rho = 2400.0, g = 9.81, height = 0.3;
 
 /// Worst pressure error in a point after a second, in units of rho g H, of a column `levels` cells high.
-template <class Space>
+template <class Geometry>
 Run column_at_rest(int levels, double tau_0) {
-  constexpr int D = Space::dim, up = Space::up;
+  constexpr int D = Geometry::dim, up = Geometry::up;
   const double start = cpu_seconds(), h = height / levels;
-  ImplicitBody<Space> body;
+  ImplicitBody<Geometry> body;
   body.mix = test::concrete(tau_0, 35.8);
   body.gravity[up] = -g;
   Vec<D> low = Vec<D>::Zero(), high = Vec<D>::Constant(2 * h);
@@ -24,7 +24,7 @@ Run column_at_rest(int levels, double tau_0) {
     a = {.h = h, .low = FaceKind::free_slip, .high = FaceKind::free_slip, .n_cells = 2};
   body.grid.axes[up] = {.h = h, .low = FaceKind::no_slip};
   high[up] = height;
-  test::fill_box<Space>(body, low, high, 2, [&](const auto& x) { return rho * g * (height - x[up]); });
+  test::fill_box<Geometry>(body, low, high, 2, [&](const auto& x) { return rho * g * (height - x[up]); });
   StepSettings settings;
   settings.dt_max = 0.05;
   int unconverged = 0;
@@ -84,7 +84,7 @@ Run free_rotation(int steps) {
 
 }  // namespace
 
-Rung rest_rung(Depth depth) {
+CaseGroup rest_cases(Depth depth) {
   omp_set_num_threads(1);
   Case rotation{.name = "rotation",
                 .title = "Free rotation",

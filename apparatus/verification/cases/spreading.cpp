@@ -155,7 +155,7 @@ Case rest_balance() {
 
 }  // namespace
 
-Rung spreading_rung(Depth depth) {
+CaseGroup spreading_cases(Depth depth) {
   return {6, "Spreading on a floor", {newtonian(depth), slender(depth), slump(depth), rest_balance()}};
 }
 

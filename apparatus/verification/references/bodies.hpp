@@ -76,17 +76,17 @@ bool all_finite(const Points<D>& points) {
 
 /// A box of points, n across each cell in each direction, without pressure unless `pressure_at` says
 /// otherwise.
-template <class Space, class Pressure>
-void fill_box(ImplicitBody<Space>& body, const Vec<Space::dim>& low, const Vec<Space::dim>& high, int per_cell,
+template <class Geometry, class Pressure>
+void fill_box(ImplicitBody<Geometry>& body, const Vec<Geometry::dim>& low, const Vec<Geometry::dim>& high, int per_cell,
               Pressure pressure_at) {
-  std::array<int, Space::dim> n;
-  for (int d = 0; d < Space::dim; ++d)
+  std::array<int, Geometry::dim> n;
+  for (int d = 0; d < Geometry::dim; ++d)
     n[d] = static_cast<int>(std::lround((high[d] - low[d]) / body.grid.axes[d].h * per_cell));
-  seed_box<Space>(
+  seed_box<Geometry>(
       low, high, n, body.mix.density, body.mix.K, [](const auto&) { return true; }, pressure_at, body.points);
 }
-template <class Space>
-void fill_box(ImplicitBody<Space>& body, const Vec<Space::dim>& low, const Vec<Space::dim>& high, int per_cell) {
+template <class Geometry>
+void fill_box(ImplicitBody<Geometry>& body, const Vec<Geometry::dim>& low, const Vec<Geometry::dim>& high, int per_cell) {
   fill_box(body, low, high, per_cell, [](const auto&) { return 0.0; });
 }
 

@@ -105,7 +105,7 @@ std::vector<Place> steady_state(const Flow& flow, const Law& law, YieldMethod me
     for (int k = 0; k < 3; ++k) {
       const Vec<2> s(0.31, 0.5 + (k - 1) * 0.5 * std::sqrt(0.6));
       const Stencil<2> st = stencil<2>(body.grid.axes, body.grid.cell_index[c], s);
-      Place place{cell_place<2>(body.grid.axes, body.grid.cell_index[c], s)[1], 0.0, 0.0,
+      Place place{position_in_cell<2>(body.grid.axes, body.grid.cell_index[c], s)[1], 0.0, 0.0,
                   k == 1 ? 8.0 / 18.0 : 5.0 / 18.0};
       for (int i = 0; i < 9; ++i) {
         place.v += st.N[i] * body.v[body.grid.cell_nodes[c][i]][0];

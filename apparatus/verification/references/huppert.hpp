@@ -48,7 +48,7 @@ inline HuppertFit huppert_decade(double across, double up) {
   body.time = start;
   StepSettings settings;
   settings.dt_max = 0.5;
-  settings.even_out.on = true;  // a body that flows far; without it the exponent comes out 4 % high
+  settings.particle_shifting.on = true;  // a body that flows far; without it the exponent comes out 4 % high
   std::vector<double> x, y;
   int unconverged = 0;
   while (body.time < 10.0 * start) {

@@ -52,7 +52,7 @@ inline double passing_ratio(const Profile& profile) {
 }
 
 /// Concrete that falls off the column's walls lands within a depth of the gate and may stand there above the
-/// profile: a heap on a deep bed of yield stress tau_0 is a strip on a cohesive ground, which bears (2 + pi)
+/// profile: a heap on a deep bed of yield stress tau_0 is a chunk on a cohesive ground, which bears (2 + pi)
 /// tau_0. Depth of such a heap [m].
 inline double heap_that_is_borne(double tau_0) { return (2.0 + std::numbers::pi) * tau_0 / rho_g; }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// The duals of ADMM in space, in the room of one of them.
+// The ADMM state of ADMM in space, in the room of one of them.
 //
 // Stress s and rate d of a place come out of one vector, a = s + r (rho q + (1 - rho) d) before them:
 //
@@ -17,7 +17,7 @@
 
 namespace tremie {
 
-struct SpaceDuals {
+struct PackedAdmmState {
   struct Batch {
     Lanes<double> a[8][5], tau_y[8];
   };
@@ -44,7 +44,7 @@ inline double sum_of(const Lanes<double>& lanes) { return lanes.sum(); }
 
 /// Stress and rate that a stands for.
 template <class Law>
-void split_dual(const Law& law, const Lanes<double> (&a)[5], const Lanes<double>& tau_y, double r,
+void unpack_stress_and_rate(const Law& law, const Lanes<double> (&a)[5], const Lanes<double>& tau_y, double r,
                 Lanes<double> (&s)[5], Lanes<double> (&d)[5]) {
   const Lanes<double> size = norm(a);
   Lanes<double> factor;
@@ -56,29 +56,29 @@ void split_dual(const Law& law, const Lanes<double> (&a)[5], const Lanes<double>
   }
 }
 
-/// Unstressed duals of so many cells.
-inline SpaceDuals no_duals(int n_cells) {
-  SpaceDuals duals;
-  duals.batch.resize(static_cast<std::size_t>((n_cells + batch_size - 1) / batch_size));
-  for (SpaceDuals::Batch& b : duals.batch)
+/// Unstressed ADMM state of so many cells.
+inline PackedAdmmState zero_admm_state(int n_cells) {
+  PackedAdmmState admm_state;
+  admm_state.batch.resize(static_cast<std::size_t>((n_cells + batch_size - 1) / batch_size));
+  for (PackedAdmmState::Batch& b : admm_state.batch)
     for (int k = 0; k < 8; ++k) {
       b.tau_y[k].setZero();
       for (Lanes<double>& a : b.a[k]) a.setZero();
     }
-  return duals;
+  return admm_state;
 }
 
-/// Duals of cells that were active before go on from where they were; new cells start unstressed.
-inline SpaceDuals carried(const IndexMap<3>& old_map, const ActiveGrid<3>& grid, const SpaceDuals& old) {
-  SpaceDuals now = no_duals(grid.n_cells());
+/// AdmmState of cells that were active before go on from where they were; new cells start unstressed.
+inline PackedAdmmState carried(const IndexMap<3>& old_map, const ActiveGrid<3>& grid, const PackedAdmmState& old) {
+  PackedAdmmState now = zero_admm_state(grid.n_cells());
   now.r = old.r;
   if (old.empty()) return now;
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < grid.n_cells(); ++c) {
     const int from = old_map.at(grid.cell_index[c]);
     if (from < 0) continue;
-    const SpaceDuals::Batch& b = old.batch[from / batch_size];
-    SpaceDuals::Batch& to = now.batch[c / batch_size];
+    const PackedAdmmState::Batch& b = old.batch[from / batch_size];
+    PackedAdmmState::Batch& to = now.batch[c / batch_size];
     const int l = from % batch_size, lane = c % batch_size;
     for (int k = 0; k < 8; ++k) {
       to.tau_y[k][lane] = b.tau_y[k][l];
@@ -90,13 +90,13 @@ inline SpaceDuals carried(const IndexMap<3>& old_map, const ActiveGrid<3>& grid,
 
 /// The stress at place k of cell c.
 template <class Law>
-Vec<5> stress_of(const Law& law, const SpaceDuals& duals, int c, int k) {
-  const SpaceDuals::Batch& b = duals.batch[c / batch_size];
+Vec<5> stress_of(const Law& law, const PackedAdmmState& admm_state, int c, int k) {
+  const PackedAdmmState::Batch& b = admm_state.batch[c / batch_size];
   const int l = c % batch_size;
   Vec<5> a;
   for (int j = 0; j < 5; ++j) a[j] = b.a[k][j][l];
   const double size = a.norm();
-  return size > 0.0 ? Vec<5>(a - duals.r * law.prox(size, b.tau_y[k][l], duals.r) / size * a) : a;
+  return size > 0.0 ? Vec<5>(a - admm_state.r * law.prox(size, b.tau_y[k][l], admm_state.r) / size * a) : a;
 }
 
 }  // namespace detail

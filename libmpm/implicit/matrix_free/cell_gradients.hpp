@@ -2,7 +2,7 @@
 
 // Velocity gradients and their adjoint at the Gauss places of all cells in space, without a matrix.
 //
-// Quadratic splines are products of one spline a direction, so the 27 controls of a cell are contracted one
+// Quadratic splines are products of one spline a direction, so the 27 nodes of a cell are contracted one
 // direction at a time: about 1,000 operations for the nine gradient components at eight places where the rows
 // of the strain matrix would cost 3,200. Cells are taken sixteen at a time, one a vector lane, in double
 // precision or, for the products of a linear solve, in single.
@@ -23,7 +23,7 @@ namespace tremie {
 /// Gradients g[d][e][k] = d v_d / d x_e at Gauss place k of a batch of cells, or the stresses that work on
 /// them.
 template <class Scalar>
-struct PlaceTensors {
+struct QuadratureTensors {
   Lanes<Scalar> g[3][3][8];
 };
 
@@ -34,17 +34,17 @@ class CellBatches {
 
   int n_cells() const { return n_cells_; }
   int n_batches() const { return static_cast<int>(ends_.size()); }
-  /// Strips of whole batches.
-  const CellStrips& strips() const { return strips_; }
-  int first_batch(int strip) const { return strips_.first_cell(strip) / batch_size; }
-  int last_batch(int strip) const { return (strips_.last_cell(strip) + batch_size - 1) / batch_size; }
+  /// Chunk of whole batches.
+  const NodeReduction& reduction() const { return reduction_; }
+  int first_batch(int chunk) const { return reduction_.first_cell(chunk) / batch_size; }
+  int last_batch(int chunk) const { return (reduction_.last_cell(chunk) + batch_size - 1) / batch_size; }
 
   /// Gradients of the nodal vector field v in a batch.
   template <class Scalar>
-  void gradients(int batch, const Scalar* v, PlaceTensors<Scalar>& out) const;
-  /// Adds sum_k T_k grad N to each node of the batch's cells; `to`: its strip's nodes.
+  void gradients(int batch, const Scalar* v, QuadratureTensors<Scalar>& out) const;
+  /// Adds sum_k T_k grad N to each node of the batch's cells; `to`: its chunk's nodes.
   template <class Scalar>
-  void scatter(int batch, const PlaceTensors<Scalar>& T, Scalar* to) const;
+  void scatter(int batch, const QuadratureTensors<Scalar>& T, Scalar* to) const;
   /// Cells of node i in their order: cell_of() and local_of() tell what an entry means.
   const int* entries_begin(int i) const { return &node_entry_[node_begin_[i]]; }
   const int* entries_end(int i) const { return node_entry_.data() + node_begin_[i + 1]; }
@@ -52,7 +52,7 @@ class CellBatches {
   static int local_of(int entry) { return entry % of_cell; }
 
  private:
-  // The three splines of a direction as seen from the middle control u1: with a = f (u0 - u1), c = g (u2 -
+  // The three splines of a direction as seen from the middle node u1: with a = f (u0 - u1), c = g (u2 -
   // u1) and f, g = 2 at a wall and 1 elsewhere, a value is u1 + t^2/2 a + s^2/2 c and a slope (s c - t a)/h,
   // t = 1 - s.
   static constexpr double near_ = 0.78867513459481288, far_ = 1.0 - near_;
@@ -87,7 +87,7 @@ class CellBatches {
   std::vector<Nodes> nodes_;  ///< kept_nodes() of each batch
   std::vector<Ends> ends_;
   std::vector<int> node_begin_, node_entry_;
-  CellStrips strips_;
+  NodeReduction reduction_;
 };
 
 inline void CellBatches::lay_out(const ActiveGrid<3>& grid) {
@@ -97,8 +97,8 @@ inline void CellBatches::lay_out(const ActiveGrid<3>& grid) {
   const int n = (n_cells_ + batch_size - 1) / batch_size;
   lines_ = !grid.axes[2].periodic;
   const int kept = kept_nodes(), step = 27 / kept;
-  tremie::make_room(nodes_, static_cast<std::size_t>(n) * kept);
-  tremie::make_room(ends_, static_cast<std::size_t>(n));
+  tremie::resize_for_overwrite(nodes_, static_cast<std::size_t>(n) * kept);
+  tremie::resize_for_overwrite(ends_, static_cast<std::size_t>(n));
 #pragma omp parallel for schedule(static)
   for (int b = 0; b < n; ++b)
     for (int l = 0; l < batch_size; ++l) {
@@ -116,15 +116,15 @@ inline void CellBatches::lay_out(const ActiveGrid<3>& grid) {
   for (const auto& nodes : grid.cell_nodes)
     for (int i : nodes) ++node_begin_[i + 1];
   for (int i = 0; i < n_nodes; ++i) node_begin_[i + 1] += node_begin_[i];
-  tremie::make_room(node_entry_, static_cast<std::size_t>(n_cells_) * 27);
+  tremie::resize_for_overwrite(node_entry_, static_cast<std::size_t>(n_cells_) * 27);
   std::vector<int> next(node_begin_.begin(), node_begin_.end() - 1);
   for (int c = 0; c < n_cells_; ++c)
     for (int k = 0; k < 27; ++k) node_entry_[next[grid.cell_nodes[c][k]]++] = c * of_cell + k;
-  strips_.lay_out(grid, batch_size);
+  reduction_.lay_out(grid, batch_size);
 }
 
 template <class Scalar>
-void CellBatches::gradients(int batch, const Scalar* v, PlaceTensors<Scalar>& out) const {
+void CellBatches::gradients(int batch, const Scalar* v, QuadratureTensors<Scalar>& out) const {
   constexpr auto near = static_cast<Scalar>(near_), far = static_cast<Scalar>(far_);
   constexpr auto near2 = static_cast<Scalar>(0.5 * near_ * near_),
                  far2 = static_cast<Scalar>(0.5 * far_ * far_);
@@ -178,7 +178,7 @@ void CellBatches::gradients(int batch, const Scalar* v, PlaceTensors<Scalar>& ou
 }
 
 template <class Scalar>
-void CellBatches::scatter(int batch, const PlaceTensors<Scalar>& T, Scalar* to) const {
+void CellBatches::scatter(int batch, const QuadratureTensors<Scalar>& T, Scalar* to) const {
   constexpr auto near = static_cast<Scalar>(near_), far = static_cast<Scalar>(far_);
   constexpr auto near2 = static_cast<Scalar>(0.5 * near_ * near_),
                  far2 = static_cast<Scalar>(0.5 * far_ * far_);

@@ -17,17 +17,17 @@
 namespace tremie {
 
 /// Local coordinates of the fitted places of cell c; bit d of k set means the upper place in direction d.
-template <class Space>
-std::array<Vec<Space::dim>, power(2, Space::dim)> fitted_places(const ActiveGrid<Space::dim>& grid,
-                                                                const Points<Space::dim>& points, int c) {
-  constexpr int D = Space::dim;
+template <class Geometry>
+std::array<Vec<Geometry::dim>, power(2, Geometry::dim)> cut_cell_rule(const ActiveGrid<Geometry::dim>& grid,
+                                                                const Points<Geometry::dim>& points, int c) {
+  constexpr int D = Geometry::dim;
   double section = 1.0;
   for (const Axis& a : grid.axes) section *= a.h;
   double volume = 0.0, of_a_point = 0.0;
   Vec<D> mean = Vec<D>::Zero(), square = Vec<D>::Zero();
   for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
     const int p = grid.order[i];
-    const double V = points.volume(p) / Space::measure(points.x[p]);
+    const double V = points.volume(p) / Geometry::measure(points.x[p]);
     const Vec<D> s = local_coordinates<D>(grid.axes, grid.cell_index[c], points.x[p]);
     volume += V;
     mean += V * s;

@@ -24,8 +24,8 @@ template <class Rows, bool by_kind>
 class CellRows {
  public:
   void resize(std::size_t n) {
-    make_room(kind_, by_kind ? n : 0);
-    make_room(rows_, by_kind ? 64 : n);
+    resize_for_overwrite(kind_, by_kind ? n : 0);
+    resize_for_overwrite(rows_, by_kind ? 64 : n);
   }
   const Rows& operator[](std::size_t c) const { return rows_[by_kind ? kind_[c] : c]; }
   Rows& entry(std::size_t c) { return rows_[c]; }
@@ -47,7 +47,7 @@ unsigned char cell_kind(const std::array<Axis, D>& axes, const Index<D>& cell) {
   return static_cast<unsigned char>(kind);
 }
 
-/// Which ends of the axes a cell touches, walls or planes of symmetry, as six bits: what its controls are
+/// Which ends of the axes a cell touches, walls or planes of symmetry, as six bits: what its nodes are
 /// follows from that.
 template <int D>
 unsigned char cell_ends(const std::array<Axis, D>& axes, const Index<D>& cell) {
@@ -59,9 +59,9 @@ unsigned char cell_ends(const std::array<Axis, D>& axes, const Index<D>& cell) {
   return static_cast<unsigned char>(ends);
 }
 
-template <class Space>
+template <class Geometry>
 struct Quadrature {
-  static constexpr int D = Space::dim, n_strain = Space::n_strain;
+  static constexpr int D = Geometry::dim, n_strain = Geometry::n_strain;
   static constexpr int n_places = power(2, D), n_local = power(3, D);
   using StrainRows = std::array<Mat<n_strain, D>, n_local>;
 
@@ -79,11 +79,11 @@ struct Quadrature {
   std::vector<std::array<Vec<D>, n_places>> place;  ///< local coordinates of the places, in a section
 
   void resize(std::size_t n) {
-    B.resize(n), make_room(V, n), make_room(tau_y, n), make_room(V_cell, n), make_room(p, n);
+    B.resize(n), resize_for_overwrite(V, n), resize_for_overwrite(tau_y, n), resize_for_overwrite(V_cell, n), resize_for_overwrite(p, n);
     if constexpr (D < 3)
-      make_room(b, n), make_room(place, n);
+      resize_for_overwrite(b, n), resize_for_overwrite(place, n);
     else
-      slopes.resize(n), make_room(full, n);
+      slopes.resize(n), resize_for_overwrite(full, n);
   }
 
   /// Rows of the mean divergence of cell c [1/m]. In space they are made when they are asked for: 648 bytes a
@@ -105,7 +105,7 @@ struct Quadrature {
 
 /// Local coordinates of Gauss place k of a full cell; bit d of k set means the upper place in direction d.
 template <int D>
-Vec<D> gauss_place(int k) {
+Vec<D> quadrature_point(int k) {
   constexpr double offset = 0.28867513459481288;  // 1 / (2 sqrt 3)
   Vec<D> s;
   for (int d = 0; d < D; ++d) s[d] = 0.5 + ((k >> d) & 1 ? offset : -offset);
@@ -132,18 +132,18 @@ std::array<double, power(2, D)> place_shares(const Vec<D>& s) {
 /// Volumes of the Gauss places of cell c, and 1 + lambda times volume where the points have lambda. A place
 /// weighs what the Gauss rule gives it in a full cell, or a uniform pressure would push: in a ring that is
 /// the points' sections times the place's own measure, not theirs.
-template <class Space>
-void add_up_points(const ActiveGrid<Space::dim>& grid, const Points<Space::dim>& points, int c,
-                   const std::array<Vec<Space::dim>, power(2, Space::dim)>& places,
-                   std::array<double, power(2, Space::dim)>& volume,
-                   std::array<double, power(2, Space::dim)>& structure) {
+template <class Geometry>
+void add_up_points(const ActiveGrid<Geometry::dim>& grid, const Points<Geometry::dim>& points, int c,
+                   const std::array<Vec<Geometry::dim>, power(2, Geometry::dim)>& places,
+                   std::array<double, power(2, Geometry::dim)>& volume,
+                   std::array<double, power(2, Geometry::dim)>& structure) {
   volume.fill(0.0);
   structure.fill(0.0);
   for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
     const int p = grid.order[i];
     const auto share =
-        place_shares<Space::dim>(local_coordinates<Space::dim>(grid.axes, grid.cell_index[c], points.x[p]));
-    const double section = points.volume(p) / Space::measure(points.x[p]);
+        place_shares<Geometry::dim>(local_coordinates<Geometry::dim>(grid.axes, grid.cell_index[c], points.x[p]));
+    const double section = points.volume(p) / Geometry::measure(points.x[p]);
     const double factor = points.thixotropic() ? 1.0 + points.lambda[p] : 1.0;
     for (std::size_t k = 0; k < share.size(); ++k) {
       volume[k] += share[k] * section;
@@ -151,20 +151,20 @@ void add_up_points(const ActiveGrid<Space::dim>& grid, const Points<Space::dim>&
     }
   }
   for (std::size_t k = 0; k < places.size(); ++k) {
-    volume[k] *= Space::measure(places[k]);
-    structure[k] *= Space::measure(places[k]);
+    volume[k] *= Geometry::measure(places[k]);
+    structure[k] *= Geometry::measure(places[k]);
   }
 }
 
 /// Volumes of the Gauss places of a full cell.
-template <class Space>
-std::array<double, power(2, Space::dim)> full_volumes(
-    const std::array<Axis, Space::dim>& axes,
-    const std::array<Vec<Space::dim>, power(2, Space::dim)>& places) {
+template <class Geometry>
+std::array<double, power(2, Geometry::dim)> full_volumes(
+    const std::array<Axis, Geometry::dim>& axes,
+    const std::array<Vec<Geometry::dim>, power(2, Geometry::dim)>& places) {
   double section = 1.0;
   for (const Axis& axis : axes) section *= 0.5 * axis.h;
-  std::array<double, power(2, Space::dim)> volume;
-  for (std::size_t k = 0; k < volume.size(); ++k) volume[k] = section * Space::measure(places[k]);
+  std::array<double, power(2, Geometry::dim)> volume;
+  for (std::size_t k = 0; k < volume.size(); ++k) volume[k] = section * Geometry::measure(places[k]);
   return volume;
 }
 
@@ -175,17 +175,17 @@ inline double sum_of_volumes(const auto& V) {
 }
 
 /// In a section: strain rows at every place and the rows of the cell's mean divergence.
-template <class Space>
-void lay_out_rows(const std::array<Stencil<Space::dim>, power(2, Space::dim)>& st,
-                  const std::array<Vec<Space::dim>, power(2, Space::dim)>& x, int c,
-                  Quadrature<Space>& quadrature) {
-  constexpr int n = power(2, Space::dim), n_local = power(3, Space::dim);
+template <class Geometry>
+void lay_out_rows(const std::array<Stencil<Geometry::dim>, power(2, Geometry::dim)>& st,
+                  const std::array<Vec<Geometry::dim>, power(2, Geometry::dim)>& x, int c,
+                  Quadrature<Geometry>& quadrature) {
+  constexpr int n = power(2, Geometry::dim), n_local = power(3, Geometry::dim);
   for (int i = 0; i < n_local; ++i) {
     quadrature.b[c][i].setZero();
     for (int k = 0; k < n; ++k) {
-      quadrature.B.entry(c)[k][i] = Space::strain_rows(st[k].N[i], st[k].g[i], x[k]);
+      quadrature.B.entry(c)[k][i] = Geometry::strain_rows(st[k].N[i], st[k].g[i], x[k]);
       quadrature.b[c][i] +=
-          quadrature.V[c][k] / quadrature.V_cell[c] * Space::divergence_row(st[k].N[i], st[k].g[i], x[k]);
+          quadrature.V[c][k] / quadrature.V_cell[c] * Geometry::divergence_row(st[k].N[i], st[k].g[i], x[k]);
     }
   }
 }
@@ -212,7 +212,7 @@ inline void lay_out_kinds(const ActiveGrid<3>& grid, Quadrature<ThreeD>& quadrat
     if (done[kind]) continue;
     done[kind] = true;
     for (int k = 0; k < 8; ++k) {
-      const Stencil<3> st = stencil<3>(grid.axes, grid.cell_index[c], gauss_place<3>(k));
+      const Stencil<3> st = stencil<3>(grid.axes, grid.cell_index[c], quadrature_point<3>(k));
       for (int i = 0; i < 27; ++i) {
         quadrature.B.entry(kind)[k][i] = ThreeD::strain_rows(st.N[i], st.g[i], Vec<3>::Zero());
         quadrature.slopes.entry(kind)[k][i] = ThreeD::divergence_row(st.N[i], st.g[i], Vec<3>::Zero());
@@ -224,12 +224,12 @@ inline void lay_out_kinds(const ActiveGrid<3>& grid, Quadrature<ThreeD>& quadrat
 }  // namespace detail
 
 /// Lays out the quadrature of a step: places, volumes, yield stresses tau_y = (1 + lambda) tau_0 and
-/// pressures. `fit`: the places of partly filled cells are fitted to their points (fitted_places.hpp), in a
+/// pressures. `fit`: the places of partly filled cells are fitted to their points (cut_cell_rule.hpp), in a
 /// section.
-template <class Space>
-void lay_out_quadrature(const ActiveGrid<Space::dim>& grid, const Points<Space::dim>& points, double tau_0,
-                        double K, Quadrature<Space>& quadrature, bool fit = false) {
-  constexpr int D = Space::dim, n = power(2, D);
+template <class Geometry>
+void lay_out_quadrature(const ActiveGrid<Geometry::dim>& grid, const Points<Geometry::dim>& points, double tau_0,
+                        double K, Quadrature<Geometry>& quadrature, bool fit = false) {
+  constexpr int D = Geometry::dim, n = power(2, D);
   quadrature.resize(grid.cell_index.size());
   if constexpr (D == 3) detail::lay_out_kinds(grid, quadrature);
 #pragma omp parallel for schedule(static)
@@ -237,13 +237,13 @@ void lay_out_quadrature(const ActiveGrid<Space::dim>& grid, const Points<Space::
     const Index<D>& cell = grid.cell_index[c];
     const bool inside = is_inside<D>(grid, cell), fitted = D < 3 && fit && !inside;
     std::array<Vec<D>, n> place;
-    for (int k = 0; k < n; ++k) place[k] = gauss_place<D>(k);
-    if (fitted) place = fitted_places<Space>(grid, points, c);
+    for (int k = 0; k < n; ++k) place[k] = quadrature_point<D>(k);
+    if (fitted) place = cut_cell_rule<Geometry>(grid, points, c);
     if (D < 3) quadrature.place[c] = place;
     std::array<Vec<D>, n> x;
-    for (int k = 0; k < n; ++k) x[k] = cell_place<D>(grid.axes, cell, place[k]);
+    for (int k = 0; k < n; ++k) x[k] = position_in_cell<D>(grid.axes, cell, place[k]);
     std::array<double, n> structure;
-    detail::add_up_points<Space>(grid, points, c, x, quadrature.V[c], structure);
+    detail::add_up_points<Geometry>(grid, points, c, x, quadrature.V[c], structure);
     double all_V = 0.0, all_structure = 0.0;
     for (int k = 0; k < n; ++k) all_V += quadrature.V[c][k], all_structure += structure[k];
     for (int k = 0; k < n; ++k)  // where no point is near, as in the rest of the cell
@@ -251,19 +251,19 @@ void lay_out_quadrature(const ActiveGrid<Space::dim>& grid, const Points<Space::
           tau_0 * (quadrature.V[c][k] > 0.0 ? structure[k] / quadrature.V[c][k] : all_structure / all_V);
     if (fitted) {
       double section = 0.0;
-      for (int k = 0; k < n; ++k) section += quadrature.V[c][k] / Space::measure(x[k]);
-      for (int k = 0; k < n; ++k) quadrature.V[c][k] = section / n * Space::measure(x[k]);
+      for (int k = 0; k < n; ++k) section += quadrature.V[c][k] / Geometry::measure(x[k]);
+      for (int k = 0; k < n; ++k) quadrature.V[c][k] = section / n * Geometry::measure(x[k]);
     }
     // Inside the body a cell is full: with counted volumes the pressure would push whenever a point crosses
     // into a cell.
-    if (inside) quadrature.V[c] = detail::full_volumes<Space>(grid.axes, x);
+    if (inside) quadrature.V[c] = detail::full_volumes<Geometry>(grid.axes, x);
     quadrature.V_cell[c] = detail::sum_of_volumes(quadrature.V[c]);
     if constexpr (D == 3) {
       quadrature.full[c] = inside ? 1 : 0;
     } else {
       std::array<Stencil<D>, n> st;
       for (int k = 0; k < n; ++k) st[k] = stencil<D>(grid.axes, cell, place[k]);
-      detail::lay_out_rows<Space>(st, x, c, quadrature);
+      detail::lay_out_rows<Geometry>(st, x, c, quadrature);
     }
     quadrature.p[c] = detail::mean_pressure(grid, points, K, c);
   }

@@ -29,28 +29,28 @@ struct Nothing {};
 /// Stress of the yield part and, for ADMM, the split strain rate, at every Gauss place of every cell. Kept
 /// between steps by cell as a first guess. A body whose systems are solved by iteration keeps them in `space`
 /// instead.
-template <class Space>
-struct Duals {
-  using Strain = Vec<Space::n_strain>;
-  static constexpr int n = power(2, Space::dim);
+template <class Geometry>
+struct AdmmState {
+  using Strain = Vec<Geometry::n_strain>;
+  static constexpr int n = power(2, Geometry::dim);
   std::vector<std::array<Strain, n>> stress;  ///< [Pa]
   std::vector<std::array<Strain, n>> rate;    ///< [1/s]
-  std::conditional_t<Space::dim == 3, SpaceDuals, Nothing> space;
+  std::conditional_t<Geometry::dim == 3, PackedAdmmState, Nothing> space;
 };
 
-template <class Space>
+template <class Geometry>
 struct YieldProblem {
-  static constexpr int D = Space::dim;
+  static constexpr int D = Geometry::dim;
   const ActiveGrid<D>& grid;
-  const Quadrature<Space>& quadrature;
+  const Quadrature<Geometry>& quadrature;
   const NodalState<D>& nodes;  ///< masses, and v* with gravity already in it
   double dt, mu;
   double K;                 ///< of the systems: the mix's, or as much as they can bear (admm_space.hpp)
   std::vector<char> fixed;  ///< a flag a component: prescribed by a wall
   std::vector<ContactPoint<D>> contact;   ///< moving rigid walls
   std::vector<FrictionNode<D>> friction;  ///< Coulomb friction on flat walls, yield drag of side walls
-  std::vector<BoundPoint<D>> bound;       ///< walls inside the grid
-  std::vector<BoundPoint<D>> surface;     ///< head of the moving free surface, in a section
+  std::vector<PenaltyPoint<D>> bound;       ///< walls inside the grid
+  std::vector<PenaltyPoint<D>> surface;     ///< head of the moving free surface, in a section
   std::vector<double> drag;               ///< viscous drag of side walls, a node each [kg/s]; empty: none
   double zeta = 0.0;                      ///< [Pa s], plane strain alone
   std::vector<double> p_offset = {};      ///< of the cells' pressures [Pa]; empty: those before the step
@@ -66,40 +66,40 @@ struct SolveReport {
 };
 
 /// Strain-rate vector at Gauss place k of cell c.
-template <class Space>
-Vec<Space::n_strain> strain_rate(const YieldProblem<Space>& problem, const std::vector<Vec<Space::dim>>& v,
+template <class Geometry>
+Vec<Geometry::n_strain> strain_rate(const YieldProblem<Geometry>& problem, const std::vector<Vec<Geometry::dim>>& v,
                                  int c, int k) {
   const auto& nodes = problem.grid.cell_nodes[c];
-  Vec<Space::n_strain> q = problem.quadrature.B[c][k][0] * v[nodes[0]];
-  for (int i = 1; i < power(3, Space::dim); ++i) q.noalias() += problem.quadrature.B[c][k][i] * v[nodes[i]];
+  Vec<Geometry::n_strain> q = problem.quadrature.B[c][k][0] * v[nodes[0]];
+  for (int i = 1; i < power(3, Geometry::dim); ++i) q.noalias() += problem.quadrature.B[c][k][i] * v[nodes[i]];
   return q;
 }
 
 /// Mean divergence of cell c.
-template <class Space>
-double divergence(const YieldProblem<Space>& problem, const std::vector<Vec<Space::dim>>& v, int c) {
+template <class Geometry>
+double divergence(const YieldProblem<Geometry>& problem, const std::vector<Vec<Geometry::dim>>& v, int c) {
   const auto& nodes = problem.grid.cell_nodes[c];
   const auto& b = problem.quadrature.divergence_rows(c);
   double div = 0.0;
-  for (int i = 0; i < power(3, Space::dim); ++i) div += b[i].dot(v[nodes[i]]);
+  for (int i = 0; i < power(3, Geometry::dim); ++i) div += b[i].dot(v[nodes[i]]);
   return div;
 }
 
 /// How far the divergence of the strain rate q is from its cell's mean; 0 where q does not tell it.
-template <class Space>
-double excess_divergence(const Vec<Space::n_strain>& q, double mean) {
-  if constexpr (requires { Space::divergence_of(q); })
-    return Space::divergence_of(q) - mean;
+template <class Geometry>
+double excess_divergence(const Vec<Geometry::n_strain>& q, double mean) {
+  if constexpr (requires { Geometry::divergence_of(q); })
+    return Geometry::divergence_of(q) - mean;
   else
     return 0.0;
 }
 
 /// Nodal forces of everything but the yield part at velocities v: inertia, pressure and moving contact; plus
 /// the deviatoric forces of the stresses that `stress(c, k, q)` returns for the strain rate q.
-template <class Space, class Stress>
-Eigen::VectorXd residual(const YieldProblem<Space>& problem, const std::vector<Vec<Space::dim>>& v,
+template <class Geometry, class Stress>
+Eigen::VectorXd residual(const YieldProblem<Geometry>& problem, const std::vector<Vec<Geometry::dim>>& v,
                          Stress stress) {
-  constexpr int D = Space::dim, n_local = power(3, D);
+  constexpr int D = Geometry::dim, n_local = power(3, D);
   const auto& grid = problem.grid;
   const auto& quad = problem.quadrature;
   std::vector<std::array<Vec<D>, n_local>> local(grid.cell_index.size());
@@ -109,10 +109,10 @@ Eigen::VectorXd residual(const YieldProblem<Space>& problem, const std::vector<V
     const auto& b = quad.divergence_rows(c);
     for (int i = 0; i < n_local; ++i) local[c][i] = quad.V_cell[c] * p * b[i];
     for (int k = 0; k < power(2, D); ++k) {
-      const Vec<Space::n_strain> q = strain_rate(problem, v, c, k);
-      Vec<Space::n_strain> s = quad.V[c][k] * stress(c, k, q);
-      if constexpr (requires { Space::divergence_of(q); })
-        s += quad.V[c][k] * problem.zeta * excess_divergence<Space>(q, div) * Space::divergence_part();
+      const Vec<Geometry::n_strain> q = strain_rate(problem, v, c, k);
+      Vec<Geometry::n_strain> s = quad.V[c][k] * stress(c, k, q);
+      if constexpr (requires { Geometry::divergence_of(q); })
+        s += quad.V[c][k] * problem.zeta * excess_divergence<Geometry>(q, div) * Geometry::divergence_part();
       for (int i = 0; i < n_local; ++i) local[c][i].noalias() -= quad.B[c][k][i].transpose() * s;
     }
   }
@@ -124,8 +124,8 @@ Eigen::VectorXd residual(const YieldProblem<Space>& problem, const std::vector<V
   for (int c = 0; c < grid.n_cells(); ++c)
     for (int i = 0; i < n_local; ++i) R.segment<D>(grid.cell_nodes[c][i] * D) += local[c][i];
   add_contact_forces<D>(problem.contact, grid.cell_nodes, v, R);
-  add_bound_forces<D>(problem.bound, grid.cell_nodes, v, R);
-  add_bound_forces<D>(problem.surface, grid.cell_nodes, v, R);
+  add_penalty_forces<D>(problem.bound, grid.cell_nodes, v, R);
+  add_penalty_forces<D>(problem.surface, grid.cell_nodes, v, R);
   fold_mirrors<D>(grid, R);
   return R;
 }
@@ -139,22 +139,22 @@ inline void mask(const std::vector<char>& fixed, Eigen::VectorXd& R) {
 
 /// Assembles inertia, bulk and contact, and the deviatoric stiffness V B' T B with the tangents T =
 /// tangent(c, k).
-template <class Space, class Tangent>
-void assemble(const YieldProblem<Space>& problem, Tangent tangent, BlockSystem<Space::dim>& system) {
-  constexpr int D = Space::dim, n_dof = power(3, D) * D, ns = Space::n_strain;
+template <class Geometry, class Tangent>
+void assemble(const YieldProblem<Geometry>& problem, Tangent tangent, BlockSystem<Geometry::dim>& system) {
+  constexpr int D = Geometry::dim, n_dof = power(3, D) * D, ns = Geometry::n_strain;
   const auto& quad = problem.quadrature;
   system.set_zero();
   for (int c = 0; c < problem.grid.n_cells(); ++c) {
     Eigen::Matrix<double, ns, n_dof> B;
     Eigen::Matrix<double, n_dof, n_dof> cell = Eigen::Matrix<double, n_dof, n_dof>::Zero();
     double bulk = problem.K * problem.dt;
-    if constexpr (requires { Space::divergence_part(); }) bulk -= problem.zeta;
+    if constexpr (requires { Geometry::divergence_part(); }) bulk -= problem.zeta;
     for (int k = 0; k < power(2, D); ++k) {
       for (int i = 0; i < power(3, D); ++i) B.template middleCols<D>(i * D) = quad.B[c][k][i];
       Eigen::Matrix<double, ns, n_dof> TB = quad.V[c][k] * tangent(c, k) * B;
-      if constexpr (requires { Space::divergence_part(); })
-        TB += (quad.V[c][k] * problem.zeta) * Space::divergence_part() *
-              (Space::divergence_part().transpose() * B);
+      if constexpr (requires { Geometry::divergence_part(); })
+        TB += (quad.V[c][k] * problem.zeta) * Geometry::divergence_part() *
+              (Geometry::divergence_part().transpose() * B);
       cell.noalias() += B.transpose() * TB;
     }
     const auto& rows = quad.divergence_rows(c);
@@ -173,8 +173,8 @@ void assemble(const YieldProblem<Space>& problem, Tangent tangent, BlockSystem<S
                           std::max(trace, problem.nodes.mass[i]) / problem.dt +
                               (problem.drag.empty() ? 0.0 : problem.drag[i]));
   add_contact_stiffness<D>(problem.contact, system);
-  add_bound_stiffness<D>(problem.bound, system);
-  add_bound_stiffness<D>(problem.surface, system);
+  add_penalty_stiffness<D>(problem.bound, system);
+  add_penalty_stiffness<D>(problem.surface, system);
 }
 
 }  // namespace tremie

@@ -1,7 +1,7 @@
 #pragma once
 
 // Cells in columns along the body's longest way, so that sixteen of them go side by side, in a box of places
-// with a margin on all sides. Columns go together in strips, eight wide across.
+// with a margin on all sides. Columns go together in chunks, eight wide across.
 
 #include <algorithm>
 #include <numeric>
@@ -16,7 +16,7 @@ namespace tremie {
 struct CellColumns {
   static constexpr int reach = 2;                       ///< the margin, and how far cells are coupled
   static constexpr int slack = batch_size + 2 * reach;  ///< of reading whole batches
-  static constexpr int strip = 8;
+  static constexpr int chunk = 8;
 
   /// Cells next to each other along way[2], with what lies between them if they have gaps.
   struct Column {
@@ -41,11 +41,11 @@ struct CellColumns {
     return column_at[(column.across[0] + a) * extent[1] + column.across[1] + b];
   }
   std::size_t n_places() const { return columns.empty() ? 0 : columns.back().first + columns.back().size(); }
-  int n_strips() const { return (extent[1] - 1) / strip + 1; }
+  int n_chunks() const { return (extent[1] - 1) / chunk + 1; }
 
   Index<3> way{}, extent{};      ///< axes, the longest one last; the box with its margin
-  std::vector<Column> columns;   ///< those of a strip follow each other
-  std::vector<int> strip_begin;  ///< strip k has the columns strip_begin[k] .. strip_begin[k + 1]
+  std::vector<Column> columns;   ///< those of a chunk follow each other
+  std::vector<int> chunk_begin;  ///< chunk k has the columns chunk_begin[k] .. chunk_begin[k + 1]
   std::vector<int>
       column_at;  ///< by place across, -1 where none; beside the ends of a periodic axis, the one repeated
   std::vector<int> place_of, column_of;  ///< of each cell
@@ -71,20 +71,20 @@ inline void CellColumns::find_columns(const std::vector<Index<3>>& at) {
     columns[k].low = std::min(columns[k].low, cell[2]);
     columns[k].end = std::max(columns[k].end, cell[2] + 1);
   }
-  const auto strip_of = [](const Column& c) { return c.across[1] / strip; };
+  const auto chunk_of = [](const Column& c) { return c.across[1] / chunk; };
   std::sort(columns.begin(), columns.end(), [&](const Column& a, const Column& b) {
-    return std::pair(strip_of(a), a.across) < std::pair(strip_of(b), b.across);
+    return std::pair(chunk_of(a), a.across) < std::pair(chunk_of(b), b.across);
   });
-  strip_begin.assign(static_cast<std::size_t>(n_strips() + 1), 0);
-  for (const Column& c : columns) ++strip_begin[strip_of(c) + 1];
-  std::partial_sum(strip_begin.begin(), strip_begin.end(), strip_begin.begin());
+  chunk_begin.assign(static_cast<std::size_t>(n_chunks() + 1), 0);
+  for (const Column& c : columns) ++chunk_begin[chunk_of(c) + 1];
+  std::partial_sum(chunk_begin.begin(), chunk_begin.end(), chunk_begin.begin());
   std::size_t places = 0;
   for (std::size_t k = 0; k < columns.size(); ++k) {
     columns[k].first = places;
     column_at[across(columns[k].across)] = static_cast<int>(k);
     places += static_cast<std::size_t>(columns[k].size());
   }
-  make_room(place_of, at.size()), make_room(column_of, at.size());
+  resize_for_overwrite(place_of, at.size()), resize_for_overwrite(column_of, at.size());
   for (int c = 0; c < n; ++c) {
     column_of[c] = column_at[across({at[c][0], at[c][1]})];
     place_of[c] = place_at(at[c]);
@@ -120,7 +120,7 @@ inline void CellColumns::lay_out(const ActiveGrid<3>& grid) {
   find_columns(at);
   find_ghosts(grid, at);
   const auto box = static_cast<std::size_t>(extent[0]) * extent[1] * extent[2] + slack;
-  for (std::vector<float>* v : {&x, &y}) make_room(*v, box), std::fill(v->begin(), v->end(), 0.0f);
+  for (std::vector<float>* v : {&x, &y}) resize_for_overwrite(*v, box), std::fill(v->begin(), v->end(), 0.0f);
 }
 
 }  // namespace tremie

@@ -11,7 +11,7 @@
 
 namespace tremie {
 
-class PressureRows {
+class DivergenceOperator {
  public:
   /// Columns of a node's inverse block.
   using Block = std::array<Eigen::Vector4f, 3>;
@@ -28,7 +28,7 @@ class PressureRows {
   float divergence(const ActiveGrid<3>& grid, int c, const Eigen::VectorXf& y) const {
     const auto& nodes = grid.cell_nodes[c];
     const Eigen::Vector4f* row = of_cell(c).data();
-    Eigen::Vector4f even = Eigen::Vector4f::Zero(), odd = even;  // controls, in sums that do not wait
+    Eigen::Vector4f even = Eigen::Vector4f::Zero(), odd = even;  // nodes, in sums that do not wait
     const auto add = [&](Eigen::Vector4f& sum, int k, const float* at) {
       sum += row[k].cwiseProduct(Eigen::Map<const Eigen::Vector4f>(at));
     };
@@ -50,7 +50,7 @@ class PressureRows {
   /// numbers each.
   template <class Pressure>
   void push(const ActiveGrid<3>& grid, int first, int last, Pressure p, float* to) const {
-    // Going up a column of cells: what the middle and the top controls have been given so far.
+    // Going up a column of cells: what the middle and the top nodes have been given so far.
     Eigen::Vector4f middle[9], top[9];
     for (int c = first; c < last; ++c) {
       const auto& nodes = grid.cell_nodes[c];
@@ -88,7 +88,7 @@ class PressureRows {
   std::vector<char> left_out;
 
  private:
-  /// Whether cell c is the next of a column of cells: its first two controls of a line are the last two of
+  /// Whether cell c is the next of a column of cells: its first two nodes of a line are the last two of
   /// the cell before.
   static bool follows(const ActiveGrid<3>& grid, int c) {
     const auto &nodes = grid.cell_nodes[c], &before = grid.cell_nodes[c - 1];
@@ -102,11 +102,11 @@ class PressureRows {
   std::vector<int> cell_of_rows_;  ///< the last cell that has each of them
 };
 
-inline void PressureRows::number_rows(const ActiveGrid<3>& grid, const Quadrature<ThreeD>& quadrature) {
+inline void DivergenceOperator::number_rows(const ActiveGrid<3>& grid, const Quadrature<ThreeD>& quadrature) {
   std::array<int, 64> of_kind;
   of_kind.fill(-1);
   int n = 0;
-  make_room(rows_of_, grid.cell_index.size());
+  resize_for_overwrite(rows_of_, grid.cell_index.size());
   for (std::size_t c = 0; c < rows_of_.size(); ++c) {
     if (!quadrature.full[c] || left_out[c]) {
       rows_of_[c] = n++;
@@ -116,13 +116,13 @@ inline void PressureRows::number_rows(const ActiveGrid<3>& grid, const Quadratur
     if (shared < 0) shared = n++;
     rows_of_[c] = shared;
   }
-  make_room(rows_, static_cast<std::size_t>(n));
+  resize_for_overwrite(rows_, static_cast<std::size_t>(n));
 }
 
-inline void PressureRows::build(const ActiveGrid<3>& grid, const Quadrature<ThreeD>& quadrature,
+inline void DivergenceOperator::build(const ActiveGrid<3>& grid, const Quadrature<ThreeD>& quadrature,
                                 const std::vector<Mat<3, 3>>& inverse_blocks,
                                 const std::vector<double>& stiffness) {
-  make_room(G_inverse, inverse_blocks.size());
+  resize_for_overwrite(G_inverse, inverse_blocks.size());
 #pragma omp parallel for schedule(static)
   for (std::size_t i = 0; i < G_inverse.size(); ++i)
     for (std::size_t d = 0; d < 3; ++d)
@@ -134,7 +134,7 @@ inline void PressureRows::build(const ActiveGrid<3>& grid, const Quadrature<Thre
     softness[c] = left_out[c] ? 1.0f : static_cast<float>(1.0 / stiffness[c]);
   }
   number_rows(grid, quadrature);
-  make_room(cell_of_rows_, rows_.size());
+  resize_for_overwrite(cell_of_rows_, rows_.size());
   for (int c = 0; c < grid.n_cells(); ++c) cell_of_rows_[rows_of_[c]] = c;
 #pragma omp parallel for schedule(static)
   for (std::size_t r = 0; r < rows_.size(); ++r) {
@@ -147,13 +147,13 @@ inline void PressureRows::build(const ActiveGrid<3>& grid, const Quadrature<Thre
 }
 
 /// A cell's rows at nodes behind a plane of symmetry join those of the nodes before it, which it sees too.
-inline void PressureRows::mirror(const ActiveGrid<3>& grid, int c, CellRows& row) const {
+inline void DivergenceOperator::mirror(const ActiveGrid<3>& grid, int c, CellRows& row) const {
   if (grid.mirrors.empty()) return;
   for (int k = 0; k < 27; ++k) {
     int of = 0;
     Eigen::Vector4f sign = Eigen::Vector4f::Ones();
     for (int d = 0; d < 3; ++d) {
-      const int first = grid.axes[d].first_control(grid.cell_index[c][d]);
+      const int first = grid.axes[d].first_node(grid.cell_index[c][d]);
       const int j = first + local_offset<3>(k)[d], image = grid.axes[d].mirrored(j);
       of = 3 * of + image - first;
       if (image != j) sign[d] = -1.0f;

@@ -21,9 +21,9 @@
 
 namespace tremie {
 
-class NearInverse {
+class Fsai {
  public:
-  void build(const PressureEntries& S);
+  void build(const SchurMatrix& S);
   /// Leaves F' F r in layout.x, by place, and uses layout.y; `layout` is that of the S it was built from. To
   /// be called by all threads of a parallel region.
   void apply_in_region(CellColumns& layout, const Eigen::VectorXf& r) const;
@@ -39,9 +39,9 @@ class NearInverse {
   float* of_column(const Column& column) { return &entries_[slack + kept * column.first]; }
   using Columns = std::array<const Column*, kept>;  ///< of the cells of a row of F; null where none
   using Row = std::array<const float*, kept>;
-  static Row row_of(const PressureEntries& S, const Columns& there, int place);
+  static Row row_of(const SchurMatrix& S, const Columns& there, int place);
   static Mat<kept, kept> part_of(const Columns& there, const Row& row);
-  void fill_column(const PressureEntries& S, const Column& column);
+  void fill_column(const SchurMatrix& S, const Column& column);
   void multiply_column(CellColumns& layout, const Column& column) const;
   void transposed_column(CellColumns& layout, const Column& column) const;
 
@@ -73,7 +73,7 @@ inline void store_lanes(float* y, const Lanes<float>& value, int n) {
 }  // namespace detail
 
 /// Of the cells of a row of F: where S has their diagonals, null where no cell is or nothing on the diagonal.
-inline NearInverse::Row NearInverse::row_of(const PressureEntries& S, const Columns& there, int place) {
+inline Fsai::Row Fsai::row_of(const SchurMatrix& S, const Columns& there, int place) {
   Row row{};
   for (std::size_t m = 0; m < kept; ++m) {
     const int at = place + ahead[m][2];
@@ -85,13 +85,13 @@ inline NearInverse::Row NearInverse::row_of(const PressureEntries& S, const Colu
 }
 
 /// S among the cells of a row, on and below the diagonal; a place without a cell has 1 of its own.
-inline Mat<NearInverse::kept, NearInverse::kept> NearInverse::part_of(const Columns& there, const Row& row) {
+inline Mat<Fsai::kept, Fsai::kept> Fsai::part_of(const Columns& there, const Row& row) {
   Mat<kept, kept> part = Mat<kept, kept>::Identity();
   for (std::size_t m = 0; m < kept; ++m)
     for (std::size_t n = 0; n <= m; ++n) {
       if (row[m] == nullptr || row[n] == nullptr) continue;
       const Index<3>&to = ahead[m], &from = ahead[n];
-      const int k = PressureEntries::offset(to[0] - from[0], to[1] - from[1], to[2] - from[2]);
+      const int k = SchurMatrix::offset(to[0] - from[0], to[1] - from[1], to[2] - from[2]);
       const float value = k < 0 ? row[m][-k * there[m]->size()] : row[n][k * there[n]->size()];
       part(static_cast<Eigen::Index>(m), static_cast<Eigen::Index>(n)) = static_cast<double>(value);
     }
@@ -101,7 +101,7 @@ inline Mat<NearInverse::kept, NearInverse::kept> NearInverse::part_of(const Colu
 /// The row f of F of a cell: with S among the cells of the row, S g = e, the cell's own unit vector, and
 /// f = g / sqrt(g_own), so that F S F' has ones on its diagonal. Where rounding made that part of S
 /// indefinite the diagonal is left.
-inline void NearInverse::fill_column(const PressureEntries& S, const Column& column) {
+inline void Fsai::fill_column(const SchurMatrix& S, const Column& column) {
   Columns there{};
   for (std::size_t m = 0; m < kept; ++m)
     if (const int k = detail::own_column_beside(S.layout, column, ahead[m][0], ahead[m][1]); k >= 0)
@@ -120,15 +120,15 @@ inline void NearInverse::fill_column(const PressureEntries& S, const Column& col
   }
 }
 
-inline void NearInverse::build(const PressureEntries& S) {
-  make_room(entries_, kept * S.layout.n_places() + 2 * slack);
+inline void Fsai::build(const SchurMatrix& S) {
+  resize_for_overwrite(entries_, kept * S.layout.n_places() + 2 * slack);
   std::fill(entries_.begin(), entries_.end(), 0.0f);
 #pragma omp parallel for schedule(static)
   for (std::size_t k = 0; k < S.layout.columns.size(); ++k) fill_column(S, S.layout.columns[k]);
 }
 
 /// y = F x along a column.
-inline void NearInverse::multiply_column(CellColumns& layout, const Column& column) const {
+inline void Fsai::multiply_column(CellColumns& layout, const Column& column) const {
   using Sixteen = Eigen::Map<const Lanes<float>>;
   const int size = column.size(), begin = layout.begin_of(column);
   const float* const own = of_column(column);
@@ -142,7 +142,7 @@ inline void NearInverse::multiply_column(CellColumns& layout, const Column& colu
 
 /// x = F' y along a column: what those behind have for it. Before a column's first cell entries of others are
 /// read, finite and times zero; what whole batches have beyond an end is not stored.
-inline void NearInverse::transposed_column(CellColumns& layout, const Column& column) const {
+inline void Fsai::transposed_column(CellColumns& layout, const Column& column) const {
   using Sixteen = Eigen::Map<const Lanes<float>>;
   const int size = column.size(), begin = layout.begin_of(column);
   const float* const own = of_column(column);
@@ -165,7 +165,7 @@ inline void NearInverse::transposed_column(CellColumns& layout, const Column& co
   }
 }
 
-inline void NearInverse::apply_in_region(CellColumns& layout, const Eigen::VectorXf& r) const {
+inline void Fsai::apply_in_region(CellColumns& layout, const Eigen::VectorXf& r) const {
 #pragma omp for schedule(static)
   for (Eigen::Index c = 0; c < r.size(); ++c) layout.x[layout.place_of[static_cast<std::size_t>(c)]] = r[c];
 #pragma omp for schedule(static)

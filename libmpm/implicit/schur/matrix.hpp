@@ -5,8 +5,8 @@
 // A cell is coupled with those within two of it in every direction, 125 with itself. S is symmetric: the 63
 // entries with itself and the cells ahead are kept, and a product uses each twice, for the cell and for the
 // one ahead; 252 bytes a cell are read, in the order in which they lie, where the rows of B would be 864.
-// They lie by columns of cells (cell_columns.hpp), sixteen cells of which go side by side. A strip of columns
-// gives what its entries make of x to room of its own; where strips meet, it is added up in their order: the
+// They lie by columns of cells (cell_columns.hpp), sixteen cells of which go side by side. A chunk of columns
+// gives what its entries make of x to room of its own; where chunks meet, it is added up in their order: the
 // bits do not depend on the threads.
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 
 namespace tremie {
 
-class PressureEntries {
+class SchurMatrix {
  public:
   using Column = CellColumns::Column;
   static constexpr int reach = CellColumns::reach;
@@ -41,34 +41,34 @@ class PressureEntries {
   CellColumns layout;  ///< with the vectors in which products are made
 
  private:
-  static constexpr int kept = 63, slack = CellColumns::slack, strip = CellColumns::strip;
-  static constexpr int strip_span = strip + 2 * reach;  ///< columns across: its own, and that it reaches
+  static constexpr int kept = 63, slack = CellColumns::slack, chunk = CellColumns::chunk;
+  static constexpr int chunk_span = chunk + 2 * reach;  ///< columns across: its own, and that it reaches
   static constexpr int asked_for = 1536;                ///< how many entries before they are multiplied
 
-  std::size_t strip_size() const {
-    return static_cast<std::size_t>(layout.extent[0]) * strip_span * layout.extent[2];
+  std::size_t chunk_size() const {
+    return static_cast<std::size_t>(layout.extent[0]) * chunk_span * layout.extent[2];
   }
-  /// Where the column at `across` begins in the room of a strip.
-  std::size_t place_in_strip(int which, const Index<2>& across) const {
-    const int beside = across[1] - strip * which + reach;
-    return strip_size() * which +
-           static_cast<std::size_t>((across[0] * strip_span + beside) * layout.extent[2]);
+  /// Where the column at `across` begins in the room of a chunk.
+  std::size_t position_in_chunk(int which, const Index<2>& across) const {
+    const int beside = across[1] - chunk * which + reach;
+    return chunk_size() * which +
+           static_cast<std::size_t>((across[0] * chunk_span + beside) * layout.extent[2]);
   }
-  void multiply_column(const Column& column, float* in_strip);
-  void add_up_strips(const Index<2>& across, const Column& column);
+  void multiply_column(const Column& column, float* in_chunk);
+  void add_up_chunks(const Index<2>& across, const Column& column);
 
   std::vector<float> entries_;    ///< column by column; those of a column with the same neighbour together
-  std::vector<float> in_strips_;  ///< a product's parts
+  std::vector<float> in_chunks_;  ///< a product's parts
 };
 
-inline void PressureEntries::reset(const ActiveGrid<3>& grid) {
+inline void SchurMatrix::reset(const ActiveGrid<3>& grid) {
   layout.lay_out(grid);
-  make_room(entries_, kept * layout.n_places() + 2 * slack);
+  resize_for_overwrite(entries_, kept * layout.n_places() + 2 * slack);
   std::fill(entries_.begin(), entries_.end(), 0.0f);
-  make_room(in_strips_, strip_size() * static_cast<std::size_t>(layout.n_strips()) + slack);
+  resize_for_overwrite(in_chunks_, chunk_size() * static_cast<std::size_t>(layout.n_chunks()) + slack);
 }
 
-inline void PressureEntries::add(const ActiveGrid<3>& grid, int c, int other, float value) {
+inline void SchurMatrix::add(const ActiveGrid<3>& grid, int c, int other, float value) {
   Index<3> step;
   for (int d = 0; d < 3; ++d) {
     const Axis& axis = grid.axes[layout.way[d]];
@@ -82,7 +82,7 @@ inline void PressureEntries::add(const ActiveGrid<3>& grid, int c, int other, fl
 }
 
 template <class Use>
-void PressureEntries::for_each(Use use) const {
+void SchurMatrix::for_each(Use use) const {
   const int n = static_cast<int>(layout.place_of.size());
   std::vector<int> cell(layout.x.size(), -1);
   for (int c = 0; c < n; ++c) cell[layout.place_of[c]] = c;
@@ -99,16 +99,16 @@ void PressureEntries::for_each(Use use) const {
 }
 
 /// What a column's entries make of x, sixteen cells at a time, for its own cells and for those of the columns
-/// ahead; `in_strip`: where the column begins in its strip. Beyond the ends of a column entries of others are
+/// ahead; `in_chunk`: where the column begins in its chunk. Beyond the ends of a column entries of others are
 /// read, finite and times zero, or for places that have no cell.
-inline void PressureEntries::multiply_column(const Column& column, float* in_strip) {
+inline void SchurMatrix::multiply_column(const Column& column, float* in_chunk) {
   using Sixteen = Eigen::Map<const Lanes<float>>;
   const auto at = [](const float* from) { return Sixteen(from); };
   const auto add_to = [](float* y, const Lanes<float>& more) { Eigen::Map<Lanes<float>>{y} += more; };
   const int size = column.size();
   const float* const x = &layout.x[layout.begin_of(column)];
   const float* const own = of_column(column);
-  float* const y = in_strip + column.low;
+  float* const y = in_chunk + column.low;
   for (int i = 0; i < size; i += batch_size) {
     Lanes<float> sum = at(own + i) * at(x + i);
     for (int d = 1; d <= reach; ++d)
@@ -125,7 +125,7 @@ inline void PressureEntries::multiply_column(const Column& column, float* in_str
       for (int i = -reach * size; i < (reach + 1) * size; i += batch_size)
         __builtin_prefetch(entries + asked_for + i);
       const float* const x_there = x + layout.place_at({a, b, 0});
-      float* const y_there = y + (a * strip_span + b) * layout.extent[2];
+      float* const y_there = y + (a * chunk_span + b) * layout.extent[2];
       for (int i = std::max(0, low - reach); i < std::min(size, end + reach); i += batch_size) {
         Lanes<float> sum = at(entries + i) * at(x_there + i);
         for (int d = 1; d <= reach; ++d)
@@ -143,19 +143,19 @@ inline void PressureEntries::multiply_column(const Column& column, float* in_str
     }
 }
 
-/// The product along a column at `across`, of all strips that reach it.
-inline void PressureEntries::add_up_strips(const Index<2>& across, const Column& column) {
-  const int first = std::max(0, (across[1] - reach) / strip);
-  const int last = std::min(layout.n_strips() - 1, (across[1] + reach) / strip);
+/// The product along a column at `across`, of all chunks that reach it.
+inline void SchurMatrix::add_up_chunks(const Index<2>& across, const Column& column) {
+  const int first = std::max(0, (across[1] - reach) / chunk);
+  const int last = std::min(layout.n_chunks() - 1, (across[1] + reach) / chunk);
   float* const y = &layout.y[layout.place_at({across[0], across[1], column.low})];
   for (int which = first; which <= last; ++which) {
     const float* const part =
-        &in_strips_[place_in_strip(which, across) + static_cast<std::size_t>(column.low)];
+        &in_chunks_[position_in_chunk(which, across) + static_cast<std::size_t>(column.low)];
     for (int i = 0; i < column.size(); ++i) y[i] = which == first ? part[i] : y[i] + part[i];
   }
 }
 
-inline void PressureEntries::multiply_in_region(const Eigen::VectorXf& p, Eigen::VectorXf& Sp) {
+inline void SchurMatrix::multiply_in_region(const Eigen::VectorXf& p, Eigen::VectorXf& Sp) {
   const auto& ghosts = layout.ghosts;
   const int n = static_cast<int>(layout.place_of.size());
 #pragma omp for schedule(static)
@@ -163,15 +163,15 @@ inline void PressureEntries::multiply_in_region(const Eigen::VectorXf& p, Eigen:
 #pragma omp for schedule(static)
   for (std::size_t g = 0; g < ghosts.size(); ++g) layout.x[ghosts[g].place] = p[ghosts[g].cell];
 #pragma omp for schedule(dynamic)
-  for (int which = 0; which < layout.n_strips(); ++which) {
-    std::fill_n(in_strips_.begin() + static_cast<std::ptrdiff_t>(strip_size()) * which, strip_size(), 0.0f);
-    for (int k = layout.strip_begin[which]; k < layout.strip_begin[which + 1]; ++k)
-      multiply_column(layout.columns[k], &in_strips_[place_in_strip(which, layout.columns[k].across)]);
+  for (int which = 0; which < layout.n_chunks(); ++which) {
+    std::fill_n(in_chunks_.begin() + static_cast<std::ptrdiff_t>(chunk_size()) * which, chunk_size(), 0.0f);
+    for (int k = layout.chunk_begin[which]; k < layout.chunk_begin[which + 1]; ++k)
+      multiply_column(layout.columns[k], &in_chunks_[position_in_chunk(which, layout.columns[k].across)]);
   }
 #pragma omp for schedule(static)
   for (int across = 0; across < static_cast<int>(layout.column_at.size()); ++across)
     if (const int k = layout.column_at[across]; k >= 0)
-      add_up_strips({across / layout.extent[1], across % layout.extent[1]}, layout.columns[k]);
+      add_up_chunks({across / layout.extent[1], across % layout.extent[1]}, layout.columns[k]);
 #pragma omp single
   for (const CellColumns::Ghost& g : ghosts) layout.y[layout.place_of[g.cell]] += layout.y[g.place];
 #pragma omp for schedule(static)

@@ -24,7 +24,7 @@
 
 namespace tremie {
 
-class PressurePreconditioner {
+class SchurComplementPreconditioner {
  public:
   /// `G_inverse`: node blocks, zero where a wall prescribes; `stiffness`: C [J s], a cell with 0 is left out;
   /// `ratio`: of the largest C to the stiffness of D in a cell. False where S is not positive definite.
@@ -34,17 +34,17 @@ class PressurePreconditioner {
   void lay_out(const ActiveGrid<3>& grid, double most_band_operations);
   bool factorised() const { return by_band_; }
   /// Gives back the room of a large body until the next build(); false if it is none.
-  bool give_back() {
+  bool release() {
     if (by_band_) return false;
     rows_ = {};
     iteration_ = {};
-    tremie::give_back(number_);
+    tremie::release(number_);
     y_.resize(0), p_.resize(0);
     return true;
   }
-  const PressureRows& rows() const { return rows_; }
-  /// z = P^-1 r, four numbers a node; `room`: of the batches' strips.
-  void apply(const CellBatches& batches, const ActiveGrid<3>& grid, const Eigen::VectorXf& r, StripRoom& room,
+  const DivergenceOperator& rows() const { return rows_; }
+  /// z = P^-1 r, four numbers a node; `room`: of the batches' chunks.
+  void apply(const CellBatches& batches, const ActiveGrid<3>& grid, const Eigen::VectorXf& r, ReductionBuffer& room,
              Eigen::VectorXf& z);
 
  private:
@@ -65,14 +65,14 @@ class PressurePreconditioner {
   Index<3> way_{};           ///< the axes, the one that the concrete is longest on first
   std::vector<int> order_;   ///< the cells as the band has them
   std::vector<int> number_;  ///< of each cell in the band; -1 where it is left out
-  PressureRows rows_;
-  PressureIteration iteration_;  ///< where S is not factorised
+  DivergenceOperator rows_;
+  TwoLevelPcg iteration_;  ///< where S is not factorised
   Eigen::VectorXf y_, p_;
   std::vector<int> first_;  ///< of each row of the band: its first column
-  TwoEndedCholesky<float> band_;
+  TwistedCholesky<float> band_;
 };
 
-inline void PressurePreconditioner::order_across_the_thin_way(const ActiveGrid<3>& grid) {
+inline void SchurComplementPreconditioner::order_across_the_thin_way(const ActiveGrid<3>& grid) {
   way_ = {0, 1, 2};
   std::stable_sort(way_.begin(), way_.end(),
                    [&](int a, int b) { return grid.cell_map.extent[a] > grid.cell_map.extent[b]; });
@@ -88,7 +88,7 @@ inline void PressurePreconditioner::order_across_the_thin_way(const ActiveGrid<3
   for (std::size_t k = 0; k < by_place.size(); ++k) order_[k] = by_place[k].second;
 }
 
-inline void PressurePreconditioner::number_cells(const std::vector<char>& left_out) {
+inline void SchurComplementPreconditioner::number_cells(const std::vector<char>& left_out) {
   number_.resize(order_.size());
   int n = 0;
   for (int c : order_) number_[c] = left_out[c] ? -1 : n++;
@@ -98,7 +98,7 @@ inline void PressurePreconditioner::number_cells(const std::vector<char>& left_o
 /// Calls use(cell, offset) for the cells within two of `cell` in every direction, which are those that share
 /// a node with it, in the order of their numbers; until one returns false.
 template <class Use>
-void PressurePreconditioner::for_each_neighbour(const ActiveGrid<3>& grid, int cell, Use use) const {
+void SchurComplementPreconditioner::for_each_neighbour(const ActiveGrid<3>& grid, int cell, Use use) const {
   const auto& map = grid.cell_map;
   std::array<std::array<std::ptrdiff_t, 5>, 3> at;  // what each offset adds to the place in the map; -1: none
   std::ptrdiff_t stride = 1;
@@ -122,7 +122,7 @@ void PressurePreconditioner::for_each_neighbour(const ActiveGrid<3>& grid, int c
     }
 }
 
-inline void PressurePreconditioner::find_first_columns(const ActiveGrid<3>& grid) {
+inline void SchurComplementPreconditioner::find_first_columns(const ActiveGrid<3>& grid) {
   bool wraps = false;
   for (const Axis& a : grid.axes) wraps = wraps || a.periodic;
 #pragma omp parallel for schedule(static)
@@ -140,7 +140,7 @@ inline void PressurePreconditioner::find_first_columns(const ActiveGrid<3>& grid
 
 namespace detail {
 
-/// Sum of products over a box of so many controls a direction; the last direction runs fastest.
+/// Sum of products over a box of so many nodes a direction; the last direction runs fastest.
 template <int n0, int n1, int n2>
 float box_sum(const Eigen::Vector4f* a, const Eigen::Vector4f* b) {
   Eigen::Vector4f sum = Eigen::Vector4f::Zero();
@@ -150,7 +150,7 @@ float box_sum(const Eigen::Vector4f* a, const Eigen::Vector4f* b) {
   return sum.sum();
 }
 
-/// The same over the box of controls that a cell with the values a shares with the one at `offset`, which has
+/// The same over the box of nodes that a cell with the values a shares with the one at `offset`, which has
 /// b.
 inline float box_product(const Index<3>& offset, const Eigen::Vector4f* a, const Eigen::Vector4f* b) {
   using Sum = float (*)(const Eigen::Vector4f*, const Eigen::Vector4f*);
@@ -170,17 +170,17 @@ inline float box_product(const Index<3>& offset, const Eigen::Vector4f* a, const
 
 }  // namespace detail
 
-/// Calls add(c, other, value) for the part of S below its diagonal on a grid whose controls are numbered like
-/// its cells: two cells share a box of controls.
+/// Calls add(c, other, value) for the part of S below its diagonal on a grid whose nodes are numbered like
+/// its cells: two cells share a box of nodes.
 template <class Add>
-void PressurePreconditioner::fill_by_boxes(const ActiveGrid<3>& grid, Add add) const {
+void SchurComplementPreconditioner::fill_by_boxes(const ActiveGrid<3>& grid, Add add) const {
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < grid.n_cells(); ++c) {
     add(c, c, rows_.softness[c]);
     if (rows_.left_out[c]) continue;
     std::array<Eigen::Vector4f, 27> w;
     for (std::size_t k = 0; k < 27; ++k)
-      w[k] = PressureRows::times(rows_.G_inverse[grid.cell_nodes[c][k]], rows_.of_cell(c)[k]);
+      w[k] = DivergenceOperator::times(rows_.G_inverse[grid.cell_nodes[c][k]], rows_.of_cell(c)[k]);
     for_each_neighbour(grid, c, [&](int other, const Index<3>& offset) {
       if (!rows_.left_out[other])
         add(c, other, detail::box_product(offset, w.data(), rows_.of_cell(other).data()));
@@ -191,14 +191,14 @@ void PressurePreconditioner::fill_by_boxes(const ActiveGrid<3>& grid, Add add) c
 
 /// The same on any grid.
 template <class Add>
-void PressurePreconditioner::fill_by_nodes(const ActiveGrid<3>& grid, const CellBatches& batches,
+void SchurComplementPreconditioner::fill_by_nodes(const ActiveGrid<3>& grid, const CellBatches& batches,
                                            Add add) const {
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < grid.n_cells(); ++c) {
     add(c, c, rows_.softness[c]);
     for (int k = 0; k < 27 && !rows_.left_out[c]; ++k) {
       const int i = grid.cell_nodes[c][k];
-      const Eigen::Vector4f w = PressureRows::times(rows_.G_inverse[i], rows_.of_cell(c)[k]);
+      const Eigen::Vector4f w = DivergenceOperator::times(rows_.G_inverse[i], rows_.of_cell(c)[k]);
       for (const int* e = batches.entries_begin(i); e != batches.entries_end(i); ++e)
         if (const int other = CellBatches::cell_of(*e);
             !rows_.left_out[other] && number_[other] <= number_[c])
@@ -208,13 +208,13 @@ void PressurePreconditioner::fill_by_nodes(const ActiveGrid<3>& grid, const Cell
 }
 
 template <class Add>
-void PressurePreconditioner::fill(const ActiveGrid<3>& grid, const CellBatches& batches, Add add) const {
-  bool by_boxes = true;  // a periodic axis repeats places, a crease adds controls
-  for (const Axis& a : grid.axes) by_boxes = by_boxes && !a.periodic && a.n_creases() == 0;
+void SchurComplementPreconditioner::fill(const ActiveGrid<3>& grid, const CellBatches& batches, Add add) const {
+  bool by_boxes = true;  // a periodic axis repeats places, a repeated knot adds nodes
+  for (const Axis& a : grid.axes) by_boxes = by_boxes && !a.periodic && a.n_repeated_knots() == 0;
   by_boxes ? fill_by_boxes(grid, add) : fill_by_nodes(grid, batches, add);
 }
 
-inline void PressurePreconditioner::lay_out(const ActiveGrid<3>& grid, double most_band_operations) {
+inline void SchurComplementPreconditioner::lay_out(const ActiveGrid<3>& grid, double most_band_operations) {
   order_across_the_thin_way(grid);
   number_cells(std::vector<char>(order_.size(), 0));
   find_first_columns(grid);
@@ -227,11 +227,11 @@ inline void PressurePreconditioner::lay_out(const ActiveGrid<3>& grid, double mo
   if (by_band_) return;
   for (int c = 0; c < grid.n_cells(); ++c) number_[c] = c;
   band_ = {};
-  tremie::give_back(order_);
-  tremie::give_back(first_);
+  tremie::release(order_);
+  tremie::release(first_);
 }
 
-inline bool PressurePreconditioner::build(const ActiveGrid<3>& grid, const CellBatches& batches,
+inline bool SchurComplementPreconditioner::build(const ActiveGrid<3>& grid, const CellBatches& batches,
                                           const Quadrature<ThreeD>& quadrature,
                                           const std::vector<Mat<3, 3>>& G_inverse,
                                           const std::vector<double>& stiffness, double ratio) {
@@ -253,8 +253,8 @@ inline bool PressurePreconditioner::build(const ActiveGrid<3>& grid, const CellB
   return first_.empty() || band_.factorise();
 }
 
-inline void PressurePreconditioner::apply(const CellBatches& batches, const ActiveGrid<3>& grid,
-                                          const Eigen::VectorXf& r, StripRoom& room, Eigen::VectorXf& z) {
+inline void SchurComplementPreconditioner::apply(const CellBatches& batches, const ActiveGrid<3>& grid,
+                                          const Eigen::VectorXf& r, ReductionBuffer& room, Eigen::VectorXf& z) {
   const int n_cells = grid.n_cells(), n_nodes = grid.n_nodes();
   z.resize(r.size());
   y_.resize(r.size());
@@ -263,7 +263,7 @@ inline void PressurePreconditioner::apply(const CellBatches& batches, const Acti
   {
 #pragma omp for schedule(static)
     for (int i = 0; i < n_nodes; ++i)
-      y_.segment<4>(4 * i) = PressureRows::times(rows_.G_inverse[i], r.segment<4>(4 * i));
+      y_.segment<4>(4 * i) = DivergenceOperator::times(rows_.G_inverse[i], r.segment<4>(4 * i));
 #pragma omp for schedule(static)
     for (int c = 0; c < n_cells; ++c)
       if (number_[c] >= 0) p_[number_[c]] = rows_.divergence(grid, c, y_);
@@ -272,15 +272,15 @@ inline void PressurePreconditioner::apply(const CellBatches& batches, const Acti
   if (!by_band_) iteration_.solve(reduction_, p_);
 #pragma omp parallel
   {
-    const CellStrips& strips = batches.strips();
-    const auto give = [&](int strip, float* to) {
+    const NodeReduction& reduction = batches.reduction();
+    const auto give = [&](int chunk, float* to) {
       rows_.push(
-          grid, strips.first_cell(strip), strips.last_cell(strip),
+          grid, reduction.first_cell(chunk), reduction.last_cell(chunk),
           [&](int c) { return number_[c] < 0 ? 0.0f : p_[number_[c]]; }, to);
     };
-    strips.sweep_in_region<float>(room, give, [&](int i) {
+    reduction.sweep_in_region<float>(room, give, [&](int i) {
       z.segment<4>(4 * i) =
-          y_.segment<4>(4 * i) - PressureRows::times(rows_.G_inverse[i], strips.sum_at<float, 4>(i, room));
+          y_.segment<4>(4 * i) - DivergenceOperator::times(rows_.G_inverse[i], reduction.sum_at<float, 4>(i, room));
     });
   }
   for (const MirrorNode<3>& m : grid.mirrors)

@@ -4,7 +4,7 @@
 // with its entries, preconditioned on two levels.
 //
 // S is a Laplacian of the pressures with a little softness C^-1. What reaches over single cells is taken out
-// by F' F, which comes near S^-1 (near_inverse.hpp); what is smooth over five cells by a second level: one
+// by F' F, which comes near S^-1 (fsai.hpp); what is smooth over five cells by a second level: one
 // pressure for each cube of five cells a direction, P' S P, a narrow band with a 125th of the unknowns,
 // which is factorised. Both have part in what is smooth, so that the second one counts half:
 //
@@ -17,7 +17,7 @@
 
 namespace tremie {
 
-class PressureIteration {
+class TwoLevelPcg {
  public:
   static constexpr int cube = 5;  ///< cells a direction
 
@@ -26,24 +26,24 @@ class PressureIteration {
   /// p <- S^-1 p, its residual's energy norm reduced by `reduction`.
   void solve(double reduction, Eigen::VectorXf& p);
 
-  PressureEntries entries;  ///< S
+  SchurMatrix entries;  ///< S
 
  private:
-  void find_cubes(const ActiveGrid<3>& grid);
+  void find_aggregates(const ActiveGrid<3>& grid);
   void fill_coarse();
   void multiply(const Eigen::VectorXf& p, Eigen::VectorXf& Sp);
   void precondition(const Eigen::VectorXf& r, Eigen::VectorXf& z);
 
-  NearInverse near_;
+  Fsai near_;
   Eigen::VectorXf coarse_;
   std::vector<int> cube_;        ///< of each cell
-  std::vector<int> cube_begin_;  ///< cells cube_cell_[cube_begin_[k] .. cube_begin_[k + 1]) are in cube k
-  std::vector<int> cube_cell_;
-  TwoEndedCholesky<float> band_;
+  std::vector<int> aggregate_begin_;  ///< cells aggregate_cell_[aggregate_begin_[k] .. aggregate_begin_[k + 1]) are in cube k
+  std::vector<int> aggregate_cell_;
+  TwistedCholesky<float> band_;
 };
 
 /// Numbers the cubes with the shortest way across the body running fastest.
-inline void PressureIteration::find_cubes(const ActiveGrid<3>& grid) {
+inline void TwoLevelPcg::find_aggregates(const ActiveGrid<3>& grid) {
   Index<3> way{0, 1, 2};
   std::stable_sort(way.begin(), way.end(),
                    [&](int a, int b) { return grid.cell_map.extent[a] > grid.cell_map.extent[b]; });
@@ -51,22 +51,22 @@ inline void PressureIteration::find_cubes(const ActiveGrid<3>& grid) {
   std::vector<Index<3>> at(n);
   for (int c = 0; c < n; ++c)
     for (int d = 0; d < 3; ++d) at[c][d] = (grid.cell_index[c][way[d]] - grid.cell_map.low[way[d]]) / cube;
-  cube_cell_.resize(n);
-  for (int c = 0; c < n; ++c) cube_cell_[c] = c;
-  std::sort(cube_cell_.begin(), cube_cell_.end(),
+  aggregate_cell_.resize(n);
+  for (int c = 0; c < n; ++c) aggregate_cell_[c] = c;
+  std::sort(aggregate_cell_.begin(), aggregate_cell_.end(),
             [&](int a, int b) { return at[a] != at[b] ? at[a] < at[b] : a < b; });
   cube_.resize(n);
-  cube_begin_.clear();
+  aggregate_begin_.clear();
   for (int k = 0; k < n; ++k) {
-    if (k == 0 || at[cube_cell_[k]] != at[cube_cell_[k - 1]]) cube_begin_.push_back(k);
-    cube_[cube_cell_[k]] = static_cast<int>(cube_begin_.size()) - 1;
+    if (k == 0 || at[aggregate_cell_[k]] != at[aggregate_cell_[k - 1]]) aggregate_begin_.push_back(k);
+    cube_[aggregate_cell_[k]] = static_cast<int>(aggregate_begin_.size()) - 1;
   }
-  cube_begin_.push_back(n);
+  aggregate_begin_.push_back(n);
 }
 
 /// P' S P.
-inline void PressureIteration::fill_coarse() {
-  const int n = static_cast<int>(cube_begin_.size()) - 1;
+inline void TwoLevelPcg::fill_coarse() {
+  const int n = static_cast<int>(aggregate_begin_.size()) - 1;
   std::vector<int> first(static_cast<std::size_t>(n));
   for (int k = 0; k < n; ++k) first[static_cast<std::size_t>(k)] = k;
   entries.for_each([&](int c, int other, float) {
@@ -81,19 +81,19 @@ inline void PressureIteration::fill_coarse() {
   });
 }
 
-inline bool PressureIteration::build(const ActiveGrid<3>& grid) {
+inline bool TwoLevelPcg::build(const ActiveGrid<3>& grid) {
   near_.build(entries);
-  find_cubes(grid);
+  find_aggregates(grid);
   fill_coarse();
   return band_.factorise();
 }
 
-inline void PressureIteration::multiply(const Eigen::VectorXf& p, Eigen::VectorXf& Sp) {
+inline void TwoLevelPcg::multiply(const Eigen::VectorXf& p, Eigen::VectorXf& Sp) {
 #pragma omp parallel
   entries.multiply_in_region(p, Sp);
 }
 
-inline void PressureIteration::precondition(const Eigen::VectorXf& r, Eigen::VectorXf& z) {
+inline void TwoLevelPcg::precondition(const Eigen::VectorXf& r, Eigen::VectorXf& z) {
   const int n = static_cast<int>(coarse_.size());
   z.resize(r.size());
 #pragma omp parallel
@@ -101,7 +101,7 @@ inline void PressureIteration::precondition(const Eigen::VectorXf& r, Eigen::Vec
 #pragma omp for schedule(static)
     for (int k = 0; k < n; ++k) {
       coarse_[k] = 0.0f;
-      for (int j = cube_begin_[k]; j < cube_begin_[k + 1]; ++j) coarse_[k] += r[cube_cell_[j]];
+      for (int j = aggregate_begin_[k]; j < aggregate_begin_[k + 1]; ++j) coarse_[k] += r[aggregate_cell_[j]];
     }
     band_.solve_in_region(coarse_);
     near_.apply_in_region(entries.layout, r);
@@ -113,7 +113,7 @@ inline void PressureIteration::precondition(const Eigen::VectorXf& r, Eigen::Vec
   }
 }
 
-inline void PressureIteration::solve(double reduction, Eigen::VectorXf& p) {
+inline void TwoLevelPcg::solve(double reduction, Eigen::VectorXf& p) {
   Eigen::VectorXf rest = p;
   conjugate_gradients([&](const Eigen::VectorXf& x, Eigen::VectorXf& Sx) { multiply(x, Sx); },
                       [&](const Eigen::VectorXf& r, Eigen::VectorXf& z) { precondition(r, z); },
