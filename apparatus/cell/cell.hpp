@@ -18,9 +18,7 @@ namespace tremie::cell {
 struct Scene {
   std::string name;  ///< the file's name without .toml
   MaterialCell cell;
-  YieldKind yield = YieldKind::exact;
-  double regularisation = 0.0;       ///< m [s], papanastasiou alone
-  double critical_shear_rate = 0.0;  ///< gamma_c [1/s], bi_viscous alone
+  YieldLaw law = ExactBingham{};
   std::string resolved;  ///< the same scene as TOML, a CSV history as tables; reads back to the same scene
 };
 

@@ -7,6 +7,7 @@
 #include "apparatus/scene/input_error.hpp"
 #include "apparatus/scene/load.hpp"
 #include "apparatus/scene/resolved.hpp"
+#include "apparatus/common/law_keys.hpp"
 #include "apparatus/common/shared_keys.hpp"
 #include "rheometer/records/torque_record.hpp"
 
@@ -18,10 +19,6 @@ using scene::Dimension;
 using scene::Kind;
 using scene::Section;
 using scene::Values;
-
-const scene::Words<YieldKind> yield_words{{"exact", YieldKind::exact},
-                                          {"papanastasiou", YieldKind::papanastasiou},
-                                          {"bi_viscous", YieldKind::bi_viscous}};
 
 Section top_section() {
   return {
@@ -62,26 +59,14 @@ Section test_section() {
 
 Section model_section() {
   Section section{.name = "model", .help = "How it is computed."};
-  section.keys = {
-      {.name = "yield", .kind = Kind::choice, .words = scene::names(yield_words), .fallback = "exact"},
-      {.name = "regularisation",
-       .dimension = Dimension::time,
-       .range = scene::positive,
-       .fallback = "5 s",
-       .only_with = scene::Condition{"yield", {"papanastasiou"}},
-       .help = "m"},
-      {.name = "critical_shear_rate",
-       .dimension = Dimension::rate,
-       .range = scene::positive,
-       .fallback = "0.01 1/s",
-       .only_with = scene::Condition{"yield", {"bi_viscous"}},
-       .help = "gamma_c of the yield law"},
+  section.keys = scene::law_model_keys();
+  section.keys.push_back(
       {.name = "time_step",
        .dimension = Dimension::time,
        .range = scene::positive,
        .words = {"auto"},
        .fallback = "auto",
-       .help = "of the flocculation's update; auto: about 2000 over the history"}};
+       .help = "of the flocculation's update; auto: about 2000 over the history"});
   return section;
 }
 
@@ -134,10 +119,7 @@ Scene build(scene::Loaded loaded) {
         ": history: missing; give tables [[history]] with duration, from and to, or history = "
         "\"file.csv\" above the first table");
   scene.cell.time_step = values.number_unless("model.time_step", "auto");
-  scene.yield = values.choice("model.yield", yield_words);
-  if (values.has("model.regularisation")) scene.regularisation = values.number("model.regularisation");
-  if (values.has("model.critical_shear_rate"))
-    scene.critical_shear_rate = values.number("model.critical_shear_rate");
+  scene.law = scene::read_law(values);
   scene.resolved = scene::write_resolved(loaded.schema, values);
   return scene;
 }
@@ -174,15 +156,7 @@ Scene read_text(const std::string& text, const std::string& name, const std::vec
 
 CellResult run(const Scene& scene) {
   try {
-    switch (scene.yield) {
-      case YieldKind::papanastasiou:
-        return run_cell(scene.cell, Papanastasiou{scene.regularisation});
-      case YieldKind::bi_viscous:
-        return run_cell(scene.cell, BiViscous{scene.critical_shear_rate});
-      case YieldKind::exact:
-        break;
-    }
-    return run_cell(scene.cell, ExactBingham{});
+    return run_cell(scene.cell, scene.law);
   } catch (const std::invalid_argument& error) {
     throw scene::InputError(scene.name + ": " + error.what());
   }

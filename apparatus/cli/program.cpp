@@ -17,7 +17,7 @@
 namespace tremie::cli {
 namespace {
 
-std::string pack(const std::vector<std::string>& words) {
+std::string joined(const std::vector<std::string>& words) {
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
@@ -25,7 +25,7 @@ std::string pack(const std::vector<std::string>& words) {
 std::string unknown(const std::string& what, const std::string& given,
                     const std::vector<std::string>& known) {
   return fmt::format("{} \"{}\"; did you mean \"{}\"? Allowed: {}", what, given, scene::nearest(given, known),
-                     pack(known));
+                     joined(known));
 }
 
 /// A first word that is no command.

@@ -11,10 +11,11 @@
 #include <string>
 #include <vector>
 
+#include "libmpm/constitutive/yield_law.hpp"
+
 namespace tremie {
 
 enum class SpaceKind { axisymmetric, quarter, full, plane, plane_with_side_walls, couette, half };
-enum class YieldKind { exact, papanastasiou, bi_viscous };
 enum class SchemeKind { implicit, explicit_usl, explicit_usf };
 enum class MethodKind { automatic, admm, newton };
 enum class ShapeKind { b_spline, gimp };
@@ -30,9 +31,7 @@ struct Floor {
 
 struct Model {
   SpaceKind space = SpaceKind::axisymmetric;
-  YieldKind yield = YieldKind::exact;
-  double regularisation = 0.0;       ///< m [s], papanastasiou alone
-  double critical_shear_rate = 0.0;  ///< gamma_c [1/s], bi_viscous alone
+  YieldLaw law = ExactBingham{};
   SchemeKind scheme = SchemeKind::implicit;
   MethodKind method = MethodKind::automatic;
   ShapeKind shape = ShapeKind::b_spline;

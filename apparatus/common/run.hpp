@@ -13,8 +13,9 @@
 #include <string>
 
 #include "apparatus/common/model.hpp"
-#include "libmpm/constitutive/yield_law.hpp"
+#include "libmpm/boundary/flat_walls.hpp"
 #include "libmpm/implicit/step.hpp"
+#include "libmpm/implicit/step_size.hpp"
 
 namespace tremie::engine {
 
@@ -39,19 +40,6 @@ inline StepSettings step_settings(const Model& model) {
   settings.fixed_dt = model.time_step;
   settings.dt_max *= model.step_scale;
   return settings;
-}
-
-/// Calls run(law) with the yield law that the model names.
-template <class Run>
-auto with_law(const Model& model, Run run) {
-  switch (model.yield) {
-    case YieldKind::papanastasiou:
-      return run(Papanastasiou{model.regularisation});
-    case YieldKind::bi_viscous:
-      return run(BiViscous{model.critical_shear_rate});
-    default:
-      return run(ExactBingham{});
-  }
 }
 
 /// Throws std::invalid_argument for a scheme or shape that has no engine.

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "apparatus/common/law_keys.hpp"
 #include "libmpm/constitutive/equation_of_state.hpp"
 
 namespace tremie::scene {
@@ -22,9 +23,6 @@ const Words<SpaceKind> space_words{{"axisymmetric", SpaceKind::axisymmetric},
                                    {"plane_with_side_walls", SpaceKind::plane_with_side_walls},
                                    {"couette", SpaceKind::couette},
                                    {"half", SpaceKind::half}};
-const Words<YieldKind> yield_words{{"exact", YieldKind::exact},
-                                   {"papanastasiou", YieldKind::papanastasiou},
-                                   {"bi_viscous", YieldKind::bi_viscous}};
 const Words<SchemeKind> scheme_words{{"implicit", SchemeKind::implicit},
                                      {"explicit", SchemeKind::explicit_usl},
                                      {"explicit_usf", SchemeKind::explicit_usf}};
@@ -37,7 +35,7 @@ const Words<PrecisionKind> precision_words{{"double", PrecisionKind::both_double
                                            {"single", PrecisionKind::single_sums}};
 
 Section material_section(const std::string& bulk_modulus) {
-  return {
+  Section section{
       .name = "mix",
       .help = "The concrete. In place of the table: mix = \"mix_a\", a name from reference_data/mixes.",
       .keys = {
@@ -47,12 +45,6 @@ Section material_section(const std::string& bulk_modulus) {
            .required = true,
            .example = "54 Pa",
            .help = "dynamic yield stress, tau_0"},
-          {.name = "plastic_viscosity",
-           .dimension = Dimension::viscosity,
-           .range = positive,
-           .required = true,
-           .example = "35.8 Pa.s",
-           .help = "mu"},
           {.name = "density", .dimension = Dimension::density, .range = positive, .fallback = "2400 kg/m3"},
           {.name = "bulk_modulus",
            .dimension = Dimension::pressure,
@@ -88,6 +80,9 @@ Section material_section(const std::string& bulk_modulus) {
            .range = between(0.0, 10.0),
            .help = "of this concrete on the plate: the default of floor.coefficient"},
       }};
+  const std::vector<Key> viscosity = viscosity_keys();
+  section.keys.insert(section.keys.begin() + 1, viscosity.begin(), viscosity.end());
+  return section;
 }
 
 Section thixotropy_section() {
@@ -150,6 +145,7 @@ Schema mix_sections(const std::string& bulk_modulus) {
 
 void settle_mix(Values& values) {
   settle_bulk_modulus(values);
+  settle_law(values);
   if (values.has_section("mix.thixotropy") && values.number("mix.yield_stress") == 0.0) {
     values.fail("mix.yield_stress",
                 "is 0 with [mix.thixotropy]: the flocculation state grows by A_thix/tau_0 and has no value; "
@@ -162,7 +158,7 @@ Mix read_mix(const Values& values) {
   Mix mix;
   mix.density = values.number("mix.density");
   mix.tau_0 = values.number("mix.yield_stress");
-  mix.mu = values.number("mix.plastic_viscosity");
+  mix.mu = values.has("mix.plastic_viscosity") ? values.number("mix.plastic_viscosity") : newtonian(read_law(values));
   mix.K = values.number("mix.bulk_modulus");
   if (!values.has_section("mix.thixotropy")) return mix;
   Thixotropy t;
@@ -215,23 +211,10 @@ Floor read_floor(const Values& values) {
 }
 
 Section model_section(const std::vector<std::string>& spaces, const ModelDefaults& defaults) {
-  return {.name = "model",
+  Section section{.name = "model",
           .help = "How it is computed.",
           .keys = {
               {.name = "space", .kind = Kind::choice, .words = spaces, .fallback = spaces.front()},
-              {.name = "yield", .kind = Kind::choice, .words = names(yield_words), .fallback = "exact"},
-              {.name = "regularisation",
-               .dimension = Dimension::time,
-               .range = positive,
-               .fallback = "5 s",
-               .only_with = Condition{"yield", {"papanastasiou"}},
-               .help = "m"},
-              {.name = "critical_shear_rate",
-               .dimension = Dimension::rate,
-               .range = positive,
-               .fallback = "0.01 1/s",
-               .only_with = Condition{"yield", {"bi_viscous"}},
-               .help = "gamma_c of the yield law"},
               {.name = "scheme", .kind = Kind::choice, .words = names(scheme_words), .fallback = "implicit"},
               {.name = "method",
                .kind = Kind::choice,
@@ -278,15 +261,15 @@ Section model_section(const std::vector<std::string>& spaces, const ModelDefault
                .fallback = defaults.points_per_cell,
                .help = "[across, up], or one number for each direction"},
           }};
+  const std::vector<Key> law = law_model_keys();
+  section.keys.insert(section.keys.begin() + 1, law.begin(), law.end());
+  return section;
 }
 
 Model read_model(const Values& values) {
   Model model;
   model.space = values.choice("model.space", space_words);
-  model.yield = values.choice("model.yield", yield_words);
-  if (values.has("model.regularisation")) model.regularisation = values.number("model.regularisation");
-  if (values.has("model.critical_shear_rate"))
-    model.critical_shear_rate = values.number("model.critical_shear_rate");
+  model.law = read_law(values);
   model.scheme = values.choice("model.scheme", scheme_words);
   if (values.has("model.method")) model.method = values.choice("model.method", method_words);
   model.shape = values.choice("model.shape", shape_words);

@@ -68,8 +68,8 @@ std::vector<ProfilePoint> profile(const Body<typename Section::Geometry>& body, 
   return out;
 }
 
-template <class Section, class Law>
-Outcome run_section(const Scene& scene, const Section& section, const Law& law, const Observer& observer) {
+template <class Section>
+Outcome run_section(const Scene& scene, const Section& section, const Observer& observer) {
   using Geometry = typename Section::Geometry;
   ImplicitBody<Geometry> body{section.body_at_rest(scene)};
   engine::rest(body, scene.rest);
@@ -88,7 +88,7 @@ Outcome run_section(const Scene& scene, const Section& section, const Law& law, 
       settings.dt_max = left / std::ceil(left / (scene.model.step_scale * largest_dt) - 1e-9);
       const double speed = last_speed + start_up(body.time - stage_start) * (stage.speed - last_speed);
       section.turn(body, angular(speed));
-      const StepReport step = implicit_step(body, law, settings);
+      const StepReport step = implicit_step(body, scene.model.law, settings);
       turned += angular(speed) * step.dt;
       const Torques t = section.torques(body);
       engine::count_step(body, step, outcome.checks, outcome.cost);
@@ -134,8 +134,7 @@ Outcome run(const Scene& scene, const Observer& observer) {
   refuse_what_has_no_engine(scene);
   omp_set_num_threads(scene.threads);
   return with_section(scene, [&](const auto& section) {
-    return engine::with_law(scene.model,
-                            [&](const auto& law) { return run_section(scene, section, law, observer); });
+    return run_section(scene, section, observer);
   });
 }
 

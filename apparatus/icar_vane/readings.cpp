@@ -162,7 +162,7 @@ void check_torques_agree(const Scene& scene, Outcome& outcome) {
 void check_against_reference(const Scene& scene, Outcome& outcome) {
   const auto& reference = outcome.results.torque_couette_reference;
   const Sample& last = outcome.series.back();
-  const bool same_problem = scene.model.space == SpaceKind::couette && scene.model.yield == YieldKind::exact;
+  const bool same_problem = scene.model.space == SpaceKind::couette && std::holds_alternative<ExactBingham>(scene.model.law);
   if (!reference || !same_problem || last.time < settled) return;
   const double off = last.torque / *reference - 1.0;
   if (std::abs(off) > agreement_with_reference)

@@ -87,8 +87,8 @@ inline void judge_cells(const Scene& scene, const Results& r, Checks& checks) {
   if (text[0] != 0) checks.reasons.push_back(std::string(text) + ": a smaller model.cell");
 }
 
-template <class Geometry, class Law>
-Outcome run_in(const Scene& scene, const Law& law, const Observer& observer) {
+template <class Geometry>
+Outcome run_in(const Scene& scene, const Observer& observer) {
   ImplicitBody<Geometry> body{filled_column<Geometry>(scene)};
   StepSettings settings = step_settings<Geometry>(scene);
   const double start_mass = engine::total_mass(body.points);
@@ -102,7 +102,7 @@ Outcome run_in(const Scene& scene, const Law& law, const Observer& observer) {
   while (!stopped && body.time < scene.duration * (1.0 - 1e-12)) {
     settings.dt_max = std::min(longest_dt<Geometry>(scene, body.time), scene.duration - body.time);
     body.boundary = walls_inside<Geometry>(scene, body.grid.axes, body.time);
-    const StepReport step = implicit_step(body, law, settings);
+    const StepReport step = implicit_step(body, scene.model.law, settings);
     engine::count_step(body, step, outcome.checks, outcome.cost);
     engine::watch_fixed_step(body, scene.model, step, outcome.checks);
     if (engine::gave_up(step, outcome.status, outcome.checks, body.time)) break;

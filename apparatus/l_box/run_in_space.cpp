@@ -3,8 +3,6 @@
 
 namespace tremie::l_box {
 
-Outcome run_3d(const Scene& scene, const Observer& observer) {
-  return engine::with_law(scene.model, [&](const auto& law) { return run_in<ThreeD>(scene, law, observer); });
-}
+Outcome run_3d(const Scene& scene, const Observer& observer) { return run_in<ThreeD>(scene, observer); }
 
 }  // namespace tremie::l_box

@@ -3,9 +3,6 @@
 
 namespace tremie::l_box {
 
-Outcome run_in_the_plane(const Scene& scene, const Observer& observer) {
-  return engine::with_law(scene.model,
-                          [&](const auto& law) { return run_in<PlaneStrain>(scene, law, observer); });
-}
+Outcome run_in_the_plane(const Scene& scene, const Observer& observer) { return run_in<PlaneStrain>(scene, observer); }
 
 }  // namespace tremie::l_box

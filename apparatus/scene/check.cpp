@@ -210,9 +210,16 @@ class Checker {
       if (values_.has(full) || reported(full)) continue;
       if (!key.fallback.empty())
         values_.entries[full] = default_of(key);
-      else if (key.required && applies(key, place))
+      else if (is_needed(key, place))
         missing(key, full, origin);
     }
+  }
+
+  /// Whether a scene that leaves the key out is incomplete. What another key of the section decides was read before.
+  bool is_needed(const Key& key, const std::string& place) const {
+    const auto there = [&](const std::string& name) { return !name.empty() && values_.has(dotted(place, name)); };
+    if (there(key.needed_with)) return true;
+    return key.required && applies(key, place) && !there(key.needed_without);
   }
 
   static Value default_of(const Key& key) {

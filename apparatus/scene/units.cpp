@@ -29,6 +29,7 @@ constexpr std::array angle_units{Unit{"rad"}, Unit{"deg", std::numbers::pi, 180}
                                  Unit{"°", std::numbers::pi, 180}};
 constexpr std::array torque_units{Unit{"N.m"}, Unit{"N·m"}, Unit{"N m"}, Unit{"mN.m", 1, 1000},
                                   Unit{"mN·m", 1, 1000}};
+constexpr std::array consistency_units{Unit{"Pa.s^n"}, Unit{"Pa·s^n"}, Unit{"Pa s^n"}};
 constexpr std::array acceleration_units{Unit{"m/s2"}, Unit{"m/s²"}, Unit{"m/s^2"}};
 
 std::string_view trimmed(std::string_view text) {
@@ -43,7 +44,7 @@ struct Split {
 };
 
 /// "54 Pa" as a number and the text after it; empty where no number leads.
-std::optional<Split> unpack(std::string_view text) {
+std::optional<Split> split(std::string_view text) {
   text = trimmed(text);
   if (text.starts_with('+')) text.remove_prefix(1);
   double number = 0.0;
@@ -80,8 +81,16 @@ std::span<const Unit> units(Dimension dimension) {
       return torque_units;
     case Dimension::acceleration:
       return acceleration_units;
+    case Dimension::consistency:
+      return consistency_units;
   }
   throw std::logic_error("a dimension without units");
+}
+
+Dimension dimension_of(std::string_view si_unit) {
+  for (int i = 0; i <= static_cast<int>(Dimension::consistency); ++i)
+    if (units(static_cast<Dimension>(i)).front().name == si_unit) return static_cast<Dimension>(i);
+  throw std::logic_error("no dimension has the SI unit " + std::string(si_unit));
 }
 
 std::string units_text(Dimension dimension) {
@@ -91,7 +100,7 @@ std::string units_text(Dimension dimension) {
 }
 
 double parse_quantity(std::string_view text, Dimension dimension) {
-  const auto parts = unpack(text);
+  const auto parts = split(text);
   const auto allowed = units_text(dimension);
   const auto si = units(dimension).front().name;
   if (!parts) {

@@ -20,7 +20,8 @@ enum class Dimension {
   rotation,       ///< rad/s
   angle,          ///< rad
   torque,
-  acceleration
+  acceleration,
+  consistency  ///< Pa s^n, n the flow index of the same mix
 };
 
 /// One unit of a dimension: SI value = value * numerator / denominator. Two factors, so that "35 mm" and
@@ -33,6 +34,9 @@ struct Unit {
 
 /// The units that a dimension may be written in. The first is the SI unit.
 std::span<const Unit> units(Dimension dimension);
+
+/// The dimension whose SI unit this is. Throws std::logic_error where there is none.
+Dimension dimension_of(std::string_view si_unit);
 
 /// "Pa, kPa, MPa": for messages.
 std::string units_text(Dimension dimension);

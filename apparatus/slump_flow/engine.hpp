@@ -113,7 +113,7 @@ inline void read_results(const engine::RestWatch& watch, bool stopped, Outcome& 
 /// over its area. A regularised law is sheared by any stress; flocculation only adds to the yield stress.
 inline bool slides(const Scene& scene, double depth) {
   if (scene.floor.contact != ContactKind::friction) return scene.floor.contact == ContactKind::free_slip;
-  const double shears = scene.model.yield == YieldKind::exact ? scene.mix.tau_0 : 0.0;
+  const double shears = is_exact(scene.model.law) ? scene.mix.tau_0 : 0.0;
   return scene.floor.coefficient * scene.mix.density * gravity * depth <= shears;
 }
 
@@ -173,8 +173,8 @@ bool record(const Scene& scene, const Body<Geometry>& body, const StepReport& st
 /// or what they leave would keep it from coming to rest.
 inline constexpr double flowing_tolerance = 4e-3, creeping = 1e-3;  // [1], [m/s]
 
-template <class Geometry, class Law>
-Outcome run_in(const Scene& scene, const Law& law, const Observer& observer) {
+template <class Geometry>
+Outcome run_in(const Scene& scene, const Observer& observer) {
   ImplicitBody<Geometry> body{filled_cone<Geometry>(scene)};
   StepSettings settings = step_settings(scene);
   const double start_mass = engine::total_mass(body.points);
@@ -195,7 +195,7 @@ Outcome run_in(const Scene& scene, const Law& law, const Observer& observer) {
       settings.admm.tolerance = flows ? flowing_tolerance : StepSettings{}.admm.tolerance;
     const bool cone_gone =
         scene.lift_speed && rim_height(scene, body.time) > outcome.series.back().height + 0.02;
-    const StepReport step = implicit_step(body, law, settings, cone_gone ? RigidWall<Geometry::dim>{} : wall);
+    const StepReport step = implicit_step(body, scene.model.law, settings, cone_gone ? RigidWall<Geometry::dim>{} : wall);
     flows = step.bulk_speed > creeping;
     engine::count_step(body, step, outcome.checks, outcome.cost);
     engine::watch_fixed_step(body, scene.model, step, outcome.checks);

@@ -4,12 +4,8 @@
 namespace tremie::slump_flow {
 
 Outcome run_explicit(const Scene& scene, const Observer& observer) {
-  const auto run = [&](const auto& law) {
-    return scene.model.space == SpaceKind::axisymmetric ? run_explicit_in<Axisymmetric>(scene, law, observer)
-                                                        : run_explicit_in<ThreeD>(scene, law, observer);
-  };
-  return scene.model.yield == YieldKind::papanastasiou ? run(Papanastasiou{scene.model.regularisation})
-                                                       : run(BiViscous{scene.model.critical_shear_rate});
+  return scene.model.space == SpaceKind::axisymmetric ? run_explicit_in<Axisymmetric>(scene, scene.model.law, observer)
+                                                      : run_explicit_in<ThreeD>(scene, scene.model.law, observer);
 }
 
 }  // namespace tremie::slump_flow

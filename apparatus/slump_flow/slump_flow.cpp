@@ -11,7 +11,7 @@ namespace {
 bool is_explicit(const Model& model) { return model.scheme != SchemeKind::implicit; }
 
 void refuse_what_has_no_engine(const Scene& scene) {
-  if (is_explicit(scene.model) && scene.model.yield == YieldKind::exact)
+  if (is_explicit(scene.model) && is_exact(scene.model.law))
     throw std::invalid_argument(
         "model.yield: \"exact\" has an unbounded viscosity at rest, for which no explicit step is short "
         "enough; give \"papanastasiou\" or \"bi_viscous\", or model.scheme = \"implicit\"");
@@ -40,15 +40,10 @@ double first_explicit_step(const Scene& scene) {
     lambda = flocculation_after_rest(t.initial_flocculation, t, scene.mix.tau_0, scene.rest);
   }
   const ExplicitSettings settings = explicit_settings(scene);
-  const auto limit = [&](const auto& law) {
-    return stability_limits(scene.mix, law, static_yield_stress(lambda, scene.mix.tau_0),
-                            largest_eigenvalues(shape_of<ThreeD>(model).kind),
-                            std::min(model.cell[0], model.cell[1]))
-        .together;
-  };
-  return settings.safety * (model.yield == YieldKind::papanastasiou
-                                ? limit(Papanastasiou{model.regularisation})
-                                : limit(BiViscous{model.critical_shear_rate}));
+  const auto limits = stability_limits(scene.mix, model.law, static_yield_stress(lambda, scene.mix.tau_0),
+                                       largest_eigenvalues(shape_of<ThreeD>(model).kind),
+                                       std::min(model.cell[0], model.cell[1]));
+  return settings.safety * limits.together;
 }
 
 }  // namespace

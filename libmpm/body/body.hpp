@@ -2,23 +2,14 @@
 
 // A body of concrete on its grid: plain data, whatever the scheme that steps it.
 
-#include <array>
 #include <vector>
 
 #include "libmpm/boundary/boundary_points.hpp"
+#include "libmpm/boundary/flat_walls.hpp"
 #include "libmpm/constitutive/mix.hpp"
 #include "libmpm/transfer/apic.hpp"
 
 namespace tremie {
-
-/// Velocities of the low and the high wall of each axis [m/s]; the normal component must be zero.
-template <int D>
-struct WallVelocities {
-  std::array<std::array<Vec<D>, 2>, D> v;
-  WallVelocities() {
-    for (auto& axis : v) axis.fill(Vec<D>::Zero());
-  }
-};
 
 /// A body of one mix on its grid: everything that a step reads and writes.
 template <class Geometry>

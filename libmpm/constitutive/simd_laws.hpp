@@ -1,27 +1,11 @@
 #pragma once
 
-// The laws of yield_law.hpp and flocculation.hpp for points side by side, and the largest viscosity that a
-// law can reach: what bounds an explicit time step.
+// The update of flocculation.hpp for points side by side.
 
 #include "libmpm/constitutive/flocculation.hpp"
 #include "libmpm/parallel/simd.hpp"
-#include "libmpm/constitutive/yield_law.hpp"
 
 namespace tremie {
-
-template <class Lanes>
-Lanes secant(const Papanastasiou& law, const Lanes& gamma_dot, const Lanes& tau_y) {
-  const auto m = static_cast<ScalarOf<Lanes>>(law.m);
-  return m * tau_y * mean_decay(m * gamma_dot);
-}
-template <class Lanes>
-Lanes secant(const BiViscous& law, const Lanes& gamma_dot, const Lanes& tau_y) {
-  return tau_y / max(gamma_dot, static_cast<ScalarOf<Lanes>>(law.gamma_c) - Lanes{});
-}
-
-/// Largest secant over all shear rates, at rest [Pa s]. An exact yield stress has none.
-inline double largest_secant(const Papanastasiou& law, double tau_y) { return law.m * tau_y; }
-inline double largest_secant(const BiViscous& law, double tau_y) { return tau_y / law.gamma_c; }
 
 /// detail::Decay::asymmetry of flocculation.hpp: (k coth(k/2) - 2)/k^2, by its series (error 1e-15) below
 /// 1/2. `d` is mean_decay(k).

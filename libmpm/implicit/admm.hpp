@@ -1,19 +1,22 @@
 #pragma once
 
-// Alternating directions for the yield problem (Glowinski; Boyd et al. 2011): the yield part sees a strain
-// rate d of its own at every Gauss place, tied to q(v) by a stress s and a penalty r,
+// Alternating direction method of multipliers for the yield problem (Glowinski; Boyd et al. 2011). The yield part sees
+// a strain rate d of its own at every quadrature point, tied to q(v) by a stress s and a penalty r,
 //
-//   v:  M (v - v*)/dt + bulk + contact + B' V [mu q(v) + s + r (q(v) - d)] = 0       one linear solve, one
-//   matrix a step d:  a = s + r (rho q + (1 - rho) d),   d <- prox(|a|) a/|a|,   s <- a - r d      closed
-//   form, place by place
+//   v:  M (v - v*)/dt + bulk + contact + B' V [mu q(v) + s + r (q(v) - d)] = 0     one linear solve, one matrix a step
+//   d:  a = s + r (rho q + (1 - rho) d),   d <- prox(|a|) a/|a|,   s <- a - r d    closed form, point by point
 //
-// The exact Bingham law needs no regularisation: |s| <= tau_y always, and d = 0 exactly where it does not
-// yield.
+// The exact Bingham law needs no regularisation: |s| <= tau_y always, and d = 0 exactly where it does not yield.
+//
+// solve_admm() is the iteration. How a batch of quadrature points is visited and how the linear system is solved are
+// two forms of one interface: admm_factorised.hpp (a Cholesky factor, any geometry) and admm_matrix_free.hpp
+// (preconditioned conjugate gradients, 3D).
 
 #include <algorithm>
 #include <cmath>
 
 #include "libmpm/boundary/friction.hpp"
+#include "libmpm/constitutive/yield_law.hpp"
 #include "libmpm/implicit/problem/yield_problem.hpp"
 
 namespace tremie {
@@ -39,9 +42,6 @@ namespace detail {
 /// So little is no stress of a concrete [Pa]: the scale where nothing yields and nothing moves.
 inline constexpr double no_stress = 1e-3;
 
-/// Hardly any place of a test shears faster for long [1/s].
-inline constexpr double fastest_rate = 100.0;
-
 /// A rate at which the concrete is at rest [1/s]: half a millimetre a second over half a decimetre.
 inline constexpr double rate_at_rest = 0.01;
 
@@ -62,49 +62,6 @@ struct AdmmResiduals {
     return std::max(primal, dual) <= tolerance * tolerance * scale && std::sqrt(missed) <= tolerated_miss();
   }
 };
-
-template <class Geometry, class Law>
-AdmmResiduals update_stress_and_rate(const YieldProblem<Geometry>& problem, const Law& law, const AdmmSettings& settings,
-                      double r, const std::vector<Vec<Geometry::dim>>& v, AdmmState<Geometry>& admm_state) {
-  constexpr int n = power(2, Geometry::dim);
-  const auto& quad = problem.quadrature;
-  std::vector<AdmmResiduals> part(quad.V.size());
-#pragma omp parallel for schedule(static)
-  for (int c = 0; c < problem.grid.n_cells(); ++c)
-    for (int k = 0; k < n; ++k) {
-      const double tau_y = quad.tau_y[c][k], V = quad.V[c][k];
-      auto& d = admm_state.rate[c][k];
-      auto& s = admm_state.stress[c][k];
-      const auto q = strain_rate(problem, v, c, k);
-      const Vec<Geometry::n_strain> a =
-          s + r * (settings.over_relaxation * q + (1.0 - settings.over_relaxation) * d);
-      const double a_norm = a.norm();
-      const Vec<Geometry::n_strain> d_new = a_norm > 0.0
-                                             ? Vec<Geometry::n_strain>(law.prox(a_norm, tau_y, r) / a_norm * a)
-                                             : Vec<Geometry::n_strain>(0.0 * a);
-      part[c].primal += V * (r * (q - d_new)).squaredNorm();
-      part[c].dual += V * (r * (d_new - d)).squaredNorm();
-      part[c].scale += V * std::pow(tau_y + problem.mu * q.norm() + no_stress, 2);
-      part[c].missed += V * (q - d_new).squaredNorm();
-      part[c].rate += V * q.squaredNorm();
-      part[c].volume += V;
-      s = a - r * d_new;
-      d = d_new;
-    }
-  AdmmResiduals sum;
-  for (const AdmmResiduals& m : part) sum.add(m);
-  return sum;
-}
-
-/// Volume of the concrete around each node: an equal share of every cell that it touches [m^3].
-template <class Geometry>
-std::vector<double> volumes_around_nodes(const YieldProblem<Geometry>& problem) {
-  std::vector<double> V(problem.grid.node_index.size(), 0.0);
-  for (int c = 0; c < problem.grid.n_cells(); ++c)
-    for (int i : problem.grid.cell_nodes[c]) V[i] += problem.quadrature.V_cell[c] / power(3, Geometry::dim);
-  fold_mirrors<Geometry::dim>(problem.grid, V);
-  return V;
-}
 
 /// Mean yield stress [Pa], by volume.
 template <class Geometry>
@@ -133,46 +90,36 @@ double inertial_viscosity(const YieldProblem<Geometry>& problem, double t) {
 /// iteration, and the residuals r (q - d) would look converged from the start.
 template <class Geometry>
 double penalty(const YieldProblem<Geometry>& problem, double viscosities) {
-  return std::max({viscosities * problem.mu, inertial_viscosity(problem, problem.dt),
+  return std::max({viscosities * problem.eta, inertial_viscosity(problem, problem.dt),
                    mean_yield_stress(problem) / fastest_rate});
 }
 
 }  // namespace detail
 
-/// Solves the yield problem by ADMM from the guesses v and ADMM state, which it overwrites with the solution.
-template <class Geometry, class Law>
-SolveReport solve_admm(YieldProblem<Geometry>& problem, const Law& law, const AdmmSettings& settings,
-                       BlockSystem<Geometry::dim>& system, std::vector<Vec<Geometry::dim>>& v,
-                       AdmmState<Geometry>& admm_state) {
+/// Solves the yield problem from the guesses v and that of `form`, which it overwrites with the solution. A form states
+///   bool prepare()                       sets up the linear system; false where it is not definite
+///   AdmmResiduals start(v)               at the guess
+///   double tolerated_energy(residuals)   of the error that a linear solve may leave [W]
+///   double solve(tolerated, v)           the step of v; returns the energy of the error that it left [W]
+///   AdmmResiduals update(v)              the step of d and s at every quadrature point
+///   bool contact_changed()               renews the linear system; false where it is not definite
+template <class Geometry, class Form>
+SolveReport solve_admm(YieldProblem<Geometry>& problem, const AdmmSettings& settings, Form& form,
+                       std::vector<Vec<Geometry::dim>>& v) {
   constexpr int D = Geometry::dim;
-  const double r = detail::penalty(problem, settings.penalty);
-  const auto stiffness = [&](int, int) { return problem.mu + r; };
-  const auto stress = [&](int c, int k, const Vec<Geometry::n_strain>& q) -> Vec<Geometry::n_strain> {
-    return problem.mu * q + admm_state.stress[c][k] + r * (q - admm_state.rate[c][k]);
-  };
-  const auto factorise = [&] {
-    assemble(problem, stiffness, system);
-    if (!problem.friction.empty())
-      add_friction_stiffness_admm<D>(problem.grid, detail::volumes_around_nodes(problem), problem.mu + r,
-                                     problem.friction, system);
-    system.fix(problem.fixed);
-    return system.factorise();
-  };
   SolveReport report;
-  if (!factorise()) return report;
+  if (!form.prepare()) return report;
+  detail::AdmmResiduals residuals = form.start(v);
   for (; report.iterations < settings.max_iterations; ++report.iterations) {
-    Eigen::VectorXd R = residual(problem, v, stress);
-    add_friction_forces_admm<D>(problem.friction, v, R);
-    mask(problem.fixed, R);
-    const Eigen::VectorXd dv = system.solve(R);
-    for (int i = 0; i < problem.grid.n_nodes(); ++i) v[i] += dv.segment<D>(i * D);
-    fill_mirrors<D>(problem.grid, v);
+    const double tolerated = form.tolerated_energy(residuals);
+    const double left = form.solve(tolerated, v);
     const bool contact_changed = update_active<D>(problem.contact, problem.grid.cell_nodes, v);
     const bool friction_settled =
         update_friction_admm<D>(problem.friction, v, settings.over_relaxation, settings.tolerance);
-    const auto residuals = detail::update_stress_and_rate(problem, law, settings, r, v, admm_state);
-    if (contact_changed && !factorise()) return report;
-    report.converged = residuals.within(settings.tolerance) && friction_settled && !contact_changed;
+    residuals = form.update(v);
+    if (contact_changed && !form.contact_changed()) return report;
+    report.converged = residuals.within(settings.tolerance) && friction_settled && !contact_changed &&
+                       std::max(left, residuals.pressure) <= std::min(tolerated, form.tolerated_energy(residuals));
     if (report.converged) break;
   }
   return report;

@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "libmpm/boundary/friction.hpp"
+#include "libmpm/constitutive/yield_law.hpp"
 #include "libmpm/implicit/problem/yield_problem.hpp"
 
 namespace tremie {
@@ -23,8 +24,8 @@ struct NewtonSettings {
 
 namespace detail {
 
-template <class Geometry, class Law>
-double energy(const YieldProblem<Geometry>& problem, const Law& law, const std::vector<Vec<Geometry::dim>>& v) {
+template <class Geometry>
+double energy(const YieldProblem<Geometry>& problem, const YieldLaw& law, const std::vector<Vec<Geometry::dim>>& v) {
   const auto& quad = problem.quadrature;
   double sum = 0.0;
   for (int i = 0; i < problem.grid.n_nodes(); ++i)
@@ -37,7 +38,7 @@ double energy(const YieldProblem<Geometry>& problem, const Law& law, const std::
       const double gamma_dot = q.norm(), excess = excess_divergence<Geometry>(q, div);
       sum +=
           quad.V[c][k] * (0.5 * problem.mu * gamma_dot * gamma_dot +
-                          law.potential(gamma_dot, quad.tau_y[c][k]) + 0.5 * problem.zeta * excess * excess);
+                          potential(law, gamma_dot, quad.tau_y[c][k]) + 0.5 * problem.zeta * excess * excess);
     }
   }
   for (std::size_t i = 0; i < problem.drag.size(); ++i) sum += 0.5 * problem.drag[i] * v[i].squaredNorm();
@@ -48,57 +49,62 @@ double energy(const YieldProblem<Geometry>& problem, const Law& law, const std::
 }
 
 /// The dual's share of the tangent, kept inside |s| <= f so that the tangent stays positive.
-template <class Law, int N>
-Mat<N, N> primal_dual_tangent(const Law& law, double mu, double tau_y, const Vec<N>& q, const Vec<N>& s) {
-  const double gamma_dot = q.norm(), secant = law.secant(gamma_dot, tau_y);
-  const double factor = secant > 0.0 ? law.slope(gamma_dot, tau_y) / secant : 0.0;
-  return (mu + secant) * Mat<N, N>::Identity() + 0.5 * factor * (s * q.transpose() + q * s.transpose());
+template <int N>
+Mat<N, N> primal_dual_tangent(const YieldLaw& law, double mu, double tau_y, const Vec<N>& q, const Vec<N>& s) {
+  const double gamma_dot = q.norm(), own_secant = secant(law, gamma_dot, tau_y);
+  const double factor = own_secant > 0.0 ? slope(law, gamma_dot, tau_y) / own_secant : 0.0;
+  return (mu + own_secant) * Mat<N, N>::Identity() + 0.5 * factor * (s * q.transpose() + q * s.transpose());
 }
 
 /// Full Newton step of the ADMM state along dv, projected to the largest stress the yield part can carry.
-template <class Geometry, class Law>
-void step_dual_stress(const YieldProblem<Geometry>& problem, const Law& law, const std::vector<Vec<Geometry::dim>>& v,
+template <class Geometry>
+void step_dual_stress(const YieldProblem<Geometry>& problem, const YieldLaw& law, const std::vector<Vec<Geometry::dim>>& v,
                 const std::vector<Vec<Geometry::dim>>& dv, AdmmState<Geometry>& admm_state) {
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < problem.grid.n_cells(); ++c)
     for (int k = 0; k < power(2, Geometry::dim); ++k) {
       const double tau_y = problem.quadrature.tau_y[c][k];
       const auto q = strain_rate(problem, v, c, k), dq = strain_rate(problem, dv, c, k);
-      const double gamma_dot = q.norm(), secant = law.secant(gamma_dot, tau_y);
-      const double factor = secant > 0.0 ? law.slope(gamma_dot, tau_y) / secant : 0.0;
+      const double gamma_dot = q.norm(), own_secant = secant(law, gamma_dot, tau_y);
+      const double factor = own_secant > 0.0 ? slope(law, gamma_dot, tau_y) / own_secant : 0.0;
       auto& s = admm_state.stress[c][k];
-      s = secant * (q + dq) + factor * q.dot(dq) * s;
+      s = own_secant * (q + dq) + factor * q.dot(dq) * s;
       const double size = s.norm();
-      if (size > tau_y) s *= tau_y / size;
+      const double limit = dual_limit(law, (q + dq).norm(), tau_y);
+      if (size > limit) s *= limit / size;
     }
 }
 
 /// Brings the ADMM state that are carried over from the last step inside what this one can carry: beyond it the
 /// tangent is not positive.
 template <class Geometry>
-void project_dual_stress(YieldProblem<Geometry>& problem, AdmmState<Geometry>& admm_state) {
+void project_dual_stress(YieldProblem<Geometry>& problem, const YieldLaw& law, const std::vector<Vec<Geometry::dim>>& v,
+                         AdmmState<Geometry>& admm_state) {
   const auto inside = [](auto& s, double limit) {
     const double size = s.norm();
     if (size > limit) s *= limit / size;
   };
   for (int c = 0; c < problem.grid.n_cells(); ++c)
-    for (int k = 0; k < power(2, Geometry::dim); ++k) inside(admm_state.stress[c][k], problem.quadrature.tau_y[c][k]);
+    for (int k = 0; k < power(2, Geometry::dim); ++k) {
+      const double gamma_dot = is_viscous(law) ? strain_rate(problem, v, c, k).norm() : 0.0;
+      inside(admm_state.stress[c][k], dual_limit(law, gamma_dot, problem.quadrature.tau_y[c][k]));
+    }
   for (auto& f : problem.friction) inside(f.force, f.limit);
 }
 
 }  // namespace detail
 
 /// Solves the yield problem by primal-dual Newton from the guesses v and ADMM state, which it overwrites.
-template <class Geometry, class Law>
-SolveReport solve_newton(YieldProblem<Geometry>& problem, const Law& law, const NewtonSettings& settings,
+template <class Geometry>
+SolveReport solve_newton(YieldProblem<Geometry>& problem, const YieldLaw& law, const NewtonSettings& settings,
                          double force_scale, BlockSystem<Geometry::dim>& system, std::vector<Vec<Geometry::dim>>& v,
                          AdmmState<Geometry>& admm_state) {
   constexpr int D = Geometry::dim;
   const auto stress = [&](int c, int k, const Vec<Geometry::n_strain>& q) -> Vec<Geometry::n_strain> {
-    return (problem.mu + law.secant(q.norm(), problem.quadrature.tau_y[c][k])) * q;
+    return (problem.mu + secant(law, q.norm(), problem.quadrature.tau_y[c][k])) * q;
   };
   SolveReport report;
-  detail::project_dual_stress(problem, admm_state);
+  detail::project_dual_stress(problem, law, v, admm_state);
   std::vector<Vec<D>> step(v.size()), trial(v.size());
   for (; report.iterations < settings.max_iterations; ++report.iterations) {
     update_active<D>(problem.contact, problem.grid.cell_nodes, v);
@@ -111,7 +117,7 @@ SolveReport solve_newton(YieldProblem<Geometry>& problem, const Law& law, const 
     assemble(
         problem,
         [&](int c, int k) {
-          return detail::primal_dual_tangent<Law, Geometry::n_strain>(
+          return detail::primal_dual_tangent<Geometry::n_strain>(
               law, problem.mu, problem.quadrature.tau_y[c][k], strain_rate(problem, v, c, k),
               admm_state.stress[c][k]);
         },

@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "libmpm/body/body.hpp"
-#include "libmpm/implicit/admm_3d.hpp"
+#include "libmpm/implicit/admm_factorised.hpp"
+#include "libmpm/implicit/admm_matrix_free.hpp"
 #include "libmpm/implicit/newton.hpp"
 #include "libmpm/implicit/particle_shifting_3d.hpp"
 
@@ -50,6 +51,7 @@ struct ImplicitBody : Body<Geometry> {
   std::vector<FrictionNode<D>> friction{};
   std::vector<PenaltyPoint<D>> bound{};  ///< walls inside the grid that touched concrete in the last step
   double time_error = 0.0;             ///< of the last step: its local error, if it was asked for [m]
+  double shear_rate = 0.0;             ///< mean of the last step [1/s]
   BlockSystem<D> system{};
   std::conditional_t<D == 3, MatrixFreeSystem, Nothing> matrix_free{};  ///< for large bodies in 3D
 };

@@ -53,7 +53,7 @@ bool carries_nothing(std::string_view line) {
 }
 
 /// Where the fields of a line begin and end; the buffer is kept between lines.
-void unpack(std::string_view line, char separator, std::vector<std::string_view>& fields) {
+void split(std::string_view line, char separator, std::vector<std::string_view>& fields) {
   fields.clear();
   for (std::size_t start = 0;;) {
     const std::size_t end = line.find(separator, start);
@@ -162,7 +162,7 @@ NumberTable parse_number_table(std::string_view text, const std::string& name,
                          : line->find('\t') != std::string_view::npos ? '\t'
                                                                       : ',';
   std::vector<std::string_view> fields;
-  unpack(*line, separator, fields);
+  split(*line, separator, fields);
   const std::size_t width = fields.size();
   const auto columns = read_header(fields, name, lines.number, quantities);
   NumberTable table;
@@ -172,7 +172,7 @@ NumberTable parse_number_table(std::string_view text, const std::string& name,
 
   while ((line = lines.next())) {
     if (carries_nothing(*line)) continue;
-    unpack(*line, separator, fields);
+    split(*line, separator, fields);
     if (fields.size() != width)
       fail(name, lines.number, std::min(width, fields.size()),
            "the row has " + std::to_string(fields.size()) + " columns where the header has " +

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
-#include <type_traits>
 #include <utility>
 
 #include "rheometer/reference/flocculation_ode.hpp"
@@ -14,13 +13,6 @@
 namespace tremie {
 
 namespace {
-
-/// Stress [Pa] in simple shear; at zero rate the limit from the side of flow.
-template <class Law>
-double limit_stress(const Law& law, double mu, double tau_y, double gamma_dot) {
-  if constexpr (std::is_same_v<Law, ExactBingham>) return mu * gamma_dot + tau_y;
-  return (mu + law.secant(gamma_dot, tau_y)) * gamma_dot;
-}
 
 double duration_of(const std::vector<ShearSegment>& history) {
   double sum = 0.0;
@@ -37,10 +29,9 @@ long steps_in(const MaterialCell& cell, const ShearSegment& s, double total) {
   return std::max(1L, static_cast<long>(std::ceil(n * (1.0 - 1e-12))));
 }
 
-template <class Law>
 class Run {
  public:
-  Run(const MaterialCell& cell, const Law& law) : cell_(cell), law_(law) {
+  Run(const MaterialCell& cell, const YieldLaw& law) : cell_(cell), law_(law) {
     if (const auto& t = cell.mix.thixotropy)
       lambda_ = flocculation_after_rest(t->initial_flocculation, *t, cell.mix.tau_0, cell.rest);
   }
@@ -72,10 +63,10 @@ class Run {
 
   void add(double time, double gamma_dot) {
     const double tau_y = static_yield_stress(lambda_, cell_.mix.tau_0);
-    const double stress = limit_stress(law_, cell_.mix.mu, tau_y, gamma_dot);
+    const double stress = cell_.mix.mu * gamma_dot + tremie::stress(law_, gamma_dot, tau_y);
     stress_limit_.push_back(stress);
     CellSample sample{time, gamma_dot, stress, {}, {}};
-    if (std::is_same_v<Law, ExactBingham> && gamma_dot == 0.0 && tau_y > 0.0) sample.shear_stress.reset();
+    if (is_exact(law_) && gamma_dot == 0.0 && tau_y > 0.0) sample.shear_stress.reset();
     if (cell_.mix.thixotropy) sample.flocculation = lambda_;
     result_.samples.push_back(sample);
   }
@@ -109,26 +100,22 @@ class Run {
   }
 
   const MaterialCell& cell_;
-  const Law& law_;
+  const YieldLaw& law_;
   double lambda_ = 0.0;
   std::vector<double> stress_limit_;
   CellResult result_;
 };
 
-template <class Law>
-CellResult run(const MaterialCell& cell, const Law& law) {
+}  // namespace
+
+CellResult run_cell(const MaterialCell& cell, const YieldLaw& law) {
   if (cell.history.empty()) throw std::invalid_argument("the history is empty");
   for (const ShearSegment& s : cell.history) linear_piece(s);  // throws where a segment is out of range
   if (cell.time_step && !(*cell.time_step > 0.0))
     throw std::invalid_argument("the time step must be greater than 0");
-  return Run<Law>(cell, law)();
+  return Run(cell, law)();
 }
 
-}  // namespace
-
-CellResult run_cell(const MaterialCell& cell, const ExactBingham& law) { return run(cell, law); }
-CellResult run_cell(const MaterialCell& cell, const Papanastasiou& law) { return run(cell, law); }
-CellResult run_cell(const MaterialCell& cell, const BiViscous& law) { return run(cell, law); }
 
 std::vector<ShearSegment> parse_shear_history(std::string_view text, const std::string& name) {
   const NumberTable table = parse_number_table(text, name,

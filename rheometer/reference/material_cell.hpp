@@ -46,11 +46,8 @@ struct CellResult {
   std::optional<double> hysteresis_area;
 };
 
-/// Runs the cell. `Law` is one of libmpm/constitutive/yield_law.hpp;
-/// Throws std::invalid_argument for an empty history or values out of range.
-CellResult run_cell(const MaterialCell& cell, const ExactBingham& law);
-CellResult run_cell(const MaterialCell& cell, const Papanastasiou& law);
-CellResult run_cell(const MaterialCell& cell, const BiViscous& law);
+/// Runs the cell. Throws std::invalid_argument for an empty history or values out of range.
+CellResult run_cell(const MaterialCell& cell, const YieldLaw& law);
 
 /// Reads a history from the text of a CSV with the columns time_s,shear_rate_per_s (format:
 /// torque_record.hpp): linear between the rows, a jump where two rows have the same time. Throws RecordError.

@@ -43,7 +43,7 @@ TEST(SceneReader, DefaultsAreTheDocumentedOnes) {
   EXPECT_EQ(s.lift_speed, 0.15);
   EXPECT_EQ(s.floor.contact, ContactKind::no_slip);
   EXPECT_EQ(s.model.space, SpaceKind::axisymmetric);
-  EXPECT_EQ(s.model.yield, YieldKind::exact);
+  EXPECT_TRUE(std::holds_alternative<ExactBingham>(s.model.law));
   EXPECT_EQ(s.model.cell, (std::array{0.01, 0.005}));
   EXPECT_EQ(s.model.points_per_cell, (std::array{4, 4}));
   EXPECT_FALSE(s.model.time_step.has_value());
@@ -200,7 +200,7 @@ TEST(SceneReader, PresetLiesUnderTheScene) {
   EXPECT_EQ(paper.floor.coefficient, 0.35);
   const auto mine = slump(read_text(text + "[model]\nyield = \"exact\"\n[test]\nduration = \"5 s\"\n",
                                     "a.toml", {"mix.bulk_modulus=2 MPa"}));
-  EXPECT_EQ(mine.model.yield, YieldKind::exact);
+  EXPECT_TRUE(std::holds_alternative<ExactBingham>(mine.model.law));
   EXPECT_EQ(mine.duration, 5.0);
   EXPECT_EQ(mine.mix.K, 2e6);
   EXPECT_TRUE(says(complaint(text, {"preset=papr"}), {"preset", "\"paper\""}));

@@ -70,7 +70,7 @@ Scene paper_scene(const Asked& asked) {
   scene.floor = {ContactKind::friction, mix.friction};
   scene.rest = asked.rest;
   Model& m = scene.model;
-  m.space = SpaceKind::quarter, m.yield = YieldKind::papanastasiou, m.regularisation = 5.0;
+  m.space = SpaceKind::quarter, m.law = Papanastasiou{5.0};
   m.scheme = SchemeKind::explicit_usf, m.shape = ShapeKind::gimp, m.time_step = 1e-4;
   m.cell = {asked.cell, asked.cell}, m.points_per_cell = {2, 2};
   if (asked.flip > 0.0) m.transfer = TransferKind::flip, m.flip_blend = asked.flip;

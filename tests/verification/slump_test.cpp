@@ -45,7 +45,7 @@ Outcome at_one_second(SchemeKind scheme, ContactKind contact, int points_per_cel
   Scene scene = verification::instant_release(54.0, 35.8, 1.0);
   scene.floor = {contact, contact == ContactKind::friction ? 0.35 : 0.0};
   Model& model = scene.model;
-  model.yield = YieldKind::papanastasiou, model.regularisation = 5.0;
+  model.law = Papanastasiou{5.0};
   model.scheme = scheme;
   if (scheme != SchemeKind::implicit) model.shape = ShapeKind::gimp;
   model.cell = {0.01, 0.01}, model.points_per_cell = {points_per_cell, points_per_cell};

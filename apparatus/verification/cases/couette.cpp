@@ -143,16 +143,15 @@ Case blades(Depth depth) {
   struct Fluid {
     const char* name;
     double tau_0;
-    YieldKind yield;
+    YieldLaw law;
   };
-  for (const Fluid& fluid : {Fluid{"Newtonian", 0.0, YieldKind::exact},
-                             {"Mix A, exact yield by ADMM", 54.0, YieldKind::exact},
-                             {"Mix A, Papanastasiou m = 100 s by Newton", 54.0, YieldKind::papanastasiou}}) {
+  for (const Fluid& fluid : {Fluid{"Newtonian", 0.0, ExactBingham{}},
+                             {"Mix A, exact yield by ADMM", 54.0, ExactBingham{}},
+                             {"Mix A, Papanastasiou m = 100 s by Newton", 54.0, Papanastasiou{100.0}}}) {
     icar_vane::Scene scene = scene_of({fluid.tau_0, 35.8}, 0.25, 10.0);
     scene.model.space = SpaceKind::plane;
     scene.model.points_per_cell = {3, 3};
-    scene.model.yield = fluid.yield;
-    scene.model.regularisation = 100.0;
+    scene.model.law = fluid.law;
     scene.duration = 1.0;
     const double reference = finite_element_torque(blade_flow_of(scene, 16));
     Series series{fluid.name, {}};

@@ -18,14 +18,14 @@ struct Scheme {
   double finest;  ///< cells across [mm]: with finer ones it takes minutes
 };
 
-Model implicit(YieldKind yield, MethodKind method, double m = 0.0) {
+Model implicit(const YieldLaw& law, MethodKind method) {
   Model model;
-  model.yield = yield, model.method = method, model.regularisation = m;
+  model.law = law, model.method = method;
   return model;
 }
 
 Model explicitly(SchemeKind scheme, ShapeKind shape) {
-  Model model = implicit(YieldKind::papanastasiou, MethodKind::automatic, 5.0);
+  Model model = implicit(Papanastasiou{5.0}, MethodKind::automatic);
   model.scheme = scheme, model.shape = shape;
   return model;
 }
@@ -33,10 +33,10 @@ Model explicitly(SchemeKind scheme, ShapeKind shape) {
 /// The default first.
 std::vector<Scheme> schemes(double finest_explicit) {
   return {
-      {"exact yield, ADMM (the default)", implicit(YieldKind::exact, MethodKind::automatic), 5.0},
-      {"exact yield, Newton", implicit(YieldKind::exact, MethodKind::newton), 10.0},
-      {"Papanastasiou, m = 100 s", implicit(YieldKind::papanastasiou, MethodKind::automatic, 100.0), 10.0},
-      {"Papanastasiou, m = 5 s", implicit(YieldKind::papanastasiou, MethodKind::automatic, 5.0), 10.0},
+      {"exact yield, ADMM (the default)", implicit(ExactBingham{}, MethodKind::automatic), 5.0},
+      {"exact yield, Newton", implicit(ExactBingham{}, MethodKind::newton), 10.0},
+      {"Papanastasiou, m = 100 s", implicit(Papanastasiou{100.0}, MethodKind::automatic), 10.0},
+      {"Papanastasiou, m = 5 s", implicit(Papanastasiou{5.0}, MethodKind::automatic), 10.0},
       {"explicit USL, splines, m = 5 s", explicitly(SchemeKind::explicit_usl, ShapeKind::b_spline),
        finest_explicit},
       {"explicit USF, GIMP, m = 5 s", explicitly(SchemeKind::explicit_usf, ShapeKind::gimp),

@@ -87,7 +87,7 @@ Run against_finite_elements(const Cell& cell, const Model& scheme) {
 void add_explicit_schemes(Depth depth, Case& one) {
   for (const bool gimp : {false, true}) {
     Model model;
-    model.yield = YieldKind::papanastasiou, model.regularisation = 5.0;
+    model.law = Papanastasiou{5.0};
     model.scheme = gimp ? SchemeKind::explicit_usf : SchemeKind::explicit_usl;
     model.shape = gimp ? ShapeKind::gimp : ShapeKind::b_spline;
     model.points_per_cell = {2, 2};
@@ -114,7 +114,7 @@ Case slump(Depth depth) {
       .notes = {"Errors below 0.4 % are within the reference's own."}};
   Model admm, newton, regularised;
   newton.method = MethodKind::newton;
-  regularised.yield = YieldKind::papanastasiou, regularised.regularisation = 100.0;
+  regularised.law = Papanastasiou{100.0};
   for (const Cell& cell : cells) {
     if (cell[0] * cell[1] < 20.0 && depth == Depth::quick) break;
     one.series[0].runs.push_back(against_finite_elements(cell, admm));

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <vector>
 
+#include "libmpm/constitutive/yield_law.hpp"
 #include "libmpm/grid/active_grid.hpp"
 #include "libmpm/implicit/matrix_free/cell_simd.hpp"
 
@@ -89,14 +90,13 @@ inline PackedAdmmState carried(const IndexMap<3>& old_map, const ActiveGrid<3>& 
 }
 
 /// The stress at place k of cell c.
-template <class Law>
-Vec<5> stress_of(const Law& law, const PackedAdmmState& admm_state, int c, int k) {
+inline Vec<5> stress_of(const YieldLaw& law, const PackedAdmmState& admm_state, int c, int k) {
   const PackedAdmmState::Batch& b = admm_state.batch[c / batch_size];
   const int l = c % batch_size;
   Vec<5> a;
   for (int j = 0; j < 5; ++j) a[j] = b.a[k][j][l];
   const double size = a.norm();
-  return size > 0.0 ? Vec<5>(a - admm_state.r * law.prox(size, b.tau_y[k][l], admm_state.r) / size * a) : a;
+  return size > 0.0 ? Vec<5>(a - admm_state.r * prox(law, size, b.tau_y[k][l], admm_state.r) / size * a) : a;
 }
 
 }  // namespace detail

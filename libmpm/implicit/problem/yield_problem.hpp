@@ -27,7 +27,7 @@ namespace tremie {
 struct Nothing {};
 
 /// Stress of the yield part and, for ADMM, the split strain rate, at every Gauss place of every cell. Kept
-/// between steps by cell as a first guess. A body whose systems are solved by iteration keeps them in `space`
+/// between steps by cell as a first guess. A body whose systems are solved by iteration keeps them in `packed`
 /// instead.
 template <class Geometry>
 struct AdmmState {
@@ -35,7 +35,7 @@ struct AdmmState {
   static constexpr int n = power(2, Geometry::dim);
   std::vector<std::array<Strain, n>> stress;  ///< [Pa]
   std::vector<std::array<Strain, n>> rate;    ///< [1/s]
-  std::conditional_t<Geometry::dim == 3, PackedAdmmState, Nothing> space;
+  std::conditional_t<Geometry::dim == 3, PackedAdmmState, Nothing> packed;
 };
 
 template <class Geometry>
@@ -55,6 +55,7 @@ struct YieldProblem {
   double zeta = 0.0;                      ///< [Pa s], plane strain alone
   std::vector<double> p_offset = {};      ///< of the cells' pressures [Pa]; empty: those before the step
   double K_share = 1.0;                   ///< K over the mix's
+  double eta = mu;                        ///< viscosity that scales stresses: mu, and the law's at a typical rate
 
   /// Pressure of cell c without divergence.
   double offset(int c) const { return p_offset.empty() ? quadrature.p[c] : p_offset[c]; }

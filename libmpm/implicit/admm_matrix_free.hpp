@@ -1,7 +1,7 @@
 #pragma once
 
-// admm.hpp's method in space: the same iteration, the linear solves by conjugate gradients that go on from
-// the last ones and are no more exact than the iteration needs, the ADMM state updated a batch of cells at a time.
+// ADMM in 3D without a matrix: the linear solves by preconditioned conjugate gradients, which go on from the last ones
+// and are no more exact than the iteration needs; stresses and rates packed and updated a batch of cells at a time.
 
 #include "libmpm/implicit/admm.hpp"
 #include "libmpm/implicit/linear_system_3d.hpp"
@@ -10,30 +10,29 @@ namespace tremie {
 
 namespace detail {
 
-/// Yield stresses and rates by cells become ADMM state, and ADMM state those.
+/// The ADMM state of cells packed in batches, and that unpacked again.
 inline PackedAdmmState pack(const AdmmState<ThreeD>& admm_state, const Quadrature<ThreeD>& quadrature) {
   const int n_cells = static_cast<int>(admm_state.stress.size());
-  PackedAdmmState joined = zero_admm_state(n_cells);
+  PackedAdmmState packed = zero_admm_state(n_cells);
   for (int c = 0; c < n_cells; ++c)
     for (int k = 0; k < 8; ++k) {
-      PackedAdmmState::Batch& b = joined.batch[c / batch_size];
+      PackedAdmmState::Batch& b = packed.batch[c / batch_size];
       b.tau_y[k][c % batch_size] = quadrature.tau_y[c][k];
       for (int j = 0; j < 5; ++j)
-        b.a[k][j][c % batch_size] = admm_state.stress[c][k][j] + joined.r * admm_state.rate[c][k][j];
+        b.a[k][j][c % batch_size] = admm_state.stress[c][k][j] + packed.r * admm_state.rate[c][k][j];
     }
-  return joined;
+  return packed;
 }
-template <class Law>
-AdmmState<ThreeD> unpack(const Law& law, const PackedAdmmState& joined) {
-  const int n_cells = static_cast<int>(joined.batch.size()) * batch_size;
+inline AdmmState<ThreeD> unpack(const YieldLaw& law, const PackedAdmmState& packed) {
+  const int n_cells = static_cast<int>(packed.batch.size()) * batch_size;
   AdmmState<ThreeD> admm_state;
   admm_state.stress.resize(n_cells), admm_state.rate.resize(n_cells);
   for (int c = 0; c < n_cells; ++c)
     for (int k = 0; k < 8; ++k) {
-      const PackedAdmmState::Batch& b = joined.batch[c / batch_size];
-      admm_state.stress[c][k] = stress_of(law, joined, c, k);
+      const PackedAdmmState::Batch& b = packed.batch[c / batch_size];
+      admm_state.stress[c][k] = stress_of(law, packed, c, k);
       for (int j = 0; j < 5; ++j)
-        admm_state.rate[c][k][j] = (b.a[k][j][c % batch_size] - admm_state.stress[c][k][j]) / joined.r;
+        admm_state.rate[c][k][j] = (b.a[k][j][c % batch_size] - admm_state.stress[c][k][j]) / packed.r;
     }
   return admm_state;
 }
@@ -98,7 +97,7 @@ inline IterationViscosities viscosities_of(const YieldProblem<ThreeD>& problem,
   const double moved = settings.inertia_over * h / std::max(speed, 1e-300);
   const double inertia = inertial_viscosity(problem, std::max(problem.dt, moved));
   return {penalty(problem, settings.penalty_by_iteration),
-          problem.mu + std::max(0.0, inertia - settings.inertia_from * problem.mu)};
+          problem.eta + std::max(0.0, inertia - settings.inertia_from * problem.eta)};
 }
 
 /// One pass over the cells at the velocities v: updates the ADMM state and pressures if asked to, adds up the
@@ -189,38 +188,46 @@ inline void residual_3d(const YieldProblem<ThreeD>& problem, const std::vector<V
 
 }  // namespace detail
 
-/// solve_admm() in space, without a matrix.
-template <class Law>
-SolveReport solve_admm_3d(YieldProblem<ThreeD>& problem, const Law& law, const AdmmSettings& settings,
-                                MatrixFreeSystem& system, std::vector<Vec<3>>& v, PackedAdmmState& admm_state) {
-  const auto viscosities = detail::viscosities_of(problem, settings);
-  const double eta = problem.mu + viscosities.r;
-  SolveReport report;
-  detail::lower_modulus(settings.most_bulk_stiffness, eta, problem);
-  system.set_up(problem, settings.most_band_operations);
-  if (!system.prepare(problem, eta)) return report;
-  // An error e of v that a solve leaves has rates q(e), whose square over the volume is at most its energy
-  // (r, A^-1 r), here (r, P^-1 r), over eta, and is worth a stress of eta |q(e)|: no more of either than the
-  // iteration tolerates.
-  const auto tolerated_energy = [&](const detail::AdmmResiduals& m) {
-    return std::min(std::pow(settings.tolerance, 2) * m.scale / eta, eta * std::pow(m.tolerated_miss(), 2));
-  };
-  Eigen::VectorXd R;
-  auto residuals = detail::pass_over_cells(problem, law, settings, viscosities, v, false, system, admm_state, R);
-  for (; report.iterations < settings.max_iterations; ++report.iterations) {
-    detail::residual_3d(problem, v, R);
-    const double tolerated = tolerated_energy(residuals);
-    const double left = system.solve(
-        problem, R, {.reduction = settings.solve_reduction, .enough = settings.solve_share * tolerated}, v);
-    const bool contact_changed = update_active<3>(problem.contact, problem.grid.cell_nodes, v);
-    const bool friction_settled =
-        update_friction_admm<3>(problem.friction, v, settings.over_relaxation, settings.tolerance);
-    residuals = detail::pass_over_cells(problem, law, settings, viscosities, v, true, system, admm_state, R);
-    report.converged = residuals.within(settings.tolerance) && friction_settled && !contact_changed &&
-                       std::max(left, residuals.pressure) <= std::min(tolerated, tolerated_energy(residuals));
-    if (report.converged) break;
+struct MatrixFreeAdmm {
+  YieldProblem<ThreeD>& problem;
+  const YieldLaw& law;
+  const AdmmSettings& settings;
+  MatrixFreeSystem& system;
+  PackedAdmmState& state;
+  detail::IterationViscosities viscosities = detail::viscosities_of(problem, settings);
+  double eta = problem.mu + viscosities.r;
+  Eigen::VectorXd R = {};  ///< forces of stress, pressure and closed contacts at the last velocities [N]
+
+  bool prepare() {
+    detail::lower_modulus(settings.most_bulk_stiffness, eta, problem);
+    system.set_up(problem, settings.most_band_operations);
+    return system.prepare(problem, eta);
   }
-  return report;
-}
+  bool contact_changed() { return true; }  // products ask the contacts themselves
+
+  double solve(double tolerated, std::vector<Vec<3>>& v) {
+    detail::residual_3d(problem, v, R);
+    return system.solve(problem, R,
+                        {.reduction = settings.solve_reduction, .enough = settings.solve_share * tolerated}, v);
+  }
+
+  /// An error e of v that a solve leaves has rates q(e), whose square over the volume is at most its energy
+  /// (r, A^-1 r), here (r, P^-1 r), over eta, and is worth a stress of eta |q(e)|: no more of either than the iteration
+  /// tolerates.
+  double tolerated_energy(const detail::AdmmResiduals& m) const {
+    return std::min(std::pow(settings.tolerance, 2) * m.scale / eta, eta * std::pow(m.tolerated_miss(), 2));
+  }
+  detail::AdmmResiduals start(const std::vector<Vec<3>>& v) { return pass(v, false); }
+  detail::AdmmResiduals update(const std::vector<Vec<3>>& v) { return pass(v, true); }
+
+ private:
+  detail::AdmmResiduals pass(const std::vector<Vec<3>>& v, bool update) {
+    return std::visit(
+        [&](const auto& l) {
+          return detail::pass_over_cells(problem, l, settings, viscosities, v, update, system, state, R);
+        },
+        law);
+  }
+};
 
 }  // namespace tremie

@@ -1,0 +1,139 @@
+#include "apparatus/common/law_keys.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace tremie::scene {
+namespace {
+
+constexpr std::string_view plastic_viscosity = "mix.plastic_viscosity";
+
+/// "model" and "regularisation" of "model.regularisation".
+std::string_view section_of(std::string_view key) { return key.substr(0, key.find('.')); }
+std::string name_of(std::string_view key) { return std::string(key.substr(key.find('.') + 1)); }
+
+template <class L>
+Key scene_key(const LawKey<L>& of_law) {
+  Key key{.name = name_of(of_law.name)};
+  key.kind = of_law.unit.empty() ? Kind::number : Kind::quantity;
+  if (!of_law.unit.empty()) key.dimension = dimension_of(of_law.unit);
+  key.range = {.low = of_law.low, .high = of_law.high, .low_open = of_law.low_open};
+  key.fallback = of_law.fallback;
+  key.example = of_law.example;
+  key.help = of_law.help;
+  return key;
+}
+
+Key* find(std::vector<Key>& keys, const std::string& name) {
+  const auto found = std::find_if(keys.begin(), keys.end(), [&](const Key& k) { return k.name == name; });
+  return found == keys.end() ? nullptr : &*found;
+}
+
+template <class T>
+void add_once(std::vector<T>& list, const T& item) {
+  if (std::find(list.begin(), list.end(), item) == list.end()) list.push_back(item);
+}
+
+std::vector<std::string> law_words() {
+  std::vector<std::string> words;
+  for_each_law([&](const auto& law) { add_once(words, std::string(law.word)); });
+  return words;
+}
+
+/// The keys of [mix] that stand in place of plastic_viscosity, each once: the first of a law decides for the others.
+std::vector<std::string> mix_keys_of_laws() {
+  std::vector<std::string> keys;
+  for_each_law([&](const auto& law) {
+    for (const auto& key : law.keys())
+      if (section_of(key.name) == "mix") add_once(keys, std::string(key.name));
+  });
+  return keys;
+}
+
+/// Whether the scene has just the keys of [mix] that the law asks for.
+template <class L>
+bool has_its_mix_keys(const Values& values, const L& law) {
+  return law.viscous != values.has(plastic_viscosity) &&
+         std::all_of(law.keys().begin(), law.keys().end(), [&](const auto& key) {
+           return section_of(key.name) != "mix" || values.has(key.name);
+         });
+}
+
+}  // namespace
+
+std::vector<Key> law_model_keys() {
+  std::vector<Key> keys{
+      {.name = "yield", .kind = Kind::choice, .words = law_words(), .fallback = law_words().front()}};
+  for_each_law([&](const auto& law) {
+    for (const auto& of_law : law.keys()) {
+      if (section_of(of_law.name) != "model") continue;
+      if (!find(keys, name_of(of_law.name))) {
+        keys.push_back(scene_key(of_law));
+        keys.back().only_with = Condition{"yield", {}};
+      }
+      add_once(find(keys, name_of(of_law.name))->only_with->words, std::string(law.word));
+    }
+  });
+  return keys;
+}
+
+std::vector<Key> viscosity_keys() {
+  std::vector<Key> keys{{.name = name_of(plastic_viscosity),
+                         .dimension = Dimension::viscosity,
+                         .range = positive,
+                         .required = true,
+                         .example = "35.8 Pa.s",
+                         .help = "mu"}};
+  for_each_law([&](const auto& law) {
+    std::string first;
+    for (const auto& of_law : law.keys()) {
+      if (section_of(of_law.name) != "mix" || find(keys, name_of(of_law.name))) continue;
+      keys.push_back(scene_key(of_law));
+      keys.back().needed_with = first;
+      if (first.empty()) first = keys.back().name;
+      keys.front().needed_without = first;
+    }
+  });
+  return keys;
+}
+
+void settle_law(Values& values) {
+  const std::vector<std::string> others = mix_keys_of_laws();
+  std::optional<std::string> other;
+  for (const std::string& key : others)
+    if (!other && values.has(key)) other = key;
+  if (other && values.has(plastic_viscosity)) {
+    if (values.layer(plastic_viscosity) > values.layer(*other)) {
+      for (const std::string& key : others)
+        values.drop_beside(key, plastic_viscosity, "has no meaning beside plastic_viscosity; give one or the other");
+    } else {
+      values.drop_beside(plastic_viscosity, *other,
+                         "has no meaning beside " + name_of(*other) + "; give one or the other");
+    }
+  }
+  if (!values.has("model.yield")) return;
+  std::string allowed;
+  bool found = false;
+  for_each_law([&](const auto& law) {
+    if (!has_its_mix_keys(values, law)) return;
+    allowed += (allowed.empty() ? "\"" : ", \"") + std::string(law.word) + "\"";
+    found = found || law.word == values.word("model.yield");
+  });
+  if (!found)
+    values.fail("model.yield", "\"" + values.word("model.yield") + "\" does not go with " +
+                                   (other ? *other : std::string(plastic_viscosity)) + "; allowed: " + allowed);
+}
+
+YieldLaw read_law(const Values& values) {
+  YieldLaw read;
+  for_each_law([&](auto law) {
+    if (law.word != values.word("model.yield") || !has_its_mix_keys(values, law)) return;
+    for (const auto& key : law.keys()) law.*key.member = values.number(key.name);
+    read = law;
+  });
+  return read;
+}
+
+}  // namespace tremie::scene

@@ -1,0 +1,27 @@
+#pragma once
+
+// The scene keys of the yield laws, as the laws state them (libmpm/constitutive/law_interface.hpp): parameters of
+// [model] beside model.yield, and those of [mix] that take the place of plastic_viscosity.
+
+#include <vector>
+
+#include "apparatus/scene/keys.hpp"
+#include "apparatus/scene/values.hpp"
+#include "libmpm/constitutive/yield_law.hpp"
+
+namespace tremie::scene {
+
+/// model.yield and the laws' parameters in [model].
+std::vector<Key> law_model_keys();
+
+/// plastic_viscosity, and what a law may have in its place.
+std::vector<Key> viscosity_keys();
+
+/// One description of the viscous part is left: that of the later layer. Throws InputError where a layer gives two, or
+/// where no law has model.yield with these keys.
+void settle_law(Values& values);
+
+/// The law that model.yield and the keys of [mix] name, with its parameters.
+YieldLaw read_law(const Values& values);
+
+}  // namespace tremie::scene

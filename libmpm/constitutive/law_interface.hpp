@@ -1,0 +1,62 @@
+#pragma once
+
+// What a yield law states. A law is a struct of its parameters in a file of this folder and a line in
+// yield_law.hpp; nothing else of the library, the apparatus or the rheometer names it.
+//
+// Every law splits the deviatoric stress of a generalised Newtonian fluid into a Newtonian part, which the mix's
+// plastic viscosity mu gives, and a part of its own,
+//
+//   tau = 2 [mu + s(gamma_dot)] D',     gamma_dot = sqrt(2 D':D'),
+//   s = f(gamma_dot) / gamma_dot,       f = stress magnitude carried by the law's own part [Pa],
+//
+// with the shear rate gamma_dot [1/s] and the current yield stress tau_y = (1 + lambda) tau_0 [Pa] (equation (2) of
+// Wilkes, Kumar and Biscontin; the laws are their equations (1), (27), (32), (33)). A law whose viscous part is not
+// Newtonian carries all of it in f, and its mix has mu = 0. Each law states
+//
+//   secant(gamma_dot, tau_y)    s                                   [Pa s]
+//   slope(gamma_dot, tau_y)     (ds/dgamma_dot) / gamma_dot         [Pa s^3]
+//   potential(gamma_dot, tau_y) int_0^gamma_dot f                   [Pa/s], convex
+//   prox(a, tau_y, r)           the d >= 0 with f(d) + r d = a      [1/s]
+//   stress(gamma_dot, tau_y)    f, and at gamma_dot = 0 its limit from the side of flow [Pa]
+//   dual_limit(gamma_dot, tau_y) the largest stress that Newton's dual may carry at gamma_dot [Pa]
+//   newtonian()                 its share in the mix's mu: 0 unless it is viscous [Pa s]
+//   viscosity(gamma_dot)        of its viscous part beyond mu: 0 unless f has one [Pa s]
+//   largest_secant(tau_y)       over the shear rates of a test; infinite where there is none [Pa s]
+//
+// none of which divides by a shear rate that may be zero, and
+//
+//   exact                       whether the stress at rest is anything up to tau_y
+//   viscous                     whether it takes the place of the mix's plastic viscosity
+//   word                        its name as model.yield
+//   keys()                      the scene keys of its parameters
+//
+// and may state simd_secant(gamma_dot, tau_y) for points side by side, where one by one is too slow for it.
+
+#include <limits>
+#include <string_view>
+
+namespace tremie {
+
+/// A parameter of the law L as a scene gives it: "model.…" beside model.yield, "mix.…" in place of
+/// mix.plastic_viscosity.
+template <class L>
+struct LawKey {
+  std::string_view name;      ///< dotted, "model.regularisation"
+  double L::* member;         ///< SI
+  std::string_view unit;      ///< SI unit as the scene writes it; empty: a plain number
+  std::string_view fallback;  ///< as the scene would write it; empty: must be given
+  std::string_view example;
+  std::string_view help;
+  double low = 0.0, high = std::numeric_limits<double>::infinity();
+  bool low_open = true;
+};
+
+inline constexpr double unbounded = std::numeric_limits<double>::infinity();
+
+/// Hardly any place of a test shears faster for long [1/s].
+inline constexpr double fastest_rate = 100.0;
+
+/// Below it nothing is told from rest [1/s].
+inline constexpr double slowest_rate = 1e-6;
+
+}  // namespace tremie

@@ -1,0 +1,75 @@
+#pragma once
+
+// The convex problem of a step over dt: inertia with gravity, viscosity and yield, bulk, and all walls.
+
+#include <optional>
+
+#include "libmpm/boundary/flat_walls.hpp"
+#include "libmpm/boundary/rigid_wall.hpp"
+#include "libmpm/implicit/carry_over.hpp"
+#include "libmpm/implicit/free_surface.hpp"
+
+namespace tremie::detail {
+
+/// Rates at which the viscosity of a law that is not Newtonian may be taken for the scale of its stresses [1/s].
+inline constexpr double typical_rates[2] = {0.01, 100.0};
+
+/// The side walls of a section averaged over the width W: the concrete sticks to them, so they hold each node
+/// with the yield stress and, for the parabola between two plates, the viscous stress 6 mu v / W on both
+/// sides.
+template <class Geometry>
+void add_side_walls(double W, const YieldLaw& law, const std::vector<Vec<Geometry::dim>>& v,
+                    YieldProblem<Geometry>& problem) {
+  constexpr int D = Geometry::dim;
+  const auto& grid = problem.grid;
+  std::vector<double> V(grid.node_index.size(), 0.0), limit(grid.node_index.size(), 0.0);
+  for (int c = 0; c < grid.n_cells(); ++c)
+    for (int k = 0; k < power(2, D); ++k) {
+      const Stencil<D> st = stencil<D>(grid.axes, grid.cell_index[c], problem.quadrature.place[c][k]);
+      for (int i = 0; i < power(3, D); ++i) {
+        V[grid.cell_nodes[c][i]] += st.N[i] * problem.quadrature.V[c][k];
+        limit[grid.cell_nodes[c][i]] +=
+            st.N[i] * problem.quadrature.V[c][k] * problem.quadrature.tau_y[c][k] * 2.0 / W;
+      }
+    }
+  fold_mirrors<D>(grid, V);
+  fold_mirrors<D>(grid, limit);
+  problem.drag.resize(V.size());
+  for (std::size_t i = 0; i < V.size(); ++i) {
+    const double mu = problem.mu + viscosity(law, 6.0 * v[i].norm() / W);
+    problem.drag[i] = 12.0 * mu / (W * W) * V[i];
+    FrictionNode<D> held;
+    held.node = static_cast<int>(i);
+    held.normal_axis = -1;
+    held.reach = W / std::sqrt(12.0);
+    held.limit = limit[i];
+    problem.friction.push_back(held);
+  }
+}
+
+/// The step's convex problem over dt: inertia with gravity, viscosity and yield, bulk, walls.
+template <class Geometry>
+void pose(ImplicitBody<Geometry>& body, const YieldLaw& law, const StepSettings& settings, const RigidWall<Geometry::dim>& wall,
+          const std::vector<Vec<Geometry::dim>>& v_old, const IndexMap<Geometry::dim>& old_nodes, double dt,
+          std::optional<YieldProblem<Geometry>>& posed) {
+  constexpr int D = Geometry::dim;
+  body.v = v_old;
+  for (std::size_t i = 0; i < v_old.size(); ++i) body.nodes.v[i] = v_old[i] + dt * body.gravity;
+  posed.emplace(YieldProblem<Geometry>{
+      body.grid, body.quadrature, body.nodes, dt, body.mix.mu, body.mix.K, {}, {}, {}, {}, {}, {}});
+  posed->eta += viscosity(law, std::clamp(body.shear_rate, typical_rates[0], typical_rates[1]));
+  posed->zeta = settings.alternating_viscosity * posed->eta;
+  apply_flat_walls<D>(body.grid, body.walls, posed->fixed, posed->friction, body.v);
+  apply_blocks<D>(body.grid, posed->fixed, body.v);
+  fill_mirrors<D>(body.grid, body.v);
+  if (settings.side_wall_distance > 0.0) add_side_walls(settings.side_wall_distance, law, body.v, *posed);
+  posed->bound = find_penalty_points(body.grid, body.nodes, body.boundary, dt, settings.boundary_stiffness);
+  if constexpr (D == 2 && requires { Geometry::up; })
+    if (settings.moving_surface) posed->surface = surface_of_pool(body, dt);
+  carry_friction<Geometry>(body.friction, old_nodes, body.grid, posed->friction);
+  posed->contact = find_contact(body.grid, body.points, wall, body.time + dt, dt, settings.wall_gap,
+                                settings.wall_penalty, body.mix.K);
+  update_active<D>(posed->contact, body.grid.cell_nodes, body.v);
+}
+
+}  // namespace tremie::detail

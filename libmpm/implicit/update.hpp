@@ -1,0 +1,85 @@
+#pragma once
+
+// After the solve: what the new velocities make of the state of the points, and what a step tells of itself.
+
+#include "libmpm/implicit/solve.hpp"
+
+namespace tremie::detail {
+
+/// Forces of the flat walls, which balance what is left of every prescribed component, and the dissipated
+/// power.
+template <class Geometry>
+void keep_forces(const YieldProblem<Geometry>& problem, const YieldLaw& law, ImplicitBody<Geometry>& body) {
+  constexpr int D = Geometry::dim;
+  body.dissipation = 0.0;
+  const auto stress = [&](int c, int k, const Vec<Geometry::n_strain>& q) -> Vec<Geometry::n_strain> {
+    return problem.mu * q + stress_of(law, body.admm_state, c, k);
+  };
+  for (int c = 0; c < problem.grid.n_cells(); ++c)
+    for (int k = 0; k < power(2, D); ++k) {
+      const auto q = strain_rate(problem, body.v, c, k);
+      body.dissipation += problem.quadrature.V[c][k] * stress(c, k, q).dot(q);
+    }
+  const Eigen::VectorXd R = residual(problem, body.v, stress);
+  body.wall_force.assign(body.v.size(), Vec<D>::Zero());
+  for (int i = 0; i < problem.grid.n_nodes(); ++i)
+    for (int d = 0; d < D; ++d)
+      if (problem.fixed[i * D + d]) body.wall_force[i][d] = -R[i * D + d];
+}
+
+/// ln J of the points from the mean divergence of their cells, the same that the step's pressure used.
+template <class Geometry>
+void update_volumes(const YieldProblem<Geometry>& problem, const std::vector<Vec<Geometry::dim>>& v,
+                    Points<Geometry::dim>& points) {
+#pragma omp parallel for schedule(static)
+  for (int c = 0; c < problem.grid.n_cells(); ++c) {
+    const double d_ln_J = problem.dt * divergence(problem, v, c);
+    for (int i = problem.grid.cell_begin[c]; i < problem.grid.cell_begin[c + 1]; ++i)
+      points.ln_J[problem.grid.order[i]] += d_ln_J;
+  }
+}
+
+/// lambda of every point, equation (3).
+template <class Geometry>
+void update_flocculation(const ImplicitBody<Geometry>& body, double dt, Points<Geometry::dim>& points) {
+  std::vector<double> gamma_dot;
+  shear_rate_at_points<Geometry>(body.grid, body.v, points, gamma_dot);
+#pragma omp parallel for schedule(static)
+  for (std::size_t p = 0; p < points.size(); ++p)
+    points.lambda[p] = flocculation_step(points.lambda[p], *body.mix.thixotropy, body.mix.tau_0,
+                                         points.gamma_dot[p], gamma_dot[p], dt);
+  points.gamma_dot.swap(gamma_dot);
+}
+
+/// Mean shear rate of every cell over its Gauss places, and the volume mean of all [1/s].
+template <class Geometry>
+double shear_rates(const YieldProblem<Geometry>& problem, const StepSettings& settings, const ImplicitBody<Geometry>& body,
+                   std::vector<double>& of_cell) {
+  double sum = 0.0, volume = 0.0;
+  if constexpr (Geometry::dim == 3)
+    if (by_iteration(body, settings)) {
+      body.matrix_free.shear_rates(problem, body.v, of_cell, sum);
+      return sum;
+    }
+  of_cell.assign(body.grid.cell_index.size(), 0.0);
+  for (int c = 0; c < problem.grid.n_cells(); ++c)
+    for (int k = 0; k < power(2, Geometry::dim); ++k) {
+      const double gamma_dot = strain_rate(problem, body.v, c, k).norm();
+      of_cell[c] += gamma_dot / power(2, Geometry::dim);
+      sum += problem.quadrature.V[c][k] * gamma_dot;
+      volume += problem.quadrature.V[c][k];
+    }
+  return volume > 0.0 ? sum / volume : 0.0;
+}
+
+/// Displacements that even out the fill of the cells.
+template <class Geometry>
+std::vector<Vec<Geometry::dim>> particle_shift(const YieldProblem<Geometry>& problem, const StepSettings& settings,
+                                           const std::vector<double>& gamma_dot, ImplicitBody<Geometry>& body) {
+  const CellFill cells = cell_fill(problem, body.points, gamma_dot, settings.particle_shifting);
+  if constexpr (Geometry::dim == 3)
+    if (by_iteration(body, settings)) return shifting_displacement_3d(problem, cells, body.matrix_free);
+  return shifting_displacement(problem, cells, body.system);
+}
+
+}  // namespace tremie::detail
