@@ -68,7 +68,7 @@ TEST(Symmetry, QuarterIsTheWholeWithFactorisedSystems) {
 }
 
 // By iteration both are solved to the tolerance alone, 1e-5 of the stresses: 2e-5 m/s, as in
-// test_space_solver.cpp. With the splines of a slippery wall they would differ by 1.6e-3 m/s.
+// test_3d_solver.cpp. With the splines of a slippery wall they would differ by 1.6e-3 m/s.
 TEST(Symmetry, QuarterIsTheWholeByIteration) {
   StepSettings settings = settings_with(0);
   settings.admm.tolerance = 1e-5;
@@ -108,7 +108,7 @@ TEST(Symmetry, HalfIsTheWholeInAPlane) {
 }
 
 // Beyond some thousand cells the pressures are found by iteration instead of with a factor.
-TEST(Symmetry, PressuresByIterationAgreeWithTheFactor) {
+TEST(Symmetry, TwoLevelPcgAgreesWithTheFactor) {
   omp_set_num_threads(1);
   for (const double K : {33e3, 1e6}) {
     ImplicitBody<ThreeD> factorised = slumping(true, FaceKind::no_slip), iterated = slumping(true, FaceKind::no_slip);

@@ -47,7 +47,7 @@ std::vector<Holes> boxes() {
 
 // Sums of at most 27 numbers of the order 1, in whatever order: to rounding. Bits do not depend on the
 // threads.
-TEST(NodeReduction, AddUpLikeOneLoop) {
+TEST(NodeReduction, AddsUpLikeOneLoop) {
   int most = 0;
   for (const Holes& box : boxes())
     for (int unit : {1, 16}) {

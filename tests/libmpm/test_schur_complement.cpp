@@ -49,7 +49,7 @@ const std::pair<Index<3>, std::array<bool, 3>> cases[] = {{{5, 9, 37}, {}},
 // S by its entries against a dense matrix: columns along each axis, longer and shorter than a batch, up to
 // four chunks of them, holes, one and two periodic axes, one so short that a cell sees another from both
 // sides. A product adds up 125 numbers of the order 1 in single precision.
-TEST(Pressures, EntriesMultiplyLikeADenseMatrix) {
+TEST(SchurComplement, MatrixMultipliesLikeADenseMatrix) {
   omp_set_num_threads(1);
   for (const auto& [extent, periodic] : cases) {
     const ActiveGrid<3> grid = holey_grid(extent, periodic);
@@ -130,7 +130,7 @@ Eigen::MatrixXd factor(const ActiveGrid<3>& grid, const Eigen::MatrixXd& S) {
 
 // F' F r against its definition. Entries of S reach 20, so that single precision leaves 1e-5 of what F' F r
 // has.
-TEST(Pressures, NearInverseIsWhatItIsDefinedAs) {
+TEST(Fsai, MeetsItsDefinition) {
   omp_set_num_threads(1);
   for (const auto& [extent, periodic] : cases) {
     const ActiveGrid<3> grid = holey_grid(extent, periodic);
@@ -163,7 +163,7 @@ TEST(Pressures, NearInverseIsWhatItIsDefinedAs) {
 
 // A cell without stiffness has a number of its own on the diagonal and nothing else, one without even that
 // counts as none, and of two cells that rounding made one and the same, S = [1 1; 1 1], the diagonal is left.
-TEST(Pressures, NearInverseOfCellsWithoutOthers) {
+TEST(Fsai, OfCellsWithoutOthers) {
   omp_set_num_threads(1);
   ActiveGrid<3> grid;
   grid.cell_map.reset({0, 0, 0}, {0, 0, 9});
@@ -202,7 +202,7 @@ double inside(const Index<3>& step) {
 // What it is for: the condition of S, here with a softness of a hundredth of its diagonal, that of a stiff
 // bulk modulus and a long step. The square root of the condition counts iterations; half of what the
 // diagonal leaves is what is asked for.
-TEST(Pressures, NearInverseLeavesHalfTheIterationsOfTheDiagonal) {
+TEST(Fsai, LeavesHalfTheIterationsOfTheDiagonal) {
   omp_set_num_threads(1);
   ActiveGrid<3> grid;
   grid.cell_map.reset({0, 0, 0}, {7, 8, 10});

@@ -154,7 +154,7 @@ TEST(Splines, SmoothAndInterpolatoryOnWalls) {
 
 // A repeated knot belongs to one node, the last of the cell below and the first of the cell above; elsewhere the
 // splines go on smoothly, a node further for every repeated knot.
-TEST(Splines, BendAtCreasesAlone) {
+TEST(Splines, AreC0AtRepeatedKnotsAlone) {
   for (const Axis& a : axes_and_repeated())
     for (int c = 0; c + 1 < a.n_cells; ++c) {
       const SplineValues left = splines(a, c, 1.0), right = splines(a, c + 1, 0.0);

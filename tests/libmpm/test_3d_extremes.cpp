@@ -34,7 +34,7 @@ StepSettings flowing() {
 // A column yields under its own weight where rho g H > sqrt(3) tau_0: here 7.1 kPa are less than 8.7. Its
 // stresses are tolerated to 20 Pa, a rate of 0.4 1/s at a penalty of 50 Pa s, with which it would creep for
 // ever; what its rates may miss is the rate at rest, and a tenth. Twice that for what the solves leave.
-TEST(SpaceExtremes, AYieldStressOf5000PaStands) {
+TEST(Extremes3D, AYieldStressOf5000PaStands) {
   omp_set_num_threads(1);
   for (double mu : {0.01, 35.8}) {
     ImplicitBody<ThreeD> body = column(concrete(5000.0, mu));
@@ -52,7 +52,7 @@ TEST(SpaceExtremes, AYieldStressOf5000PaStands) {
 // viscosity: its weight changes its volume by rho g H/(2 K) = 2e-6. Ten times that for the tolerance of the
 // solves; a hundredth where rounding passes for convergence. It spreads as at 10 MPa, to the 2 % that two
 // points a direction scatter, whether the pressures are solved by a factor or by iteration.
-TEST(SpaceExtremes, TwoGigapascalsKeepTheVolume) {
+TEST(Extremes3D, TwoGigapascalsKeepTheVolume) {
   omp_set_num_threads(1);
   double reach[3];
   const double K[] = {1e7, 2e9, 2e9}, most_band_operations[] = {1e9, 1e9, 0.0};
@@ -84,7 +84,7 @@ double energy_of(const Points<3>& points) {
 // be no shorter than a quarter of what the moves allow at the speed of a fall from the height of the column
 // (a body as fast as that, tried again twice); none can make energy; and nothing runs ahead of the front of a
 // dam that breaks over a dry bed, 2 sqrt(g H) (Ritter 1892).
-TEST(SpaceExtremes, WaterFallsInWholeSteps) {
+TEST(Extremes3D, WaterFallsInWholeSteps) {
   omp_set_num_threads(1);
   ImplicitBody<ThreeD> body = column(concrete(1.0, 0.01));
   const StepSettings settings = flowing();

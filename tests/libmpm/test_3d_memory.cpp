@@ -34,7 +34,7 @@ bool slumps(int n) {
 
 // From 64,000 to 140,608 points the peak grows by what a point costs, all told: its state of 160 bytes, grid,
 // solver, evening-out. It is 333; the aim is 400.
-TEST(SpaceMemory, BytesAPointOfALargeBody) {
+TEST(Memory3D, BytesAPointOfALargeBody) {
   if (!test::memory_can_be_measured) GTEST_SKIP() << "the sanitizer's own memory is most of it";
   const double small = test::peak_memory_of([] { return slumps(20); }),
                large = test::peak_memory_of([] { return slumps(26); });

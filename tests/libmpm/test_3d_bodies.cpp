@@ -52,8 +52,8 @@ void expect_film(double most_band_operations) {
   EXPECT_LE(aside, 1e-4);
 }
 
-TEST(SpaceBodies, BinghamFilm) { expect_film(1e9); }
-TEST(SpaceBodies, BinghamFilmPressuresByIteration) { expect_film(0.0); }
+TEST(Bodies3D, BinghamFilm) { expect_film(1e9); }
+TEST(Bodies3D, BinghamFilmWithTwoLevelPcg) { expect_film(0.0); }
 
 /// Points of a cylinder about the z axis that concrete sticks to, turning at `omega`, two a cell of size h.
 void add_cylinder(double r, double height, double omega, double h, ImplicitBody<ThreeD>& body) {
@@ -105,7 +105,7 @@ std::array<double, 2> couette_errors(int cells) {
 // side of it, which the wall carries along, shears with the gap's, as if the cylinders were a part of a cell
 // thicker. That is of first order in h/gap: half as much on six cells as on three would be exact, 1.7 leaves
 // room for their own error, and 10 % is a bit more than h/gap/2.
-TEST(SpaceBodies, CouetteSection) {
+TEST(Bodies3D, CouetteSection) {
   omp_set_num_threads(1);
   const auto coarse = couette_errors(3), fine = couette_errors(6);
   std::printf("Couette section: speeds %.1f and %.1f %%, torque %+.1f and %+.1f %%\n", 100.0 * coarse[0],
@@ -137,7 +137,7 @@ double speed_on_a_slope(double degrees) {
 
 // Below tan theta = 0.4 it stays, to 0.1 % of the speed that it would have without a floor; above,
 // v = g (sin theta - 0.4 cos theta) t. 3 %: the normal forces are renewed until they change by less than 2 %.
-TEST(SpaceBodies, FrictionHoldsAndSlides) {
+TEST(Bodies3D, FrictionHoldsAndSlides) {
   for (double degrees : {15.0, 30.0}) {
     const double theta = degrees * std::numbers::pi / 180.0, free = 0.25 * 9.81 * std::sin(theta);
     const double speed = speed_on_a_slope(degrees);
@@ -149,7 +149,7 @@ TEST(SpaceBodies, FrictionHoldsAndSlides) {
 
 // The grid follows the concrete: a box ten times as large has the same cells, nodes, maps and products, and
 // the same result to the last bit.
-TEST(SpaceBodies, ALargerBoxCostsNothing) {
+TEST(Bodies3D, ALargerBoxCostsNothing) {
   omp_set_num_threads(1);
   std::array<ImplicitBody<ThreeD>, 2> bodies;
   for (std::size_t i = 0; i < 2; ++i) {

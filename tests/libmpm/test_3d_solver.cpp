@@ -37,7 +37,7 @@ double difference(const Points<3>& a, const Points<3>& b) {
 // Both solve the same convex problem, for a soft and a stiff bulk modulus, and one that the systems by
 // iteration have a twentieth of (lower_modulus()). The body slumps at about 0.3 m/s; 2e-5 is ten times what a
 // tolerance of 1e-5 leaves, and so is half a pascal.
-TEST(SpaceSolver, AgreesWithTheFactorisedSystem) {
+TEST(Solver3D, AgreesWithTheFactorisedSystem) {
   omp_set_num_threads(1);
   for (double K : {33e3, 1e6, 2e9}) {
     ImplicitBody<ThreeD> direct = block(K), iterated = block(K);
@@ -61,7 +61,7 @@ TEST(SpaceSolver, AgreesWithTheFactorisedSystem) {
 
 // A body of some hundred nodes is solved without a matrix by default, where a factor costs ten times as much;
 // a few cells are factorised, which keeps their momentum to round-off.
-TEST(SpaceSolver, TakesSmallBodiesToo) {
+TEST(Solver3D, TakesSmallBodiesToo) {
   ImplicitBody<ThreeD> few = block(1e6), small = block(1e6);
   fill_box(small, Vec<3>(0.06, 0.0, 0.0), Vec<3>(0.24, 0.08, 0.09), 2);
   activate(few.grid, few.points.x), activate(small.grid, small.points.x);
@@ -75,7 +75,7 @@ const Vec<3> some_chunks(0.24, 0.32, 0.12);
 
 // The same bits with one thread and with two, beside a rigid wall, the pressures with a factor and by
 // iteration.
-TEST(SpaceSolver, BitsDoNotDependOnTheThreads) {
+TEST(Solver3D, BitsDoNotDependOnTheThreads) {
   const RigidWall<3> wall = [](const Vec<3>& x, double) -> std::optional<WallView<3>> {
     if (x[1] < 0.28) return {};
     return WallView<3>{0.32 - x[1], Vec<3>(0.0, -1.0, 0.0), Vec<3>::Zero()};
@@ -105,7 +105,7 @@ TEST(SpaceSolver, BitsDoNotDependOnTheThreads) {
 }
 
 // The preconditioner keeps B' C B whole: thirty times the bulk modulus must not take twice the products.
-TEST(SpaceSolver, StiffBulkCostsNoMore) {
+TEST(Solver3D, StiffBulkCostsNoMore) {
   omp_set_num_threads(1);
   long long products[2];
   for (int i = 0; i < 2; ++i) {
@@ -121,7 +121,7 @@ TEST(SpaceSolver, StiffBulkCostsNoMore) {
 
 // The products of one spline a direction against the strain rows: gradients and their adjoint at walls and
 // away.
-TEST(SpaceSolver, GradientsAndTheirAdjoint) {
+TEST(Solver3D, GradientsAndTheirAdjoint) {
   omp_set_num_threads(1);
   ImplicitBody<ThreeD> body = block(1e6, some_chunks);
   activate(body.grid, body.points.x);
@@ -161,7 +161,7 @@ TEST(SpaceSolver, GradientsAndTheirAdjoint) {
 
 // A ball of Newtonian fluid that collapses on a slippery floor: its four quadrants stay mirror images to 1e-9
 // of its radius, and its mass is kept to the bit.
-TEST(SpaceSolver, BallCollapsesSymmetrically) {
+TEST(Solver3D, BallCollapsesSymmetrically) {
   omp_set_num_threads(1);
   const double R = 0.06;
   ImplicitBody<ThreeD> body;
