@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "apparatus/cell/cell.hpp"
+#include "rheometer/reference/references.hpp"
 
 namespace tremie::cell {
 
@@ -47,7 +48,7 @@ scene::Outcome outcome(const Scene& scene, const CellResult& result) {
   double largest = 0.0;
   for (const CellSample& s : result.samples)
     largest = std::max(largest, s.flocculation_reference.value_or(0.0));
-  if (result.flocculation_error_max > 0.01 * std::max(largest, 1e-6))
+  if (result.flocculation_error_max && *result.flocculation_error_max > 0.01 * std::max(largest, 1e-6))
     o.checks.reasons.push_back(
         fmt::format("the flocculation's update is {:.2g} off CVODE, more than 1 % of its largest value: a "
                     "smaller model.time_step",
@@ -71,6 +72,8 @@ scene::Outcome outcome(const Scene& scene, const CellResult& result) {
              "flocculation         " + shown(last.flocculation, ""),
              "largest error        " + shown(result.flocculation_error_max, " of lambda against CVODE"),
              "hysteresis area      " + shown(result.hysteresis_area, " Pa/s")};
+  if (scene.cell.mix.thixotropy && !has_integrated_references())
+    o.lines.push_back("no comparison        built without SUNDIALS: apt-get install libsundials-dev");
   return o;
 }
 

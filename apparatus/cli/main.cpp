@@ -1,20 +1,17 @@
 // The program `tremie`: scenes and the law. What fits and verifies is handed over to tremie-study.
 
-#include <fmt/format.h>
 #include <malloc.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <string_view>
 
 #include "apparatus/cli/command_cell.hpp"
 #include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/hand_over.hpp"
 #include "apparatus/cli/program.hpp"
 
 namespace {
@@ -27,20 +24,6 @@ bool is_study_command(const char* word) {
   for (const StudyCommand& command : study_commands)
     if (std::strcmp(word, command.name) == 0) return true;
   return false;
-}
-
-/// The file of this program, so that another start of it has its name too.
-std::filesystem::path own_file() {
-  std::error_code error;
-  return std::filesystem::read_symlink("/proc/self/exe", error);
-}
-
-/// Becomes tremie-study, with the same arguments; returns where that cannot be.
-int hand_over(char** argv) {
-  const auto program = own_file().parent_path() / "tremie-study";
-  execv(program.c_str(), argv);
-  fmt::print(stderr, "tremie: {}: {}\n", program.string(), std::strerror(errno));
-  return fault;
 }
 
 /// Starts the program anew with OpenMP told to let a thread spin for a tenth of a millisecond before it

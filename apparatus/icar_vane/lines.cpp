@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "libmpm/constitutive/flocculation.hpp"
+#include "rheometer/reference/references.hpp"
 
 namespace tremie::scene {
 namespace {
@@ -76,6 +77,8 @@ std::vector<std::string> vane_lines(const icar_vane::Scene& scene, const icar_va
   if (r.torque_couette_reference)
     lines.push_back(fmt::format("cylinder        {:.4g} N.m by Reiner-Riwlin: the torque is {:.3f} of it",
                                 *r.torque_couette_reference, r.torque_end / *r.torque_couette_reference));
+  else if (scene.with_reference && scene.speed != 0.0 && scene.speeds.empty() && !has_integrated_references())
+    lines.push_back("cylinder        not known: built without SUNDIALS; apt-get install libsundials-dev");
   add_comparison(scene, r, lines);
   if (r.alpha_apparent)
     lines.push_back(

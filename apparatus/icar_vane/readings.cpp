@@ -7,6 +7,7 @@
 #include <string>
 
 #include "rheometer/fits/apparent_alpha.hpp"
+#include "rheometer/reference/references.hpp"
 #include "rheometer/reference/reiner_riwlin.hpp"
 #include "rheometer/reference/thixotropic_couette.hpp"
 
@@ -52,8 +53,9 @@ std::optional<ReinerRiwlin> reported_bingham(const std::vector<CurvePoint>& curv
   return ReinerRiwlin{b.tau_0, b.mu};
 }
 
-/// Torque at the end between solid cylinders, by the rheometer's references.
-double couette_reference(const Scene& scene, const Instrument& instrument) {
+/// Torque at the end between solid cylinders, by the rheometer's references; empty where it takes SUNDIALS
+/// and the build has none.
+std::optional<double> couette_reference(const Scene& scene, const Instrument& instrument) {
   const double omega = angular_speed(std::abs(scene.speed));
   Bingham bingham{scene.mix.tau_0, scene.mix.mu};
   if (!scene.mix.thixotropy) return reiner_riwlin(bingham, omega, instrument).torque;
@@ -68,6 +70,7 @@ double couette_reference(const Scene& scene, const Instrument& instrument) {
     bingham.tau_0 = static_yield_stress(lambda, bingham.tau_0);
     return reiner_riwlin(bingham, omega, instrument).torque;
   }
+  if (!has_integrated_references()) return std::nullopt;
   flow.omega_of_time = [omega](double time) { return omega * start_up(time); };
   const double times[] = {0.0, scene.duration};
   return thixotropic_couette(flow, times, instrument).torque.back();
@@ -130,8 +133,10 @@ void read_instrument(const Scene& scene, Outcome& outcome) {
   r.static_yield_stress_apparent = shear_stress_at(scene.vane.radius, std::abs(r.torque_peak), instrument);
   r.dynamic_yield_stress_apparent = shear_stress_at(scene.vane.radius, std::abs(r.torque_end), instrument);
   if (scene.speed == 0.0) return;
-  if (scene.with_reference)
-    r.torque_couette_reference = std::copysign(couette_reference(scene, instrument), scene.speed);
+  if (scene.with_reference) {
+    const auto torque = couette_reference(scene, instrument);
+    if (torque) r.torque_couette_reference = std::copysign(*torque, scene.speed);
+  }
   read_decay(outcome);
 }
 

@@ -6,9 +6,10 @@
 #include <string>
 #include <utility>
 
-#include "rheometer/reference/flocculation_ode.hpp"
 #include "rheometer/records/table.hpp"
 #include "rheometer/records/torque_record.hpp"
+#include "rheometer/reference/flocculation_ode.hpp"
+#include "rheometer/reference/references.hpp"
 
 namespace tremie {
 
@@ -45,7 +46,7 @@ class Run {
       for (long i = 1; i <= n; ++i) step(s, start, s.duration / static_cast<double>(n), i, n);
       start += s.duration;
     }
-    if (cell_.mix.thixotropy) compare();
+    if (cell_.mix.thixotropy && has_integrated_references()) compare();
     find_area();
     return std::move(result_);
   }

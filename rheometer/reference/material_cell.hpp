@@ -39,7 +39,8 @@ struct CellResult {
   std::vector<CellSample> samples;
   long steps = 0;
   long reference_steps = 0;  ///< of CVODE
-  /// Largest difference between the update and CVODE over the samples.
+  /// Largest difference between the update and CVODE over the samples; empty without thixotropy, and in a
+  /// build without SUNDIALS.
   std::optional<double> flocculation_error_max;
   /// int tau d(gamma_dot) around the history, rising branch minus falling [Pa/s]; empty unless the shear rate
   /// ends where it began, with a change between.

@@ -1,0 +1,21 @@
+#include "apparatus/cli/hand_over.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include "apparatus/cli/commands.hpp"
+
+namespace tremie::cli {
+
+int hand_over(char** argv) {
+  const auto program = own_file().parent_path() / "tremie-study";
+  execv(program.c_str(), argv);
+  fmt::print(stderr, "tremie: {}: {}\n", program.string(), std::strerror(errno));
+  return fault;
+}
+
+}  // namespace tremie::cli
