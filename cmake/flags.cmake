@@ -19,7 +19,7 @@ if(TREMIE_SANITIZE)
                                                 -fno-sanitize-recover=all)
   target_link_options(tremie_flags INTERFACE -fsanitize=${TREMIE_SANITIZE})
   # With this sanitizer g++ 12 reports what Eigen's factors leave unset until they factorise.
-  if(TREMIE_SANITIZE STREQUAL "undefined")
+  if(TREMIE_SANITIZE MATCHES "undefined")
     target_compile_options(tremie_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-uninitialized>)
   endif()
 endif()
