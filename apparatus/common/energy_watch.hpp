@@ -3,16 +3,21 @@
 // Whether steps make energy: what passes a stability limit that nobody has written down does so long before
 // its points run away, and so do thin films of water, whose cells hold a point or two.
 
-#include "apparatus/common/run.hpp"
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
 
-namespace tremie::slump_flow {
+#include "apparatus/common/body_readings.hpp"
+#include "apparatus/common/step_settings.hpp"
+
+namespace tremie::test_run {
 
 /// Kinetic and potential energy of the points [J]; heights from the floor.
 template <class Geometry>
 double energy_of_motion(const Points<Geometry::dim>& points) {
-  double energy = engine::kinetic_energy(points);
+  double energy = kinetic_energy(points);
   for (std::size_t p = 0; p < points.size(); ++p)
-    energy += points.mass[p] * engine::gravity * points.x[p][Geometry::up];
+    energy += points.mass[p] * gravity * points.x[p][Geometry::up];
   return energy;
 }
 
@@ -57,4 +62,4 @@ class EnergyWatch {
   double allowed_, scale_, gained_ = 0.0;
 };
 
-}  // namespace tremie::slump_flow
+}  // namespace tremie::test_run

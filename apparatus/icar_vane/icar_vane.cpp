@@ -1,5 +1,10 @@
 #include "apparatus/icar_vane/icar_vane.hpp"
 
+#include <omp.h>
+
+#include "apparatus/common/frames.hpp"
+#include "apparatus/common/run_checks.hpp"
+#include "apparatus/common/run_loop.hpp"
 #include "apparatus/icar_vane/readings.hpp"
 #include "apparatus/icar_vane/sections.hpp"
 
@@ -14,7 +19,7 @@ struct Stage {
   double speed = 0.0, duration = 0.0;  // [rev/s], [s]
 };
 
-std::vector<Stage> schedule(const Scene& scene) {
+std::vector<Stage> stages_of(const Scene& scene) {
   if (scene.speeds.empty()) return {{scene.speed, scene.duration}};
   std::vector<Stage> stages = {{scene.pre_shear_speed, scene.pre_shear_time}};
   for (double speed : scene.speeds) stages.push_back({speed, scene.hold_time});
@@ -35,7 +40,7 @@ Sample read(const Body<typename Section::Geometry>& body, const Scene& scene, co
   s.torque_power = speed != 0.0 ? h * t.power / angular(speed) : 0.0;
   s.momentum_rate = step.dt > 0.0 ? h * (t.angular_momentum - last_momentum) / step.dt : 0.0;
   s.shear_rate_mean = step.shear_rate_mean;
-  s.flocculation_mean = engine::mean_flocculation(body.points);
+  s.flocculation_mean = test_run::mean_flocculation(body.points);
   s.flocculation_apparent = apparent_flocculation(scene, s.torque, speed);
   s.time_step = step.dt;
   s.iterations = step.iterations;
@@ -48,7 +53,7 @@ std::vector<ProfilePoint> profile(const Body<typename Section::Geometry>& body, 
                                   double cell) {
   const Vane& vane = section.vane;
   const auto& points = body.points;
-  const std::vector<double> gamma_dot = engine::shear_rates_now(body);
+  const std::vector<double> gamma_dot = test_run::shear_rates_now(body);
   const std::size_t n = static_cast<std::size_t>(std::ceil(vane.container_radius / cell));
   std::vector<double> V(n, 0.0), v(n, 0.0), g(n, 0.0), l(n, 0.0);
   for (std::size_t p = 0; p < points.size(); ++p) {
@@ -68,49 +73,82 @@ std::vector<ProfilePoint> profile(const Body<typename Section::Geometry>& body, 
   return out;
 }
 
+/// Where in its schedule a test is: the stages follow one another, and the speed changes evenly at the start
+/// of each.
+struct Schedule {
+  std::vector<Stage> stages;
+  std::size_t at = 0;
+  double stage_start = 0.0, last_speed = 0.0;  ///< [s], [rev/s]
+
+  double stage_end() const { return stage_start + stages[at].duration; }
+  bool stage_over(double time) const { return !(time < stage_end() * (1.0 - 1e-12)); }
+
+  /// Goes to the stage of this time; true where it is a new one. There is none left at the end.
+  bool follow(double time) {
+    bool changed = false;
+    for (; at < stages.size() && stage_over(time); ++at, changed = true) {
+      last_speed = stages[at].speed;
+      stage_start = stage_end();
+    }
+    return changed;
+  }
+  double speed(double time) const {
+    return last_speed + start_up(time - stage_start) * (stages[at].speed - last_speed);
+  }
+};
+
 template <class Section>
 Outcome run_section(const Scene& scene, const Section& section, const Observer& observer) {
   using Geometry = typename Section::Geometry;
   ImplicitBody<Geometry> body{section.body_at_rest(scene)};
-  engine::rest(body, scene.rest);
-  StepSettings settings = engine::step_settings(scene.model);
+  test_run::rest(body, scene.rest);
+  StepSettings settings = test_run::step_settings(scene.model);
   settings.keep_forces = true;
   settings.cfl = reach;
-  const double start_mass = engine::total_mass(body.points);
+  const double start_mass = test_run::total_mass(body.points);
 
   Outcome outcome;
-  double turned = 0.0, last_speed = 0.0, momentum = 0.0, stage_start = 0.0, next_frame = 0.0;
-  for (const Stage& stage : schedule(scene)) {
-    const double stage_end = stage_start + stage.duration;
-    body.dt = first_dt;
-    while (body.time < stage_end * (1.0 - 1e-12) && outcome.status == Status::completed) {
-      const double left = stage_end - body.time;
-      settings.dt_max = left / std::ceil(left / (scene.model.step_scale * largest_dt) - 1e-9);
-      const double speed = last_speed + start_up(body.time - stage_start) * (stage.speed - last_speed);
-      section.turn(body, angular(speed));
-      const StepReport step = implicit_step(body, scene.model.law, settings);
-      turned += angular(speed) * step.dt;
-      const Torques t = section.torques(body);
-      engine::count_step(body, step, outcome.checks, outcome.cost);
-      if (engine::gave_up(step, outcome.status, outcome.checks, body.time)) break;
-      outcome.series.push_back(read<Section>(body, scene, t, momentum, speed, step));
-      momentum = t.angular_momentum;
-      if (observer.on_step) observer.on_step(outcome.series.back());
-      if (observer.on_frame && body.time >= next_frame) {
-        observer.on_frame(section.whole(engine::frame_of(body), turned));
-        next_frame += scene.frame_interval;
-      }
-      if (observer.interrupted && *observer.interrupted) outcome.status = Status::interrupted;
-    }
-    last_speed = stage.speed;
-    stage_start = stage_end;
-  }
-  engine::judge(body, start_mass, outcome.checks, outcome.cost);
+  double turned = 0.0, speed = 0.0, momentum = 0.0;
+  Schedule schedule{stages_of(scene)};
+  body.dt = first_dt;
+  const test_run::Flow flow{
+      .time = [&] { return body.time; },
+      .unfinished =
+          [&] {
+            if (schedule.follow(body.time)) body.dt = first_dt;
+            return schedule.at < schedule.stages.size();
+          },
+      .prepare =
+          [&] {
+            const double left = schedule.stage_end() - body.time;
+            settings.dt_max = left / std::ceil(left / (scene.model.step_scale * largest_dt) - 1e-9);
+            speed = schedule.speed(body.time);
+            section.turn(body, angular(speed));
+          },
+      .advance =
+          [&](Checks& checks, Cost& cost) {
+            const StepReport step = implicit_step(body, scene.model.law, settings);
+            turned += angular(speed) * step.dt;
+            test_run::count_step(body, step, checks, cost);
+            return step;
+          },
+      .read =
+          [&](const StepReport& step) {
+            const Torques t = section.torques(body);
+            outcome.series.push_back(read<Section>(body, scene, t, momentum, speed, step));
+            momentum = t.angular_momentum;
+            if (observer.on_step) observer.on_step(outcome.series.back());
+          },
+      .frame = [&] { return section.whole(test_run::frame_of(body), turned); }};
+  test_run::run_loop(flow, {observer.on_frame, observer.interrupted, scene.frame_interval}, outcome.status,
+                     outcome.checks, outcome.cost);
+
+  test_run::judge(body, start_mass, outcome.checks, outcome.cost);
   outcome.results.profile = profile(body, section, scene.model.cell[0]);
   read_instrument(scene, outcome);
   check_torques_agree(scene, outcome);
   check_against_reference(scene, outcome);
-  outcome.final_frame = section.whole(engine::frame_of(body), turned);
+  outcome.final_frame = section.whole(test_run::frame_of(body), turned);
   if (observer.on_frame) observer.on_frame(outcome.final_frame);
   return outcome;
 }
@@ -118,7 +156,7 @@ Outcome run_section(const Scene& scene, const Section& section, const Observer& 
 void refuse_what_has_no_engine(const Scene& scene) {
   if (scene.model.space != SpaceKind::couette && scene.model.space != SpaceKind::plane)
     throw std::invalid_argument("model.space: the vane runs in \"couette\" or \"plane\"");
-  engine::refuse_what_has_no_engine(scene.model, "vane");
+  test_run::refuse_what_has_no_engine(scene.model, "vane");
 }
 
 /// Calls use(section) with the section that the scene names.
@@ -148,7 +186,7 @@ Estimate estimate(const Scene& scene) {
     e.cells_active = body.grid.n_cells();
     e.bytes_per_point =
         bytes_per_point<std::decay_t<decltype(section)>::Geometry::dim>(scene.mix.thixotropy.has_value());
-    for (const Stage& stage : schedule(scene)) e.steps += std::llround(stage.duration / largest_dt) + 15;
+    for (const Stage& stage : stages_of(scene)) e.steps += std::llround(stage.duration / largest_dt) + 15;
     return e;
   });
 }

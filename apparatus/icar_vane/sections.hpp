@@ -5,7 +5,7 @@
 
 #include <numbers>
 
-#include "apparatus/common/run.hpp"
+#include "apparatus/common/step_settings.hpp"
 #include "apparatus/icar_vane/icar_vane.hpp"
 #include "libmpm/particles/seeding.hpp"
 #include "libmpm/implicit/particle_splitting.hpp"

@@ -1,6 +1,8 @@
 #include "apparatus/l_box/l_box.hpp"
 
-#include "apparatus/l_box/engines.hpp"
+#include <omp.h>
+
+#include "apparatus/l_box/runs.hpp"
 #include "apparatus/l_box/set_up.hpp"
 
 namespace tremie::l_box {
@@ -14,8 +16,8 @@ Estimate estimate_in(const Scene& scene) {
   e.points = static_cast<std::int64_t>(body.points.size());
   e.cells_active = body.grid.n_cells();
   e.bytes_per_point = bytes_per_point<Geometry::dim>(body.points.thixotropic());
-  const StepSettings settings = engine::step_settings(scene.model);
-  const double collapse = std::sqrt(engine::gravity * scene.box.column_height) /
+  const StepSettings settings = test_run::step_settings(scene.model);
+  const double collapse = std::sqrt(test_run::gravity * scene.box.column_height) /
                           (settings.cfl * std::min(scene.model.cell[0], scene.model.cell[1]));
   e.steps = scene.model.time_step ? std::llround(scene.duration / *scene.model.time_step)
                                   : std::llround(0.5 * collapse + scene.duration / settings.dt_max);
@@ -33,13 +35,13 @@ double gap_between_bars(const Scene& scene) {
 }
 
 Outcome run(const Scene& scene, const Observer& observer) {
-  engine::refuse_what_has_no_engine(scene.model, "L-box");
+  test_run::refuse_what_has_no_engine(scene.model, "L-box");
   omp_set_num_threads(scene.threads);
   return in_space(scene) ? run_3d(scene, observer) : run_in_the_plane(scene, observer);
 }
 
 Estimate estimate(const Scene& scene) {
-  engine::refuse_what_has_no_engine(scene.model, "L-box");
+  test_run::refuse_what_has_no_engine(scene.model, "L-box");
   return in_space(scene) ? estimate_in<ThreeD>(scene) : estimate_in<PlaneStrain>(scene);
 }
 

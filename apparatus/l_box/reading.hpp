@@ -75,8 +75,8 @@ Sample read(const Body<Geometry>& body, const Scene& scene, const StepReport& st
   if (s.front > box.channel_length - 0.5 * off_the_walls) s.h2 = depth_over(at_the_end(box));
   s.max_speed = step.max_speed;
   s.shear_rate_mean = step.shear_rate_mean;
-  s.flocculation_mean = engine::mean_flocculation(body.points);
-  s.volume_change = engine::volume_change(body.points);
+  s.flocculation_mean = test_run::mean_flocculation(body.points);
+  s.volume_change = test_run::volume_change(body.points);
   s.time_step = step.dt;
   s.iterations = step.iterations;
   return s;

@@ -1,5 +1,5 @@
-#include "apparatus/l_box/engine.hpp"
-#include "apparatus/l_box/engines.hpp"
+#include "apparatus/l_box/implicit_run.hpp"
+#include "apparatus/l_box/runs.hpp"
 
 namespace tremie::l_box {
 

@@ -10,7 +10,8 @@
 #include <numbers>
 #include <vector>
 
-#include "apparatus/common/run.hpp"
+#include "apparatus/common/body_readings.hpp"
+#include "apparatus/common/step_settings.hpp"
 #include "apparatus/l_box/l_box.hpp"
 #include "libmpm/particles/seeding.hpp"
 
@@ -37,7 +38,7 @@ Body<Geometry> filled_column(const Scene& scene) {
   const Box& box = scene.box;
   Body<Geometry> body;
   body.mix = scene.mix;
-  body.gravity[up] = -engine::gravity;
+  body.gravity[up] = -test_run::gravity;
   const auto [across, h_up] = scene.model.cell;
   const auto [n_along, n_up] = scene.model.points_per_cell;
   Vec<D> high;
@@ -57,9 +58,9 @@ Body<Geometry> filled_column(const Scene& scene) {
         std::max(1, static_cast<int>(std::lround(high[d] / body.grid.axes[d].h * (d == 0 ? n_along : n_up))));
   seed_box<Geometry>(
       Vec<D>::Zero(), high, n, scene.mix.density, scene.mix.K, [](const Vec<D>&) { return true; },
-      [&](const Vec<D>& x) { return scene.mix.density * engine::gravity * (box.column_height - x[up]); },
+      [&](const Vec<D>& x) { return scene.mix.density * test_run::gravity * (box.column_height - x[up]); },
       body.points);
-  engine::rest(body, scene.rest);
+  test_run::rest(body, scene.rest);
   return body;
 }
 

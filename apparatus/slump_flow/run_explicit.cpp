@@ -1,5 +1,5 @@
-#include "apparatus/slump_flow/engines.hpp"
-#include "apparatus/slump_flow/explicit_engine.hpp"
+#include "apparatus/slump_flow/explicit_run.hpp"
+#include "apparatus/slump_flow/runs.hpp"
 
 namespace tremie::slump_flow {
 

@@ -1,9 +1,11 @@
 #include "apparatus/slump_flow/slump_flow.hpp"
 
+#include <omp.h>
+
 #include <stdexcept>
 
-#include "apparatus/slump_flow/engines.hpp"
-#include "apparatus/slump_flow/explicit_engine.hpp"
+#include "apparatus/slump_flow/explicit_run.hpp"
+#include "apparatus/slump_flow/runs.hpp"
 
 namespace tremie::slump_flow {
 namespace {

@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "apparatus/slump_flow/engine.hpp"
+#include "apparatus/slump_flow/series.hpp"
 
 int main(int argc, char** argv) {
   using namespace tremie;

@@ -11,7 +11,7 @@
 #include <cstdlib>
 #include <map>
 
-#include "apparatus/slump_flow/explicit_engine.hpp"
+#include "apparatus/slump_flow/explicit_run.hpp"
 
 namespace tremie {
 
@@ -200,7 +200,7 @@ void print_rates(const Asked& asked) {
              1e3 * cell, rest, seconds, flip > 0.0 ? "FLIP" : "APIC");
   for (int d = 0; d < definitions; ++d) fmt::print("| {} | {:.2f} | {:.2f} |\n", names[d], peak[d], total[d]);
   fmt::print("\nspread {:.1f} mm, lambda {:.2f}\n", 1e3 * spread_of(scene, body.points),
-             engine::mean_flocculation(body.points).value_or(0.0));
+             test_run::mean_flocculation(body.points).value_or(0.0));
 }
 
 }  // namespace

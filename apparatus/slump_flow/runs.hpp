@@ -1,6 +1,6 @@
 #pragma once
 
-// The engines of the slump flow, compiled apart.
+// The implicit and the explicit run of the slump flow, compiled apart.
 
 #include "apparatus/slump_flow/slump_flow.hpp"
 

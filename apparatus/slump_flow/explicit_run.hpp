@@ -3,7 +3,12 @@
 // The slump-flow test by explicit steps: many short ones between two readings.
 
 #include "apparatus/common/energy_watch.hpp"
-#include "apparatus/slump_flow/engine.hpp"
+#include "apparatus/common/frames.hpp"
+#include "apparatus/common/run_checks.hpp"
+#include "apparatus/common/run_loop.hpp"
+#include "apparatus/slump_flow/checks.hpp"
+#include "apparatus/slump_flow/series.hpp"
+#include "apparatus/slump_flow/set_up.hpp"
 #include "libmpm/explicit/step.hpp"
 
 namespace tremie::slump_flow {
@@ -53,7 +58,7 @@ Frame frame_from(Body<Geometry>& body) {
   auto& points = body.points;
   const auto places = [](auto& from) {
     std::vector<std::array<double, 3>> to(from.size());
-    std::transform(from.begin(), from.end(), to.begin(), engine::in_space<Geometry>);
+    std::transform(from.begin(), from.end(), to.begin(), test_run::in_space<Geometry>);
     release(from);
     return to;
   };
@@ -100,57 +105,81 @@ struct LimitWatch {
   }
 };
 
+/// Explicit steps up to a time [s]; the report of the last one.
+template <class Geometry, class Law, class State>
+StepReport explicit_steps_until(double until, Body<Geometry>& body, const Law& law,
+                                const ExplicitSettings& settings, State& state,
+                                const RigidWall<Geometry::dim>& wall, LimitWatch& limits, Cost& cost) {
+  StepReport step;
+  do {
+    const auto most = std::llround(std::ceil((until - body.time) / state.next_dt - 0.5));
+    for (const ExplicitReport& one : explicit_steps(body, law, settings, most, state, wall)) {
+      limits.see(one);
+      step = {.dt = one.dt, .converged = true, .failed = one.failed, .max_speed = one.max_speed};
+      step.shear_rate_mean = one.shear_rate_mean;
+      cost.steps += 1;
+    }
+  } while (!step.failed && body.time < until - 0.5 * state.next_dt);
+  return step;
+}
+
 template <class Geometry, class Law>
 Outcome run_explicit_in(const Scene& scene, const Law& law, const Observer& observer) {
   constexpr int D = Geometry::dim;
   Body<Geometry> body = filled_cone<Geometry>(scene);
   const ExplicitSettings settings = explicit_settings(scene);
-  const double start_mass = engine::total_mass(body.points);
+  const double start_mass = test_run::total_mass(body.points);
   RigidWall<D> wall;
   if (scene.lift_speed) lifted_wall(scene, settings.wall_gap + 0.6 * scene.model.cell[0], wall);
 
   Outcome outcome;
   outcome.series.push_back(read(scene, body, {}));
-  if (observer.on_frame) observer.on_frame(engine::frame_of(body));
-  EnergyWatch energy(energy_of<Geometry>(body.points, body.mix.K));
+  if (observer.on_frame) observer.on_frame(test_run::frame_of(body));
+  test_run::EnergyWatch energy(test_run::energy_of<Geometry>(body.points, body.mix.K));
   auto state = start_explicit(body, law, settings, shape_of<Geometry>(scene.model));
   write_back(state, body);  // what a run that fails at once is read from
-  engine::RestWatch watch;
   LimitWatch limits;
-  bool stopped = false;
-  double next_frame = scene.frame_interval;
-  while (!stopped && body.time < scene.duration - 0.5 * state.next_dt) {
-    if (scene.lift_speed && rim_height(scene, body.time) > outcome.series.back().height + 0.02) wall = {};
-    const double until = std::min(body.time + reading_interval, scene.duration);
-    StepReport step;
-    do {
-      const auto most = std::llround(std::ceil((until - body.time) / state.next_dt - 0.5));
-      for (const ExplicitReport& one : explicit_steps(body, law, settings, most, state, wall)) {
-        limits.see(one);
-        step = {.dt = one.dt, .converged = true, .failed = one.failed, .max_speed = one.max_speed};
-        step.shear_rate_mean = one.shear_rate_mean;
-        outcome.cost.steps += 1;
-      }
-    } while (!step.failed && body.time < until - 0.5 * state.next_dt);
-    if (engine::gave_up(step, outcome.status, outcome.checks, body.time)) break;
-    write_back(state, body);
-    energy.see(energy_of<Geometry>(body.points, body.mix.K), bool{wall});
-    outcome.cost.cells_active =
-        std::max(outcome.cost.cells_active, count_active_cells<D>(body.grid.axes, body.points.x));
-    stopped = record(scene, body, step, observer, watch, outcome);
-    if (energy.ran_away()) outcome.status = Status::failed;
-    if (observer.on_frame && body.time >= next_frame) {
-      observer.on_frame(frame_from(body));
-      write_back(state, body);
-      next_frame += scene.frame_interval;
-    }
-    if (outcome.status != Status::completed) break;
-  }
-  read_results(watch, stopped, outcome);
+  const test_run::Flow flow{
+      .time = [&] { return body.time; },
+      .unfinished = [&] { return body.time < scene.duration - 0.5 * state.next_dt; },
+      .prepare =
+          [&] {
+            if (cone_is_gone(scene, body.time, outcome.series.back())) wall = {};
+          },
+      .advance =
+          [&](Checks&, Cost& cost) {
+            const double until = std::min(body.time + reading_interval, scene.duration);
+            const StepReport step =
+                explicit_steps_until(until, body, law, settings, state, wall, limits, cost);
+            if (step.failed) return step;
+            write_back(state, body);
+            cost.cells_active =
+                std::max(cost.cells_active, count_active_cells<D>(body.grid.axes, body.points.x));
+            return step;
+          },
+      .read = [&](const StepReport& step) { record(scene, body, step, observer, outcome); },
+      .frame =
+          [&] {
+            Frame frame = frame_from(body);
+            write_back(state, body);
+            return frame;
+          },
+      .speed = [](const StepReport& step) { return step.max_speed; },
+      .free_to_flow = [&] { return clear_of_the_cone(scene, outcome.series.back()); },
+      .gains_energy =
+          [&] {
+            energy.see(test_run::energy_of<Geometry>(body.points, body.mix.K), bool{wall});
+            return energy.ran_away();
+          }};
+  const auto stopped_at = test_run::run_loop(
+      flow, {observer.on_frame, observer.interrupted, scene.frame_interval, scene.frame_interval},
+      outcome.status, outcome.checks, outcome.cost);
+
+  read_results(stopped_at, outcome);
   limits.tell(outcome.cost.steps, outcome.checks);
   energy.tell(outcome.checks);
-  engine::judge(body, start_mass, outcome.checks, outcome.cost);
-  engine::judge_volume(outcome.series.front().volume_change, outcome.checks);
+  test_run::judge(body, start_mass, outcome.checks, outcome.cost);
+  test_run::judge_volume(outcome.series.front().volume_change, outcome.checks);
   judge_depth(scene, outcome);
   judge_lift(outcome);
   outcome.cost.bytes_per_point = explicit_bytes_per_point<D>(body.points.thixotropic());

@@ -1,21 +1,24 @@
 #pragma once
 
-// The L-box test in one space for one yield law: set up, step until rest, read.
+// The L-box test in one geometry: set up, step until rest, read.
 
-#include "apparatus/common/run.hpp"
+#include "apparatus/common/frames.hpp"
+#include "apparatus/common/run_checks.hpp"
+#include "apparatus/common/run_loop.hpp"
+#include "apparatus/common/step_settings.hpp"
 #include "apparatus/l_box/l_box.hpp"
 #include "apparatus/l_box/reading.hpp"
 #include "apparatus/l_box/set_up.hpp"
 
 namespace tremie::l_box {
 
-inline constexpr double detached_share = 0.005;         ///< share of the points that may fall off the column's walls
-inline constexpr double share_of_time = 0.01;  ///< largest step, in the time since the start of the lift
-inline constexpr double longest_step = 0.3;    ///< [s]: in longer ones thin films run away
+inline constexpr double detached_share = 0.005;  ///< share of the points that may fall off the column's walls
+inline constexpr double share_of_time = 0.01;    ///< largest step, in the time since the start of the lift
+inline constexpr double longest_step = 0.3;      ///< [s]: in longer ones thin films run away
 
 template <class Geometry>
 StepSettings step_settings(const Scene& scene) {
-  StepSettings settings = engine::step_settings(scene.model);
+  StepSettings settings = test_run::step_settings(scene.model);
   if (!scene.model.time_step) settings.detached = detached_share;
   settings.cut_cell_rule = true;   // what hangs on the column's walls is thinner than a cell
   settings.moving_surface = true;  // without it steps of tenths of a second carry a fluid past its level
@@ -25,7 +28,8 @@ StepSettings step_settings(const Scene& scene) {
 }
 
 /// The longest step: the films on the column's walls drain ever more slowly, so may the steps go. In space
-/// gravity acts where the surface is at a step's start (libmpm/implicit/free_surface.hpp), and they do not grow.
+/// gravity acts where the surface is at a step's start (libmpm/implicit/free_surface.hpp), and they do not
+/// grow.
 template <class Geometry>
 double longest_dt(const Scene& scene, double time) {
   const double shortest = StepSettings{}.dt_max;
@@ -91,41 +95,46 @@ template <class Geometry>
 Outcome run_in(const Scene& scene, const Observer& observer) {
   ImplicitBody<Geometry> body{filled_column<Geometry>(scene)};
   StepSettings settings = step_settings<Geometry>(scene);
-  const double start_mass = engine::total_mass(body.points);
+  const double start_mass = test_run::total_mass(body.points);
 
   Outcome outcome;
   outcome.series.push_back(read(body, scene, {}));
-  if (observer.on_frame) observer.on_frame(engine::frame_of(body));
-  engine::RestWatch watch;
-  bool stopped = false;
-  double next_frame = scene.frame_interval;
-  while (!stopped && body.time < scene.duration * (1.0 - 1e-12)) {
-    settings.dt_max = std::min(longest_dt<Geometry>(scene, body.time), scene.duration - body.time);
-    body.boundary = walls_inside<Geometry>(scene, body.grid.axes, body.time);
-    const StepReport step = implicit_step(body, scene.model.law, settings);
-    engine::count_step(body, step, outcome.checks, outcome.cost);
-    engine::watch_fixed_step(body, scene.model, step, outcome.checks);
-    if (engine::gave_up(step, outcome.status, outcome.checks, body.time)) break;
-    outcome.series.push_back(read(body, scene, step));
-    if (observer.on_step) observer.on_step(outcome.series.back());
-    if (observer.on_frame && body.time >= next_frame) {
-      observer.on_frame(engine::frame_of(body));
-      next_frame += scene.frame_interval;
-    }
-    const bool open = !scene.gate_speed || *scene.gate_speed * body.time > scene.box.channel_height;
-    // Drops from the films on the column's walls fall long after the concrete stands.
-    stopped = watch.at_rest(open, step.bulk_speed, body.time);
-    if (observer.interrupted && *observer.interrupted) {
-      outcome.status = Status::interrupted;
-      break;
-    }
-  }
-  read_results(body, scene, stopped ? watch.slow_since : std::nullopt, outcome);
-  engine::judge(body, start_mass, outcome.checks, outcome.cost);
-  engine::judge_volume(outcome.series.front().volume_change, outcome.checks);
+  if (observer.on_frame) observer.on_frame(test_run::frame_of(body));
+  const test_run::Flow flow{
+      .time = [&] { return body.time; },
+      .unfinished = [&] { return body.time < scene.duration * (1.0 - 1e-12); },
+      .prepare =
+          [&] {
+            settings.dt_max = std::min(longest_dt<Geometry>(scene, body.time), scene.duration - body.time);
+            body.boundary = walls_inside<Geometry>(scene, body.grid.axes, body.time);
+          },
+      .advance =
+          [&](Checks& checks, Cost& cost) {
+            const StepReport step = implicit_step(body, scene.model.law, settings);
+            test_run::count_step(body, step, checks, cost);
+            test_run::watch_fixed_step(body, scene.model, step, checks);
+            return step;
+          },
+      .read =
+          [&](const StepReport& step) {
+            outcome.series.push_back(read(body, scene, step));
+            if (observer.on_step) observer.on_step(outcome.series.back());
+          },
+      .frame = [&] { return test_run::frame_of(body); },
+      // Drops from the films on the column's walls fall long after the concrete stands.
+      .speed = [](const StepReport& step) { return step.bulk_speed; },
+      .free_to_flow =
+          [&] { return !scene.gate_speed || *scene.gate_speed * body.time > scene.box.channel_height; }};
+  const auto stopped_at = test_run::run_loop(
+      flow, {observer.on_frame, observer.interrupted, scene.frame_interval, scene.frame_interval},
+      outcome.status, outcome.checks, outcome.cost);
+
+  read_results(body, scene, stopped_at, outcome);
+  test_run::judge(body, start_mass, outcome.checks, outcome.cost);
+  test_run::judge_volume(outcome.series.front().volume_change, outcome.checks);
   judge_bars(scene, outcome.checks);
   judge_cells(scene, outcome.results, outcome.checks);
-  outcome.final_frame = engine::frame_of(body);
+  outcome.final_frame = test_run::frame_of(body);
   if (observer.on_frame) observer.on_frame(outcome.final_frame);
   return outcome;
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// The engines of the L-box, compiled apart.
+// The runs of the L-box in its geometries, compiled apart.
 
 #include "apparatus/l_box/l_box.hpp"
 

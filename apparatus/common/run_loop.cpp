@@ -1,0 +1,45 @@
+#include "apparatus/common/run_loop.hpp"
+
+#include <string>
+
+namespace tremie::test_run {
+namespace {
+
+/// Ends a run whose last step failed: the points are where they were before it.
+bool gave_up(const StepReport& step, Status& status, Checks& checks, double time) {
+  if (!step.failed) return false;
+  status = Status::failed;
+  checks.reasons.push_back("the velocities ran away at " + std::to_string(time) + " s; the run ends there");
+  return true;
+}
+
+bool is_at_rest(const Flow& flow, const StepReport& step, RestWatch& watch) {
+  return flow.speed && watch.at_rest(flow.free_to_flow(), flow.speed(step), flow.time());
+}
+
+void show_frame(const Flow& flow, Onlooker& onlooker) {
+  if (!onlooker.on_frame || flow.time() < onlooker.next_frame) return;
+  onlooker.on_frame(flow.frame());
+  onlooker.next_frame += onlooker.frame_interval;
+}
+
+}  // namespace
+
+std::optional<double> run_loop(const Flow& flow, Onlooker onlooker, Status& status, Checks& checks,
+                               Cost& cost) {
+  RestWatch watch;
+  bool at_rest = false;
+  while (status == Status::completed && !at_rest && flow.unfinished()) {
+    flow.prepare();
+    const StepReport step = flow.advance(checks, cost);
+    if (gave_up(step, status, checks, flow.time())) break;
+    flow.read(step);
+    at_rest = is_at_rest(flow, step, watch);
+    if (onlooker.interrupted && *onlooker.interrupted) status = Status::interrupted;
+    if (flow.gains_energy && flow.gains_energy()) status = Status::failed;
+    show_frame(flow, onlooker);
+  }
+  return at_rest ? watch.slow_since : std::nullopt;
+}
+
+}  // namespace tremie::test_run

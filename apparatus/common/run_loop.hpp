@@ -1,0 +1,58 @@
+#pragma once
+
+// The one loop by which every apparatus runs its test, by implicit or explicit steps.
+
+#include <atomic>
+#include <functional>
+#include <optional>
+
+#include "apparatus/common/model.hpp"
+#include "libmpm/implicit/step.hpp"
+
+namespace tremie::test_run {
+
+inline constexpr double rest_speed = 1e-4;     ///< slower than this is at rest [m/s]
+inline constexpr double rest_must_last = 0.5;  ///< before a flow is called stopped [s]
+
+/// Watches for the flow to come to rest: slow, for long enough, and free to flow.
+struct RestWatch {
+  std::optional<double> slow_since;
+
+  bool at_rest(bool free_to_flow, double max_speed, double time) {
+    if (!free_to_flow || max_speed > rest_speed)
+      slow_since.reset();
+    else if (!slow_since)
+      slow_since = time;
+    return slow_since && time - *slow_since >= rest_must_last;
+  }
+};
+
+/// One test as the loop sees it. The functions refer to the apparatus' own body, schedule and series.
+struct Flow {
+  std::function<double()> time;      ///< of the body [s]
+  std::function<bool()> unfinished;  ///< whether the schedule has time left
+  std::function<void()> prepare;     ///< moves gate, cone or vane for the step to come, and bounds the step
+  /// Steps to the next reading: one implicit step, or many explicit ones. Counts them.
+  std::function<StepReport(Checks&, Cost&)> advance;
+  std::function<void(const StepReport&)> read;  ///< adds a line to the series and shows it
+  std::function<Frame()> frame;                 ///< the points as they are now
+  /// Speed by which the flow is judged to be at rest [m/s], and whether anything holds it still. Empty: the
+  /// test takes its whole time.
+  std::function<double(const StepReport&)> speed = {};
+  std::function<bool()> free_to_flow = {};
+  std::function<bool()> gains_energy = {};  ///< more than a stable run can; may be empty
+};
+
+/// Who looks on. Frames come at `next_frame` and every `frame_interval` after it [s].
+struct Onlooker {
+  const std::function<void(const Frame&)>& on_frame;  ///< may be empty
+  const std::atomic<bool>* interrupted = nullptr;
+  double frame_interval = 0.5, next_frame = 0.0;
+};
+
+/// Runs the flow until its time is over, it is at rest, a step fails or somebody interrupts. Returns when it
+/// came to rest [s]; empty where it did not.
+std::optional<double> run_loop(const Flow& flow, Onlooker onlooker, Status& status, Checks& checks,
+                               Cost& cost);
+
+}  // namespace tremie::test_run

@@ -1,0 +1,44 @@
+#pragma once
+
+// From the model that a scene chooses to the settings of a step: what every apparatus does the same way.
+
+#include <stdexcept>
+#include <string>
+
+#include "apparatus/common/model.hpp"
+#include "libmpm/implicit/step.hpp"
+
+namespace tremie::test_run {
+
+inline constexpr double gravity = 9.81;  ///< [m/s^2]
+
+inline FaceKind face_of(ContactKind contact) {
+  return contact == ContactKind::no_slip    ? FaceKind::no_slip
+         : contact == ContactKind::friction ? FaceKind::friction
+                                            : FaceKind::free_slip;
+}
+
+inline StepSettings step_settings(const Model& model) {
+  StepSettings settings;
+  settings.method = model.method == MethodKind::admm     ? YieldMethod::admm
+                    : model.method == MethodKind::newton ? YieldMethod::newton
+                                                         : YieldMethod::automatic;
+  settings.transfer.flip = model.transfer == TransferKind::flip;
+  settings.transfer.flip_blend = model.flip_blend;
+  settings.particle_shifting.on = model.particle_shifting;
+  settings.fixed_dt = model.time_step;
+  settings.dt_max *= model.step_scale;
+  return settings;
+}
+
+/// Throws std::invalid_argument for a scheme or shape that has no engine.
+inline void refuse_what_has_no_engine(const Model& model, const char* apparatus) {
+  if (model.scheme != SchemeKind::implicit)
+    throw std::invalid_argument(std::string("model.scheme: the ") + apparatus +
+                                " runs with \"implicit\" for now");
+  if (model.shape != ShapeKind::b_spline)
+    throw std::invalid_argument(std::string("model.shape: the ") + apparatus +
+                                " runs with \"b_spline\" for now");
+}
+
+}  // namespace tremie::test_run

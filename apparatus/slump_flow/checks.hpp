@@ -1,0 +1,51 @@
+#pragma once
+
+// Reasons of the slump flow itself why a result is not to be trusted.
+
+#include <cstdio>
+#include <numbers>
+
+#include "apparatus/slump_flow/cone.hpp"
+#include "apparatus/slump_flow/set_up.hpp"
+#include "apparatus/slump_flow/slump_flow.hpp"
+
+namespace tremie::slump_flow {
+
+/// Whether the floor bears less than shears the body, which then slides: at most the friction of its weight
+/// over its area. A regularised law is sheared by any stress; flocculation only adds to the yield stress.
+inline bool slides(const Scene& scene, double depth) {
+  if (scene.floor.contact != ContactKind::friction) return scene.floor.contact == ContactKind::free_slip;
+  const double shears = is_exact(scene.model.law) ? scene.mix.tau_0 : 0.0;
+  return scene.floor.coefficient * scene.mix.density * gravity * depth <= shears;
+}
+
+/// Between the floor that holds it and its free surface a body thinner than a cell has no rows of cells to
+/// shear: its spread is up to 20 % off (explicit.md). One that slides need not shear: 6 % from half a cell
+/// on.
+inline void judge_depth(const Scene& scene, Outcome& outcome) {
+  const double R = 0.5 * outcome.results.spread, depth = volume(scene.cone) / (std::numbers::pi * R * R);
+  const bool sliding = slides(scene, depth);
+  const double least = (sliding ? 0.5 : 1.0) * scene.model.cell[1];
+  if (depth >= least) return;
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "the concrete is thinner than %s, %.3g mm on average: a smaller model.cell upwards",
+                sliding ? "half a cell" : "a cell", 1e3 * depth);
+  outcome.checks.reasons.push_back(text);
+}
+
+/// Concrete that presses on the cone for long goes through its wall, and the opening under a rim that has not
+/// risen by a cell is none to the grid. Where a twentieth has by then, t500 is 6 % early (lift.md).
+inline void judge_lift(Outcome& outcome) {
+  constexpr double most = 0.05;
+  const auto& through = outcome.results.through_the_cone;
+  if (!through || *through <= most) return;
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "%.2g %% of the concrete went through the cone's wall before its rim had risen by a cell: a "
+                "faster test.lift_speed, or a smaller model.cell",
+                100.0 * *through);
+  outcome.checks.reasons.push_back(text);
+}
+
+}  // namespace tremie::slump_flow

@@ -1,0 +1,87 @@
+#pragma once
+
+// What is read off the slump flow after every step and at its end.
+
+#include <algorithm>
+#include <optional>
+
+#include "apparatus/common/body_readings.hpp"
+#include "apparatus/slump_flow/reading.hpp"
+#include "apparatus/slump_flow/set_up.hpp"
+
+namespace tremie::slump_flow {
+
+inline constexpr double standard_t500 = 0.5;  ///< diameter of the t500 circle [m]
+
+inline double spread_of(const Scene& scene, const Points<2>& points) {
+  return spread(points, scene.model.cell[0]);
+}
+inline double spread_of(const Scene& scene, const Points<3>& points) {
+  return spread(points, scene.model.cell[0], is_quarter(scene));
+}
+
+template <class Geometry>
+Sample read(const Scene& scene, const Body<Geometry>& body, const StepReport& step) {
+  const auto& points = body.points;
+  Sample s;
+  s.time = body.time;
+  s.spread = spread_of(scene, points);
+  s.spread_max_point = spread_of_outermost_point(points);
+  s.height = centre_height(points, 2.0 * body.grid.axes[0].h);
+  s.max_speed = step.max_speed;
+  s.shear_rate_mean = step.shear_rate_mean;
+  s.flocculation_mean = test_run::mean_flocculation(points);
+  s.volume_change = test_run::volume_change(points);
+  s.kinetic_energy = (is_quarter(scene) ? 4.0 : 1.0) * test_run::kinetic_energy(points);
+  s.time_step = step.dt;
+  s.iterations = step.iterations;
+  return s;
+}
+
+inline void read_t500(Outcome& outcome) {
+  const auto& series = outcome.series;
+  for (std::size_t i = 1; i < series.size(); ++i) {
+    const Sample &a = series[i - 1], &b = series[i];
+    if (b.spread < standard_t500) continue;
+    const double share = (standard_t500 - a.spread) / (b.spread - a.spread);
+    outcome.results.t500 = a.time + std::clamp(share, 0.0, 1.0) * (b.time - a.time);
+    return;
+  }
+}
+
+inline void read_results(std::optional<double> stopped_at, Outcome& outcome) {
+  const Sample &first = outcome.series.front(), &last = outcome.series.back();
+  Results& r = outcome.results;
+  r.spread = last.spread;
+  r.spread_max_point = last.spread_max_point;
+  r.height = last.height;
+  r.flocculation_mean_start = first.flocculation_mean;
+  r.flocculation_mean_end = last.flocculation_mean;
+  for (const Sample& s : outcome.series)
+    r.shear_rate_mean_peak = std::max(r.shear_rate_mean_peak, s.shear_rate_mean);
+  r.stopped_at = stopped_at;
+  if (stopped_at && *r.stopped_at > 0.0) r.mean_velocity = (r.spread - 0.2) / (2.0 * *r.stopped_at);
+  read_t500(outcome);
+}
+
+/// Adds a line to the series and shows it.
+template <class Geometry>
+void record(const Scene& scene, const Body<Geometry>& body, const StepReport& step, const Observer& observer,
+            Outcome& outcome) {
+  const bool low = scene.lift_speed && rim_height(scene, outcome.series.back().time) < scene.model.cell[1];
+  if (low) outcome.results.through_the_cone = share_behind_wall(scene, body.time, body.points);
+  outcome.series.push_back(read(scene, body, step));
+  if (observer.on_step) observer.on_step(outcome.series.back());
+}
+
+/// Whether the rim has risen clear of the concrete, so that the cone no longer holds it.
+inline bool clear_of_the_cone(const Scene& scene, const Sample& now) {
+  return !scene.lift_speed || rim_height(scene, now.time) > now.height + scene.model.cell[1];
+}
+
+/// Whether the cone is so far above the concrete that its wall need not be computed.
+inline bool cone_is_gone(const Scene& scene, double time, const Sample& last) {
+  return scene.lift_speed && rim_height(scene, time) > last.height + 0.02;
+}
+
+}  // namespace tremie::slump_flow

@@ -1,0 +1,59 @@
+#pragma once
+
+// The filled cone before its lift, the settings of its steps, and the wall that is lifted.
+
+#include "apparatus/common/body_readings.hpp"
+#include "apparatus/common/step_settings.hpp"
+#include "apparatus/slump_flow/cone.hpp"
+#include "apparatus/slump_flow/slump_flow.hpp"
+
+namespace tremie::slump_flow {
+
+using test_run::gravity;
+
+/// Whether only the first quadrant is computed, between planes of symmetry.
+inline bool is_quarter(const Scene& scene) { return scene.model.space == SpaceKind::quarter; }
+
+/// The filled cone after its rest, before the lift.
+template <class Geometry>
+Body<Geometry> filled_cone(const Scene& scene) {
+  constexpr int D = Geometry::dim, up = Geometry::up;
+  Body<Geometry> body;
+  body.mix = scene.mix;
+  body.gravity[up] = -gravity;
+  const auto [h, h_up] = scene.model.cell;
+  // Explicit steps have no mirrored splines: their planes of symmetry are slippery walls.
+  const FaceKind plane =
+      scene.model.scheme == SchemeKind::implicit ? FaceKind::symmetry : FaceKind::free_slip;
+  for (int d = 0; d < up; ++d)
+    body.grid.axes[d] = {.h = h,
+                         .low = D == 2              ? FaceKind::free_slip
+                                : is_quarter(scene) ? plane
+                                                    : FaceKind::open};
+  body.grid.axes[up] = {.h = h_up, .low = test_run::face_of(scene.floor.contact)};
+  const auto [n, n_up] = scene.model.points_per_cell;
+  if constexpr (D == 2)
+    fill(scene.cone, scene.mix, gravity, h / n, h_up / n_up, body.points);
+  else
+    fill(scene.cone, scene.mix, gravity, h / n, h_up / n_up, is_quarter(scene), body.points);
+  shrink(body.points);
+  test_run::rest(body, scene.rest);
+  return body;
+}
+
+inline StepSettings step_settings(const Scene& scene) {
+  StepSettings settings = test_run::step_settings(scene.model);
+  if (scene.model.space != SpaceKind::axisymmetric) settings.time_error = 0.005;
+  settings.friction_coefficient = scene.floor.coefficient;
+  settings.wall_gap = 0.5 * scene.model.cell[0] / scene.model.points_per_cell[0];
+  return settings;
+}
+
+inline void lifted_wall(const Scene& scene, double reach, RigidWall<2>& wall) {
+  wall = lifted_wall(scene, reach);
+}
+inline void lifted_wall(const Scene& scene, double reach, RigidWall<3>& wall) {
+  wall = revolved(lifted_wall(scene, reach));
+}
+
+}  // namespace tremie::slump_flow
