@@ -9,6 +9,7 @@
 
 #include "apparatus/common/model.hpp"
 #include "apparatus/scene/keys.hpp"
+#include "apparatus/scene/load.hpp"
 #include "apparatus/common/outcome.hpp"
 #include "rheometer/reference/material_cell.hpp"
 
@@ -22,11 +23,12 @@ struct Scene {
   std::string resolved;  ///< the same scene as TOML, a CSV history as tables; reads back to the same scene
 };
 
-/// True where the file's `apparatus` is "cell". Throws scene::InputError where it is no TOML.
-bool is_cell(const std::filesystem::path& path);
-
 /// The keys of the scene.
 scene::ApparatusKeys keys();
+
+/// Checked values as a scene; a CSV history beside the file becomes tables of the values. Throws
+/// scene::InputError.
+Scene build(scene::Loaded& loaded);
 
 /// Reads and checks; a CSV history lies beside the scene. Throws scene::InputError.
 Scene read(const std::filesystem::path& path, const std::vector<std::string>& overrides = {});

@@ -105,7 +105,9 @@ std::vector<ShearSegment> read_history(const Values& values) {
   return history;
 }
 
-Scene build(scene::Loaded loaded) {
+}  // namespace
+
+Scene build(scene::Loaded& loaded) {
   Values& values = loaded.values;
   if (values.has("history")) inline_csv(values, std::filesystem::path(loaded.path).parent_path());
   Scene scene;
@@ -124,14 +126,13 @@ Scene build(scene::Loaded loaded) {
   return scene;
 }
 
-}  // namespace
-
 scene::ApparatusKeys keys() {
   scene::ApparatusKeys keys{.name = "cell",
                             .help = "One material cell at a prescribed shear rate: tremie cell.",
                             .schema = {top_section()},
                             .presets = {},
-                            .settle = scene::settle_mix};
+                            .settle = scene::settle_mix,
+                            .command = "cell"};
   for (const Section& section : scene::mix_sections()) keys.schema.push_back(section);
   keys.schema.push_back(test_section());
   keys.schema.push_back(history_section());
@@ -139,19 +140,14 @@ scene::ApparatusKeys keys() {
   return keys;
 }
 
-bool is_cell(const std::filesystem::path& path) {
-  const scene::Node document = scene::parse_file(path);
-  const scene::Node* node = scene::find(document, "apparatus");
-  const auto* name = node ? std::get_if<std::string>(&node->value) : nullptr;
-  return name && *name == "cell";
-}
-
 Scene read(const std::filesystem::path& path, const std::vector<std::string>& overrides) {
-  return build(load({path, overrides, {}}, std::vector{keys()}));
+  scene::Loaded loaded = load({path, overrides, {}}, std::vector{keys()}, "cell");
+  return build(loaded);
 }
 
 Scene read_text(const std::string& text, const std::string& name, const std::vector<std::string>& overrides) {
-  return build(load({name, overrides, text}, std::vector{keys()}));
+  scene::Loaded loaded = load({name, overrides, text}, std::vector{keys()}, "cell");
+  return build(loaded);
 }
 
 CellResult run(const Scene& scene) {

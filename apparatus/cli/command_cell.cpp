@@ -8,10 +8,11 @@
 
 #include "apparatus/cell/cell.hpp"
 #include "apparatus/cli/commands.hpp"
-#include "apparatus/report/rheometer_files.hpp"
 #include "apparatus/cli/set_option.hpp"
+#include "apparatus/registry/registry.hpp"
 #include "apparatus/report/html.hpp"
 #include "apparatus/report/result_files.hpp"
+#include "apparatus/report/rheometer_files.hpp"
 #include "apparatus/report/run_folder.hpp"
 #include "libmpm/io/write_error.hpp"
 
@@ -59,7 +60,8 @@ std::vector<std::string> write(const cell::Scene& scene, scene::Outcome outcome,
 
 int run(const Options& options) {
   const Stopwatch watch;
-  const cell::Scene scene = cell::read(options.scene, options.overrides);
+  const scene::Scene read = scene::read(options.scene, options.overrides, "cell");
+  const auto& scene = *std::any_cast<cell::Scene>(&read.test);
   const CellResult result = cell::run(scene);
   const HeldInterrupts held;  // outlives the folder
   report::RunFolder folder(options.out.empty() ? "runs/" + scene.name : options.out, options.force);

@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "apparatus/cell/cell.hpp"
 #include "apparatus/cli/commands.hpp"
 #include "apparatus/cli/set_option.hpp"
 #include "apparatus/registry/registry.hpp"
@@ -25,25 +24,14 @@ void print_estimate(const scene::Estimate& e) {
       e.points, e.bytes_per_point, e.cells_active, e.steps);
 }
 
-/// A cell has neither points nor a grid: its scene is checked and shown.
-void check_cell(const Options& options) {
-  const cell::Scene scene = cell::read(options.scene, options.overrides);
-  fmt::print("# {}: valid. Every value that it uses, in SI:\n\n{}", options.scene, scene.resolved);
-  fmt::print(
-      "\n# used and left out\n#   {} pieces of the history; no points, no grid\n#   flocculation: {}\n",
-      scene.cell.history.size(),
-      scene.cell.mix.thixotropy ? "computed, and by CVODE beside it" : "not computed");
-}
-
 void check(const Options& options) {
-  if (cell::is_cell(options.scene)) return check_cell(options);
-  const auto scene = scene::read(options.scene, options.overrides);
+  const auto scene = scene::read(options.scene, options.overrides, "");
   const auto estimate = scene::estimate(scene);  // refuses what the apparatus cannot run
   fmt::print("# {}: valid. Every value that it uses, in SI:\n\n{}", options.scene, scene.resolved);
   fmt::print("\n# used and left out\n");
   for (const auto& line : scene::uses(scene)) fmt::print("#   {}\n", line);
   for (const auto& note : scene.notes) fmt::print("# note: {}\n", note);
-  print_estimate(estimate);
+  if (estimate) print_estimate(*estimate);
 }
 
 }  // namespace

@@ -5,21 +5,18 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "apparatus/cell/cell.hpp"
 #include "apparatus/cli/commands.hpp"
-#include "apparatus/scene/resolved.hpp"
 #include "apparatus/registry/registry.hpp"
+#include "apparatus/scene/resolved.hpp"
 
 namespace tremie::cli {
 namespace {
 
 std::string template_of(const std::string& name) {
   std::vector<std::string> known;
-  std::vector<scene::ApparatusKeys> all = scene::all_apparatus();
-  all.push_back(cell::keys());
-  for (const auto& apparatus : all) {
-    if (apparatus.name == name) return scene::write_template(apparatus);
-    known.push_back(apparatus.name);
+  for (const auto& apparatus : scene::all_apparatus()) {
+    if (apparatus.keys.name == name) return scene::write_template(apparatus.keys);
+    known.push_back(apparatus.keys.name);
   }
   throw scene::InputError(fmt::format("new: \"{}\" is not available; did you mean \"{}\"? Available: {}",
                                       name, scene::nearest(name, known), fmt::join(known, ", ")));

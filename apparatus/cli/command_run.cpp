@@ -10,12 +10,13 @@
 #include <sstream>
 
 #include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/passive_threads.hpp"
 #include "apparatus/cli/progress.hpp"
 #include "apparatus/cli/set_option.hpp"
-#include "apparatus/report/result_files.hpp"
-#include "apparatus/report/run_folder.hpp"
 #include "apparatus/registry/error_estimate.hpp"
 #include "apparatus/registry/registry.hpp"
+#include "apparatus/report/result_files.hpp"
+#include "apparatus/report/run_folder.hpp"
 
 namespace tremie::cli {
 namespace {
@@ -23,7 +24,7 @@ namespace {
 struct Options {
   std::string scene, out;
   std::vector<std::string> overrides;
-  int threads = 1;
+  int threads = 0;  ///< 0: as many as pay
   bool quiet = false, force = false, with_error = false;
   std::string accuracy;  ///< "1 %"; empty: the scene's own cells
 };
@@ -62,9 +63,9 @@ int exit_code_of(const scene::Outcome& outcome) {
   return outcome.checks.reasons.empty() && outcome.status == Status::completed ? done : not_to_be_trusted;
 }
 
-void print_outcome(const scene::Outcome& outcome) {
+void print_outcome(const scene::Scene& scene, const scene::Outcome& outcome) {
   for (const auto& line : outcome.lines) fmt::print("{}\n", line);
-  for (const auto& line : scene::error_lines(outcome)) fmt::print("error           {}\n", line);
+  for (const auto& line : scene::error_lines(scene, outcome)) fmt::print("error           {}\n", line);
   const Checks& c = outcome.checks;
   fmt::print("checks          volume {:+.3g} %, mass {:.1e}, {} unconverged steps, {} points lost\n",
              100.0 * c.volume_change, c.mass_error, c.unconverged_steps, c.points_lost);
@@ -138,19 +139,25 @@ scene::Outcome run_and_write(const scene::Scene& scene, const Options& options,
   return outcome;
 }
 
+int threads_for(const scene::Scene& scene, const Options& options) {
+  return options.threads > 0 ? options.threads : scene::default_threads(scene);
+}
+
 int run(const Options& options) {
   auto scene = scene::read(options.scene, options.overrides);
   if (!options.accuracy.empty()) accuracy_of(options.accuracy);
+  const int threads = threads_for(scene, options);
+  wait_passively(threads);
   report::RunFolder folder(options.out.empty() ? "runs/" + scene.name : options.out, options.force);
   stop_on_interrupt();
   if (!options.accuracy.empty()) scene = with_cells_for(scene, options);
-  scene::set_threads(scene, options.threads);
+  scene::set_threads(scene, threads);
   std::vector<std::string> notes;
   const auto outcome = run_and_write(scene, options, folder, notes);
   folder.publish();
   print_reasons(outcome);
   if (!options.quiet) {
-    print_outcome(outcome);
+    print_outcome(scene, outcome);
     for (const auto& note : notes) fmt::print("note            {}\n", note);
     fmt::print("written to      {}\n", folder.target().string());
   }
@@ -165,9 +172,8 @@ void add_command_run(CLI::App& app, int& exit_code) {
   command->add_option("scene", options->scene, "Scene file (TOML)")->required();
   command->add_option("--out", options->out, "Folder for the result (default: runs/<scene name>)");
   add_set_option(*command, options->overrides);
-  command->add_option("--threads", options->threads, "Threads")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
+  command->add_option("--threads", options->threads, "Threads (default: as many as pay for the scene's size)")
+      ->check(CLI::Range(1, 1024));
   command->add_flag("--with-error", options->with_error,
                     "Also run coarser cells, and state the discretisation error of the result");
   command->add_option(

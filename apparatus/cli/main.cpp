@@ -4,10 +4,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <cstdlib>
 #include <cstring>
-#include <string_view>
 
 #include "apparatus/cli/command_cell.hpp"
 #include "apparatus/cli/commands.hpp"
@@ -24,16 +21,6 @@ bool is_study_command(const char* word) {
   for (const StudyCommand& command : study_commands)
     if (std::strcmp(word, command.name) == 0) return true;
   return false;
-}
-
-/// Starts the program anew with OpenMP told to let a thread spin for a tenth of a millisecond before it
-/// sleeps: its own default, some ten milliseconds, makes two threads wait for each other by whole time slices
-/// where other programs run. OpenMP reads this when it is loaded, and at no other time.
-void spin_briefly(int argc, char** argv) {
-  const bool threads = std::any_of(
-      argv, argv + argc, [](const char* word) { return std::string_view(word).substr(0, 9) == "--threads"; });
-  if (!threads || std::getenv("GOMP_SPINCOUNT") || std::getenv("OMP_WAIT_POLICY")) return;
-  if (setenv("GOMP_SPINCOUNT", "10000", 0) == 0) execv(own_file().c_str(), argv);
 }
 
 /// Arrays of four megabytes and more go back to the system when they are freed. By its own rule the allocator
@@ -57,7 +44,6 @@ void name_study_commands(CLI::App& app) {
 int main(int argc, char** argv) {
   return_large_blocks();
   if (argc > 1 && is_study_command(argv[1])) return hand_over(argv);
-  spin_briefly(argc, argv);
   return run_program(argc, argv, [](CLI::App& app, int& exit_code) {
     add_command_run(app, exit_code);
     add_command_check(app, exit_code);

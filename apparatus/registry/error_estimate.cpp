@@ -19,28 +19,8 @@ constexpr double cost_exponent = 3.0;
 /// A line of cells costs less than a plane, but hardly less where it is a little coarser: its grids lie
 /// farther apart, so that the bar costs no more.
 Coarsening coarsening_of(const Scene& scene) {
-  const bool line =
-      std::visit([](const auto& test) { return test.model.space == SpaceKind::couette; }, scene.test);
+  const bool line = model_of(scene).space == SpaceKind::couette;
   return line ? Coarsening{2.0, 3.0} : Coarsening{};
-}
-
-/// A number that a person looks at first. `unit` as printed; `digits` behind the point.
-struct Headline {
-  const char* name;
-  const char* word;
-  const char* unit;
-  int digits;
-};
-
-std::vector<Headline> headlines(const std::string& apparatus) {
-  if (apparatus == "icar_vane")
-    return {{"torque_end_N_m", "torque at the end", "N m", 4}, {"torque_peak_N_m", "torque peak", "N m", 4}};
-  if (apparatus == "l_box")
-    return {{"passing_ratio", "passing ratio", "", 3},
-            {"h1_mm", "H1", "mm", 0},
-            {"h2_mm", "H2", "mm", 0},
-            {"t400_s", "t400", "s", 2}};
-  return {{"spread_mm", "spread", "mm", 0}, {"height_mm", "height", "mm", 1}, {"t500_s", "t500", "s", 2}};
 }
 
 std::optional<double> number_in(const Outcome& outcome, const std::string& name) {
@@ -64,9 +44,7 @@ Outcome run_coarser(const Scene& scene, double factor, const Observer& observer)
   Observer quiet;
   quiet.on_progress = observer.on_progress;
   quiet.interrupted = observer.interrupted;
-  Scene coarse = coarsened(scene, factor);
-  if (auto* vane = std::get_if<icar_vane::Scene>(&coarse.test)) vane->with_reference = false;
-  return run(coarse, quiet);
+  return run(coarsened(scene, factor), quiet, true);
 }
 
 std::string basis_of(const Headline& headline, const Extrapolation& e) {
@@ -93,13 +71,10 @@ Extrapolation extrapolate(double fine, double middle, double coarse, const Coars
 
 Scene coarsened(const Scene& scene, double factor) {
   Scene result = scene;
-  std::visit(
-      [&](auto& test) {
-        for (double& h : test.model.cell) h *= factor;
-        if (test.model.time_step) *test.model.time_step *= factor;
-        test.model.step_scale *= factor;
-      },
-      result.test);
+  Model& model = model_of(result);
+  for (double& h : model.cell) h *= factor;
+  if (model.time_step) *model.time_step *= factor;
+  model.step_scale *= factor;
   return result;
 }
 
@@ -118,7 +93,7 @@ ErrorEstimate estimate_error(const Scene& scene, const Outcome& outcome, const O
       estimate.basis = "none: a coarser run did not come to its end";
       return estimate;
     }
-    for (const Headline& headline : headlines(outcome.apparatus)) {
+    for (const Headline& headline : scene.functions->headlines) {
       const auto f = number_in(outcome, headline.name), m = number_in(middle, headline.name),
                  c = number_in(coarse, headline.name);
       if (!f || !m || !c) continue;
@@ -140,7 +115,7 @@ Choice choose_cells(const Scene& scene, double accuracy, const Observer& observe
     pilots[i] = run_coarser(scene, 2.0 + static_cast<double>(i), observer);
     choice.pilot_cpu += pilots[i].cost.cpu;
   }
-  const auto headline = headlines(pilots[0].apparatus).front();
+  const auto headline = scene.functions->headlines.front();
   std::array<double, 3> value{};
   for (std::size_t i = 0; i < 3; ++i) {
     const auto number = number_in(pilots[i], headline.name);
@@ -159,17 +134,17 @@ Choice choose_cells(const Scene& scene, double accuracy, const Observer& observe
 }
 
 std::string cells_override(const Scene& scene, double factor) {
-  const auto cell = std::visit([](const auto& test) { return test.model.cell; }, scene.test);
+  const auto cell = model_of(scene).cell;
   const double across = 1e3 * factor * cell[0], up = 1e3 * factor * cell[1];
   if (cell[0] == cell[1]) return fmt::format("model.cell=\"{:.4g} mm\"", across);
   return fmt::format("model.cell=[\"{:.4g} mm\", \"{:.4g} mm\"]", across, up);
 }
 
-std::vector<std::string> error_lines(const Outcome& outcome) {
+std::vector<std::string> error_lines(const Scene& scene, const Outcome& outcome) {
   std::vector<std::string> lines;
   if (!outcome.error) return lines;
   for (const ErrorBar& bar : outcome.error->bars)
-    for (const Headline& headline : headlines(outcome.apparatus))
+    for (const Headline& headline : scene.functions->headlines)
       if (bar.name == headline.name)
         lines.push_back(fmt::format("{} {:.{}f} ± {:.{}f} {}", headline.word,
                                     number_in(outcome, bar.name).value_or(0.0), headline.digits, bar.error,

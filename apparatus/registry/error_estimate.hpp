@@ -46,6 +46,6 @@ Choice choose_cells(const Scene& scene, double accuracy, const Observer& observe
 std::string cells_override(const Scene& scene, double factor);
 
 /// "spread 556 ± 4 mm", a line each.
-std::vector<std::string> error_lines(const Outcome& outcome);
+std::vector<std::string> error_lines(const Scene& scene, const Outcome& outcome);
 
 }  // namespace tremie::scene

@@ -2,51 +2,42 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <chrono>
 #include <ctime>
 #include <stdexcept>
+#include <thread>
 
-#include "apparatus/icar_vane/outcome.hpp"
-#include "apparatus/icar_vane/keys.hpp"
-#include "apparatus/l_box/outcome.hpp"
-#include "apparatus/l_box/keys.hpp"
+#include "apparatus/cell/apparatus.hpp"
+#include "apparatus/common/threads.hpp"
+#include "apparatus/icar_vane/apparatus.hpp"
+#include "apparatus/l_box/apparatus.hpp"
 #include "apparatus/scene/resolved.hpp"
-#include "apparatus/slump_flow/outcome.hpp"
-#include "apparatus/slump_flow/keys.hpp"
+#include "apparatus/slump_flow/apparatus.hpp"
 
 namespace tremie::scene {
 namespace {
 
-std::variant<slump_flow::Scene, l_box::Scene, icar_vane::Scene> test_of(const Loaded& loaded) {
-  if (loaded.apparatus == "l_box") return l_box_scene(loaded.values);
-  if (loaded.apparatus == "icar_vane") return icar_vane_scene(loaded.values);
-  return slump_flow_scene(loaded.values);
+const Apparatus& apparatus_named(const std::string& name) {
+  const auto& all = all_apparatus();
+  return *std::find_if(all.begin(), all.end(), [&](const Apparatus& a) { return a.keys.name == name; });
 }
 
-Outcome run_test(const slump_flow::Scene& test, const Scene& scene, const Observer& observer) {
-  return run_slump_flow(test, scene.measured, scene.output.frames, observer);
+std::vector<ApparatusKeys> all_keys() {
+  std::vector<ApparatusKeys> keys;
+  for (const Apparatus& apparatus : all_apparatus()) keys.push_back(apparatus.keys);
+  return keys;
 }
 
-Outcome run_test(const l_box::Scene& test, const Scene& scene, const Observer& observer) {
-  return run_l_box(test, scene.output.frames, observer);
-}
-
-Outcome run_test(const icar_vane::Scene& test, const Scene& scene, const Observer& observer) {
-  return run_icar_vane(test, scene.output.frames, observer);
-}
-
-std::vector<std::string> uses_of(const slump_flow::Scene& test) { return slump_flow_uses(test); }
-std::vector<std::string> uses_of(const l_box::Scene& test) { return l_box_uses(test); }
-std::vector<std::string> uses_of(const icar_vane::Scene& test) { return icar_vane_uses(test); }
-
-Scene build(const Loaded& loaded) {
+Scene build(Loaded loaded) {
   Scene scene;
   scene.name = loaded.name;
   scene.path = loaded.path;
   scene.apparatus = loaded.apparatus;
-  scene.test = test_of(loaded);
+  scene.functions = &apparatus_named(loaded.apparatus);
+  scene.test = scene.functions->read(loaded);
   scene.measured = read_measured(loaded.values);
-  scene.output = read_output(loaded.values);
+  if (loaded.values.has("output.frames")) scene.output = read_output(loaded.values);
   scene.resolved = write_resolved(loaded.schema, loaded.values);
   scene.notes = loaded.values.notes;
   for (const auto& [key, value] : loaded.values.entries)
@@ -85,44 +76,52 @@ auto as_input_error(const Scene& scene, Call call) {
 
 }  // namespace
 
-std::vector<ApparatusKeys> all_apparatus() { return {slump_flow_keys(), l_box_keys(), icar_vane_keys()}; }
+const std::vector<Apparatus>& all_apparatus() {
+  static const std::vector<Apparatus> all = {slump_flow::apparatus(), l_box::apparatus(),
+                                             icar_vane::apparatus(), cell::apparatus()};
+  return all;
+}
 
-Scene read(const std::filesystem::path& path, const std::vector<std::string>& overrides) {
-  return build(load({path, overrides}, all_apparatus()));
+Scene read(const std::filesystem::path& path, const std::vector<std::string>& overrides,
+           const std::string& command) {
+  return build(load({path, overrides}, all_keys(), command));
 }
 
 Scene read_text(const std::string& text, const std::string& name, const std::vector<std::string>& overrides) {
-  return build(load({name, overrides, text}, all_apparatus()));
+  return build(load({name, overrides, text}, all_keys()));
 }
 
-void set_threads(Scene& scene, int threads) {
-  std::visit([&](auto& test) { test.threads = threads; }, scene.test);
+void set_threads(Scene& scene, int threads) { scene.functions->threads(scene.test) = threads; }
+
+int default_threads(const Scene& scene) {
+  const SpaceKind space = model_of(scene).space;
+  if (!test_run::is_3d(space)) return 1;  // spares the estimate
+  return test_run::default_threads(estimate(scene)->points, space,
+                                   static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-Outcome run(const Scene& scene, const Observer& observer) {
+Model& model_of(Scene& scene) { return scene.functions->model(scene.test); }
+const Model& model_of(const Scene& scene) { return model_of(const_cast<Scene&>(scene)); }
+
+Outcome run(const Scene& scene, const Observer& observer, bool coarser) {
   const double wall = wall_seconds(), cpu = cpu_seconds();
-  Outcome outcome = as_input_error(scene, [&] {
-    return std::visit([&](const auto& test) { return run_test(test, scene, observer); }, scene.test);
-  });
+  const RunOptions options{scene.measured, scene.output.frames, coarser};
+  Outcome outcome =
+      as_input_error(scene, [&] { return scene.functions->run(scene.test, options, observer); });
   outcome.cost.wall = wall_seconds() - wall;
   outcome.cost.cpu = cpu_seconds() - cpu;
-  outcome.cost.threads = std::visit([](const auto& test) { return test.threads; }, scene.test);
+  outcome.cost.threads = scene.functions->threads(const_cast<Scene&>(scene).test);
   outcome.cost.peak_rss_bytes = peak_rss_bytes();
   if (outcome.status == Status::failed && outcome.checks.reasons.empty())
     outcome.checks.reasons.push_back("the run did not come to its end");
   return outcome;
 }
 
-Estimate estimate(const Scene& scene) {
-  const auto estimate_test = [](const auto& test) {
-    const auto e = estimate(test);  // the apparatus' own
-    return Estimate{e.points, e.cells_active, e.bytes_per_point, e.steps};
-  };
-  return as_input_error(scene, [&] { return std::visit(estimate_test, scene.test); });
+std::optional<Estimate> estimate(const Scene& scene) {
+  if (!scene.functions->estimate) return std::nullopt;
+  return as_input_error(scene, [&] { return scene.functions->estimate(scene.test); });
 }
 
-std::vector<std::string> uses(const Scene& scene) {
-  return std::visit([](const auto& test) { return uses_of(test); }, scene.test);
-}
+std::vector<std::string> uses(const Scene& scene) { return scene.functions->uses(scene.test); }
 
 }  // namespace tremie::scene

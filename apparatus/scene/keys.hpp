@@ -17,7 +17,7 @@
 // A repeated table [[history]] is a Section with `repeated`; its values are history[0].duration and so on,
 // for i below values.count("history"). A key of the same name at the top ("history = \"file.csv\"") is taken
 // where it is no table. Load such a scene with load({path, overrides}, {{my_keys()}}) (load.hpp), without the
-// apparatus that scene.hpp knows.
+// registry of apparatus.
 
 #include <functional>
 #include <limits>
@@ -106,6 +106,7 @@ struct ApparatusKeys {
   std::vector<Preset> presets;
   /// Rules over several keys: derive, drop, or fail. May be empty.
   std::function<void(Values&)> settle;
+  std::string command = "run";  ///< the command of tremie that runs it
 };
 
 /// "greater than 0 Pa": a range in words, in the key's unit.

@@ -57,16 +57,12 @@ void apply_overrides(Node& document, const Request& request) {
     if (!names_the_mix(change)) put(document, change.path, change.value);
 }
 
-/// The command for a scene that this one does not run; empty where no command runs it.
-std::string command_for(const std::string& apparatus) {
-  const bool tested = apparatus == "slump_flow" || apparatus == "l_box" || apparatus == "icar_vane";
-  return apparatus == "cell" ? "tremie cell" : tested ? "tremie run" : "";
-}
-
 const ApparatusKeys& apparatus_of(const Node& document, const std::string& file,
-                                  std::span<const ApparatusKeys> known) {
+                                  std::span<const ApparatusKeys> known, const std::string& command) {
+  const auto runs = [&](const ApparatusKeys& a) { return command.empty() || a.command == command; };
   std::vector<std::string> allowed;
-  for (const auto& apparatus : known) allowed.push_back(apparatus.name);
+  for (const auto& apparatus : known)
+    if (runs(apparatus)) allowed.push_back(apparatus.name);
   const Node* node = find(document, "apparatus");
   if (!node) {
     throw InputError(fmt::format("{}: apparatus: missing key; allowed: {}", describe(document.origin),
@@ -75,11 +71,11 @@ const ApparatusKeys& apparatus_of(const Node& document, const std::string& file,
   const auto* name = std::get_if<std::string>(&node->value);
   const auto found = std::find_if(known.begin(), known.end(),
                                   [&](const ApparatusKeys& a) { return name && a.name == *name; });
-  if (found != known.end()) return *found;
-  const std::string given = name ? *name : "", command = command_for(given);
-  if (!command.empty())
+  if (found != known.end() && runs(*found)) return *found;
+  const std::string given = name ? *name : "";
+  if (found != known.end())
     throw InputError(fmt::format("{}: apparatus: a scene of \"{}\" is run by `{} {}`", describe(node->origin),
-                                 given, command, file));
+                                 given, found->command, file));
   throw InputError(fmt::format("{}: apparatus: \"{}\" is not allowed; allowed: {} (nearest: \"{}\")",
                                describe(node->origin), given, quoted_list(allowed), nearest(given, allowed)));
 }
@@ -151,11 +147,11 @@ std::vector<std::string> mix_names() {
   return names;
 }
 
-Loaded load(const Request& request, std::span<const ApparatusKeys> known) {
+Loaded load(const Request& request, std::span<const ApparatusKeys> known, const std::string& command) {
   Node document = request.text ? parse_text(*request.text, request.path.string(), Layer::scene)
                                : parse_file(request.path);
   apply_overrides(document, request);
-  const ApparatusKeys& apparatus = apparatus_of(document, request.path.string(), known);
+  const ApparatusKeys& apparatus = apparatus_of(document, request.path.string(), known, command);
   if (!find(document, "mix")) {
     throw InputError(fmt::format("{}: mix: missing key; allowed: a table [mix] or one of {}",
                                  describe(document.origin), quoted_list(mix_names())));

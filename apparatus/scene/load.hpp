@@ -29,8 +29,9 @@ struct Loaded {
   Values values;
 };
 
-/// Reads and checks a scene of one of the apparatus `known`. Throws InputError.
-Loaded load(const Request& request, std::span<const ApparatusKeys> known);
+/// Reads and checks a scene of one of the apparatus `known` that this command of tremie runs; empty: of any.
+/// Throws InputError.
+Loaded load(const Request& request, std::span<const ApparatusKeys> known, const std::string& command = "run");
 
 /// The top of the file: schema, apparatus, preset.
 Section top_section(const ApparatusKeys& apparatus);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "apparatus/slump_flow/slump_flow.hpp"
 #include "apparatus/registry/error_estimate.hpp"
 
 namespace tremie::scene {
@@ -58,9 +59,9 @@ Scene coarse_slump() {
 
 TEST(ErrorEstimate, CoarsensCellsAndFixedSteps) {
   Scene scene = coarse_slump();
-  std::get<slump_flow::Scene>(scene.test).model.time_step = 1e-3;
+  model_of(scene).time_step = 1e-3;
   const Scene coarser = coarsened(scene, 1.5);
-  const Model& model = std::get<slump_flow::Scene>(coarser.test).model;
+  const Model& model = std::any_cast<const slump_flow::Scene&>(coarser.test).model;
   EXPECT_DOUBLE_EQ(model.cell[0], 0.03);
   EXPECT_DOUBLE_EQ(model.cell[1], 0.015);
   EXPECT_DOUBLE_EQ(model.time_step.value(), 1.5e-3);

@@ -36,7 +36,7 @@ bool runs(const char* cell) {
 /// Points of the cone on such cells.
 double points_of(const char* cell) {
   const auto scene = scene::read_text(cone, "cone.toml", {std::string("model.cell=") + cell});
-  return static_cast<double>(scene::estimate(scene).points);
+  return static_cast<double>(scene::estimate(scene)->points);
 }
 
 // From 43,976 to 203,652 points of Mix A the peak grows by what a point costs, all told: its state sorted

@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "apparatus/icar_vane/icar_vane.hpp"
 #include "tests/apparatus/complaint.hpp"
 
 namespace tremie::scene {
@@ -16,7 +17,7 @@ const std::string mix_a = "apparatus = \"icar_vane\"\nmix = \"mix_a\"\n";
 const std::string curve = mix_a + "[test]\nspeeds = [\"0.3 rev/s\", \"0.1 rev/s\"]\n";
 
 icar_vane::Scene vane_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
-  return std::get<icar_vane::Scene>(read_text(text, "a.toml", overrides).test);
+  return std::any_cast<const icar_vane::Scene&>(read_text(text, "a.toml", overrides).test);
 }
 
 TEST(IcarVaneScene, DefaultsAreTheInstruments) {
@@ -85,8 +86,8 @@ TEST(IcarVaneScene, AResolvedSceneReadsBack) {
     const Scene first = read_text(text, "a.toml", {"model.space=plane"});
     const Scene second = read_text(first.resolved, "a.toml");
     EXPECT_EQ(read_text(second.resolved, "a.toml").resolved, second.resolved);
-    EXPECT_EQ(std::get<icar_vane::Scene>(first.test).speeds, std::get<icar_vane::Scene>(second.test).speeds);
-    EXPECT_EQ(std::get<icar_vane::Scene>(second.test).model.cell, (std::array{0.005, 0.005}));
+    EXPECT_EQ(std::any_cast<const icar_vane::Scene&>(first.test).speeds, std::any_cast<const icar_vane::Scene&>(second.test).speeds);
+    EXPECT_EQ(std::any_cast<const icar_vane::Scene&>(second.test).model.cell, (std::array{0.005, 0.005}));
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "apparatus/l_box/l_box.hpp"
 #include "tests/apparatus/complaint.hpp"
 
 namespace tremie::scene {
@@ -13,7 +14,7 @@ using test::says;
 const std::string mix_a = "apparatus = \"l_box\"\nmix = \"mix_a\"\n";
 
 l_box::Scene l_box_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
-  return std::get<l_box::Scene>(read_text(text, "a.toml", overrides).test);
+  return std::any_cast<const l_box::Scene&>(read_text(text, "a.toml", overrides).test);
 }
 
 TEST(LBoxScene, DefaultsAreTheStandards) {
@@ -68,7 +69,7 @@ TEST(LBoxScene, AResolvedSceneReadsBack) {
   const Scene first = read_text(mix_a, "a.toml", {"test.gate_speed=instant", "model.cell=[20 mm, 7 mm]"});
   const Scene second = read_text(first.resolved, "a.toml");
   EXPECT_EQ(read_text(second.resolved, "a.toml").resolved, second.resolved);
-  EXPECT_EQ(std::get<l_box::Scene>(second.test).model.cell, (std::array{0.02, 0.007}));
+  EXPECT_EQ(std::any_cast<const l_box::Scene&>(second.test).model.cell, (std::array{0.02, 0.007}));
 }
 
 TEST(LBoxScene, UsesSayWhatIsLeftOut) {

@@ -7,6 +7,7 @@
 #include <atomic>
 
 #include "apparatus/scene/resolved.hpp"
+#include "apparatus/slump_flow/slump_flow.hpp"
 #include "apparatus/registry/registry.hpp"
 #include "tests/apparatus/complaint.hpp"
 #include "tests/apparatus/temporary_folder.hpp"
@@ -25,7 +26,7 @@ const std::string thixotropic = mix_a + "[mix.thixotropy]\nstructuration_rate = 
 using test::complaint;
 using test::says;
 
-const slump_flow::Scene& slump(const Scene& scene) { return std::get<slump_flow::Scene>(scene.test); }
+const slump_flow::Scene& slump(const Scene& scene) { return std::any_cast<const slump_flow::Scene&>(scene.test); }
 
 TEST(SceneReader, DefaultsAreTheDocumentedOnes) {
   const Scene scene = read_text(thixotropic, "a.toml");
@@ -249,7 +250,8 @@ TEST(SceneReader, ResolvedScenesReadBackBitForBit) {
 
 TEST(SceneReader, TheTemplateIsAValidScene) {
   for (const auto& apparatus : all_apparatus()) {
-    const std::string text = write_template(apparatus);
+    if (apparatus.keys.command != "run") continue;
+    const std::string text = write_template(apparatus.keys);
     EXPECT_EQ(complaint(text), "") << text;
   }
 }
