@@ -194,7 +194,7 @@ TEST(SceneReader, PresetLiesUnderTheScene) {
   EXPECT_NEAR(paper.mix.K, 33.3e3, 100.0);
   EXPECT_EQ(paper.model.scheme, SchemeKind::explicit_usf);
   EXPECT_EQ(paper.model.shape, ShapeKind::gimp);
-  EXPECT_EQ(paper.model.regularisation, 5.0);
+  EXPECT_EQ(std::get<Papanastasiou>(paper.model.law).m, 5.0);
   EXPECT_EQ(paper.model.time_step, 1e-4);
   EXPECT_EQ(paper.model.space, SpaceKind::full);
   EXPECT_EQ(paper.duration, 20.0);
@@ -232,7 +232,7 @@ void expect_round_trip(const std::string& text, const std::vector<std::string>& 
   EXPECT_EQ(a.lift_speed, b.lift_speed);
   EXPECT_EQ(a.model.cell, b.model.cell);
   EXPECT_EQ(a.model.time_step, b.model.time_step);
-  EXPECT_EQ(a.model.regularisation, b.model.regularisation);
+  EXPECT_EQ(std::get<Papanastasiou>(a.model.law).m, std::get<Papanastasiou>(b.model.law).m);
   EXPECT_EQ(a.floor.coefficient, b.floor.coefficient);
   EXPECT_EQ(first.measured.source, second.measured.source);
   const Scene third = read_text(second.resolved, "a.toml");

@@ -53,7 +53,7 @@ struct Set {
     detail::carry_over_admm_state(old, ExactBingham{}, settings, body);
     lay_out_quadrature<Geometry>(body.grid, body.points, body.mix.tau_0, body.mix.K, body.quadrature);
     const auto v = body.nodes.v;
-    detail::pose(body, settings, {}, v, old_nodes, dt, problem);
+    detail::pose(body, ExactBingham{}, settings, {}, v, old_nodes, dt, problem);
     if constexpr (D == 3) {
       body.matrix_free.set_up(*problem, settings.admm.most_band_operations);
       body.matrix_free.prepare(*problem, 2.5 * body.mix.mu);
@@ -126,7 +126,7 @@ void law(benchmark::State& run) {
     Eigen::VectorXd R;
     for (auto _ : run)
       detail::pass_over_cells(*set.problem, ExactBingham{}, set.settings.admm, {r, b.mix.mu}, b.v, true,
-                              b.matrix_free, b.admm_state.space, R);
+                              b.matrix_free, b.admm_state.packed, R);
   } else {
     const auto stress = [&](int c, int k, const Vec<Geometry::n_strain>& q) -> Vec<Geometry::n_strain> {
       return b.mix.mu * q + b.admm_state.stress[c][k] + r * (q - b.admm_state.rate[c][k]);

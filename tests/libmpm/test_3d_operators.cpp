@@ -4,6 +4,7 @@
 #include <omp.h>
 
 #include "apparatus/verification/references/bodies.hpp"
+#include "libmpm/implicit/pose.hpp"
 
 namespace tremie {
 namespace {
@@ -161,7 +162,7 @@ TEST(MatrixFreeSystem, ProductsKnowClosedContacts) {
   settings.wall_gap = 0.01;
   const auto v = body.nodes.v;
   std::optional<YieldProblem<ThreeD>> problem;
-  detail::pose(body, settings, wall, v, {}, 1e-3, problem);
+  detail::pose(body, YieldLaw{}, settings, wall, v, {}, 1e-3, problem);
   auto& contact = problem->contact;
   for (std::size_t p = 0; p < contact.size(); ++p) contact[p].active = p % 3 != 0;
   ASSERT_GE(contact.size(), 100u);

@@ -5,6 +5,7 @@
 
 #include <random>
 
+#include "libmpm/explicit/wall_fill.hpp"
 #include "tests/libmpm/explicit_schemes.hpp"
 
 namespace tremie {

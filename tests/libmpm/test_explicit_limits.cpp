@@ -86,9 +86,9 @@ std::vector<char> fixed_by_walls(const std::array<Axis, D>& axes, const Shape<D>
   std::vector<char> fixed(power(tile_span, D) * D, 0);
   for (int node = 0; node < power(tile_span, D); ++node)
     for (int d = 0; d < D; ++d) {
-      const int node = node / stride<D>(tile_span, d) % tile_span - 1;
-      const bool wall = (axes[d].wall_low() && node == shape.low_wall()) ||
-                        (axes[d].wall_high() && node == axes[d].n_cells + 1);
+      const int at = node / stride<D>(tile_span, d) % tile_span - 1;
+      const bool wall = (axes[d].wall_low() && at == shape.low_wall()) ||
+                        (axes[d].wall_high() && at == axes[d].n_cells + 1);
       for (int e = 0; e < D && wall; ++e)
         if (e == d || axes[d].low == FaceKind::no_slip) fixed[node * D + e] = 1;
     }

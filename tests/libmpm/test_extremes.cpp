@@ -4,6 +4,7 @@
 #include <omp.h>
 
 #include "apparatus/verification/references/bodies.hpp"
+#include "libmpm/implicit/step_size.hpp"
 
 namespace tremie {
 namespace {

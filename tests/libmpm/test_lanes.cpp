@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "libmpm/constitutive/simd_laws.hpp"
+#include "libmpm/constitutive/yield_law.hpp"
 #include "libmpm/explicit/tiled_particles.hpp"
 #include "libmpm/geometry/gradients.hpp"
 #include "libmpm/transfer/simd_sums.hpp"

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "apparatus/verification/references/bodies.hpp"
+#include "libmpm/implicit/step_size.hpp"
 
 namespace tremie {
 namespace {

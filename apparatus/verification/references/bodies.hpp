@@ -77,7 +77,7 @@ bool all_finite(const Points<D>& points) {
 /// A box of points, n across each cell in each direction, without pressure unless `pressure_at` says
 /// otherwise.
 template <class Geometry, class Pressure>
-void fill_box(ImplicitBody<Geometry>& body, const Vec<Geometry::dim>& low, const Vec<Geometry::dim>& high, int per_cell,
+void fill_box(Body<Geometry>& body, const Vec<Geometry::dim>& low, const Vec<Geometry::dim>& high, int per_cell,
               Pressure pressure_at) {
   std::array<int, Geometry::dim> n;
   for (int d = 0; d < Geometry::dim; ++d)
@@ -86,7 +86,7 @@ void fill_box(ImplicitBody<Geometry>& body, const Vec<Geometry::dim>& low, const
       low, high, n, body.mix.density, body.mix.K, [](const auto&) { return true; }, pressure_at, body.points);
 }
 template <class Geometry>
-void fill_box(ImplicitBody<Geometry>& body, const Vec<Geometry::dim>& low, const Vec<Geometry::dim>& high, int per_cell) {
+void fill_box(Body<Geometry>& body, const Vec<Geometry::dim>& low, const Vec<Geometry::dim>& high, int per_cell) {
   fill_box(body, low, high, per_cell, [](const auto&) { return 0.0; });
 }
 

@@ -5,6 +5,7 @@
 
 #include <omp.h>
 
+#include "apparatus/slump_flow/reading.hpp"
 #include "apparatus/slump_flow/set_up.hpp"
 #include "apparatus/verification/references/bodies.hpp"
 #include "apparatus/verification/references/lubrication.hpp"
