@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "apparatus/common/model.hpp"
+#include "apparatus/common/outcome.hpp"
 #include "apparatus/scene/keys.hpp"
 #include "apparatus/scene/load.hpp"
-#include "apparatus/common/outcome.hpp"
 #include "rheometer/reference/material_cell.hpp"
 
 namespace tremie::cell {

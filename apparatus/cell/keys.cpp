@@ -3,12 +3,12 @@
 #include <stdexcept>
 
 #include "apparatus/cell/cell.hpp"
+#include "apparatus/common/law_keys.hpp"
+#include "apparatus/common/shared_keys.hpp"
 #include "apparatus/scene/document.hpp"
 #include "apparatus/scene/input_error.hpp"
 #include "apparatus/scene/load.hpp"
 #include "apparatus/scene/resolved.hpp"
-#include "apparatus/common/law_keys.hpp"
-#include "apparatus/common/shared_keys.hpp"
 #include "rheometer/records/torque_record.hpp"
 
 namespace tremie::cell {
@@ -60,13 +60,12 @@ Section test_section() {
 Section model_section() {
   Section section{.name = "model", .help = "How it is computed."};
   section.keys = scene::law_model_keys();
-  section.keys.push_back(
-      {.name = "time_step",
-       .dimension = Dimension::time,
-       .range = scene::positive,
-       .words = {"auto"},
-       .fallback = "auto",
-       .help = "of the flocculation's update; auto: about 2000 over the history"});
+  section.keys.push_back({.name = "time_step",
+                          .dimension = Dimension::time,
+                          .range = scene::positive,
+                          .words = {"auto"},
+                          .fallback = "auto",
+                          .help = "of the flocculation's update; auto: about 2000 over the history"});
   return section;
 }
 

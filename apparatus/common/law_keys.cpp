@@ -56,9 +56,8 @@ std::vector<std::string> mix_keys_of_laws() {
 template <class L>
 bool has_its_mix_keys(const Values& values, const L& law) {
   return law.viscous != values.has(plastic_viscosity) &&
-         std::all_of(law.keys().begin(), law.keys().end(), [&](const auto& key) {
-           return section_of(key.name) != "mix" || values.has(key.name);
-         });
+         std::all_of(law.keys().begin(), law.keys().end(),
+                     [&](const auto& key) { return section_of(key.name) != "mix" || values.has(key.name); });
 }
 
 }  // namespace
@@ -107,7 +106,8 @@ void settle_law(Values& values) {
   if (other && values.has(plastic_viscosity)) {
     if (values.layer(plastic_viscosity) > values.layer(*other)) {
       for (const std::string& key : others)
-        values.drop_beside(key, plastic_viscosity, "has no meaning beside plastic_viscosity; give one or the other");
+        values.drop_beside(key, plastic_viscosity,
+                           "has no meaning beside plastic_viscosity; give one or the other");
     } else {
       values.drop_beside(plastic_viscosity, *other,
                          "has no meaning beside " + name_of(*other) + "; give one or the other");
@@ -123,7 +123,8 @@ void settle_law(Values& values) {
   });
   if (!found)
     values.fail("model.yield", "\"" + values.word("model.yield") + "\" does not go with " +
-                                   (other ? *other : std::string(plastic_viscosity)) + "; allowed: " + allowed);
+                                   (other ? *other : std::string(plastic_viscosity)) +
+                                   "; allowed: " + allowed);
 }
 
 YieldLaw read_law(const Values& values) {

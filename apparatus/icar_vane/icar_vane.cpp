@@ -171,9 +171,7 @@ auto with_section(const Scene& scene, Use use) {
 Outcome run(const Scene& scene, const Observer& observer) {
   refuse_what_has_no_engine(scene);
   omp_set_num_threads(scene.threads);
-  return with_section(scene, [&](const auto& section) {
-    return run_section(scene, section, observer);
-  });
+  return with_section(scene, [&](const auto& section) { return run_section(scene, section, observer); });
 }
 
 Estimate estimate(const Scene& scene) {

@@ -14,10 +14,13 @@ constexpr double torques_must_agree = 0.01;  ///< relative to the torque on the 
 
 /// One row of the comparison: "yield stress, dynamic    54 Pa    57.2 Pa   +5.9 %".
 std::string row(const char* what, double input, std::optional<double> read, const char* unit) {
-  const std::string left = fmt::format("{:<26}{:>12}", what, fmt::format("{:.4g} {}", input, unit));
+  const std::string value = std::isfinite(input) ? fmt::format("{:.4g} {}", input, unit) : "-";
+  const std::string left = fmt::format("{:<26}{:>12}", what, value);
   if (!read || !std::isfinite(*read)) return left + fmt::format("{:>16}", "-");
   const std::string right = fmt::format("{}{:>16}", left, fmt::format("{:.4g} {}", *read, unit));
-  return input == 0.0 ? right : right + fmt::format("   {:+.1f} %", 100.0 * (*read / input - 1.0));
+  return input == 0.0 || !std::isfinite(input)
+             ? right
+             : right + fmt::format("   {:+.1f} %", 100.0 * (*read / input - 1.0));
 }
 
 void add_comparison(const icar_vane::Scene& scene, const icar_vane::Results& r,
@@ -60,7 +63,8 @@ void add_agreement(const icar_vane::Outcome& outcome, std::vector<std::string>& 
 VaneInput vane_input(const icar_vane::Scene& scene) {
   VaneInput in;
   in.yield_stress = in.static_yield_stress = scene.mix.tau_0;
-  in.plastic_viscosity = scene.mix.mu;
+  const bool bingham = !is_viscous(scene.model.law) || newtonian(scene.model.law) > 0.0;
+  in.plastic_viscosity = bingham ? scene.mix.mu : std::nan("");
   if (!scene.mix.thixotropy) return in;
   const Thixotropy& t = *scene.mix.thixotropy;
   in.flocculation = flocculation_after_rest(t.initial_flocculation, t, scene.mix.tau_0, scene.rest);

@@ -12,7 +12,8 @@ namespace tremie::scene {
 
 /// The concrete as the vane meets it.
 struct VaneInput {
-  double yield_stress = 0.0, plastic_viscosity = 0.0;   ///< [Pa], [Pa s]
+  double yield_stress = 0.0;                            ///< [Pa]
+  double plastic_viscosity = 0.0;                       ///< [Pa s]; not a number for a law that has none
   double static_yield_stress = 0.0;                     ///< (1 + lambda) tau_0 after the rest [Pa]
   std::optional<double> flocculation = {}, alpha = {};  ///< lambda after the rest
 };

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apparatus/icar_vane/lines.hpp"
 #include "apparatus/common/outcome_parts.hpp"
+#include "apparatus/icar_vane/lines.hpp"
 
 namespace tremie::scene {
 namespace {
@@ -21,7 +21,7 @@ constexpr const char* time_label = "time since the vane began to turn / s";
 std::vector<Result> input_of(const icar_vane::Scene& scene) {
   const VaneInput in = vane_input(scene);
   return {{"yield_stress_Pa", in.yield_stress},
-          {"plastic_viscosity_Pa_s", in.plastic_viscosity},
+          {"plastic_viscosity_Pa_s", number(in.plastic_viscosity)},
           {"flocculation_start", number(in.flocculation)},
           {"static_yield_stress_Pa", in.static_yield_stress},
           {"destructuration", number(in.alpha)}};

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "apparatus/icar_vane/icar_vane.hpp"
 #include "apparatus/common/outcome.hpp"
+#include "apparatus/icar_vane/icar_vane.hpp"
 
 namespace tremie::scene {
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "rheometer/fits/apparent_alpha.hpp"
+#include "rheometer/reference/couette_flow.hpp"
 #include "rheometer/reference/references.hpp"
 #include "rheometer/reference/reiner_riwlin.hpp"
 #include "rheometer/reference/thixotropic_couette.hpp"
@@ -53,11 +54,19 @@ std::optional<ReinerRiwlin> reported_bingham(const std::vector<CurvePoint>& curv
   return ReinerRiwlin{b.tau_0, b.mu};
 }
 
+/// Whether the viscous part is the mix's plastic viscosity, as Reiner-Riwlin's equations have it.
+bool is_bingham(const Scene& scene) {
+  return !is_viscous(scene.model.law) || newtonian(scene.model.law) > 0.0;
+}
+
 /// Torque at the end between solid cylinders, by the rheometer's references; empty where it takes SUNDIALS
 /// and the build has none.
 std::optional<double> couette_reference(const Scene& scene, const Instrument& instrument) {
   const double omega = angular_speed(std::abs(scene.speed));
   Bingham bingham{scene.mix.tau_0, scene.mix.mu};
+  if (!is_bingham(scene) && scene.mix.thixotropy) return std::nullopt;
+  if (!is_bingham(scene))
+    return couette_torque(scene.model.law, scene.mix.tau_0, scene.mix.mu, omega, instrument);
   if (!scene.mix.thixotropy) return reiner_riwlin(bingham, omega, instrument).torque;
   CouetteFlow flow;
   flow.bingham = bingham;
@@ -112,8 +121,10 @@ void read_decay(Outcome& outcome) {
 std::optional<double> apparent_flocculation(const Scene& scene, double torque, double speed) {
   if (!scene.mix.thixotropy || speed == 0.0) return std::nullopt;
   const Instrument instrument = instrument_of(scene.vane);
+  const double omega = angular_speed(std::abs(speed));
   const double offset =
-      reiner_riwlin({scene.mix.tau_0, scene.mix.mu}, angular_speed(std::abs(speed)), instrument).torque;
+      is_bingham(scene) ? reiner_riwlin({scene.mix.tau_0, scene.mix.mu}, omega, instrument).torque
+                        : couette_torque(scene.model.law, scene.mix.tau_0, scene.mix.mu, omega, instrument);
   return apparent_lambda(std::abs(torque), offset, scene.mix.tau_0, instrument);
 }
 
@@ -167,7 +178,7 @@ void check_torques_agree(const Scene& scene, Outcome& outcome) {
 void check_against_reference(const Scene& scene, Outcome& outcome) {
   const auto& reference = outcome.results.torque_couette_reference;
   const Sample& last = outcome.series.back();
-  const bool same_problem = scene.model.space == SpaceKind::couette && std::holds_alternative<ExactBingham>(scene.model.law);
+  const bool same_problem = scene.model.space == SpaceKind::couette && is_exact(scene.model.law);
   if (!reference || !same_problem || last.time < settled) return;
   const double off = last.torque / *reference - 1.0;
   if (std::abs(off) > agreement_with_reference)

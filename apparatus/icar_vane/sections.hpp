@@ -7,8 +7,8 @@
 
 #include "apparatus/common/step_settings.hpp"
 #include "apparatus/icar_vane/icar_vane.hpp"
-#include "libmpm/particles/seeding.hpp"
 #include "libmpm/implicit/particle_splitting.hpp"
+#include "libmpm/particles/seeding.hpp"
 
 namespace tremie::icar_vane {
 

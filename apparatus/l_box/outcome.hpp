@@ -1,7 +1,7 @@
 #pragma once
 
-#include "apparatus/l_box/l_box.hpp"
 #include "apparatus/common/outcome.hpp"
+#include "apparatus/l_box/l_box.hpp"
 
 namespace tremie::scene {
 

@@ -90,7 +90,7 @@ void read_profile(const Body<Geometry>& body, const Scene& scene, Results& r) {
   const double width = computed_width(scene);
   for (double x = 0.0; x < box.channel_length - 0.5 * step; x += step)
     r.profile.push_back({x + 0.5 * step, depth<Geometry>(body.points, box.column_length + x,
-                                                      box.column_length + x + step, row, width)});
+                                                         box.column_length + x + step, row, width)});
   double volume = 0.0;
   for (std::size_t p = 0; p < body.points.size(); ++p)
     if (body.points.x[p][0] >= box.column_length && body.points.x[p][Geometry::up] < box.channel_height)

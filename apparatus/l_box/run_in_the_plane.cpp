@@ -3,6 +3,8 @@
 
 namespace tremie::l_box {
 
-Outcome run_in_the_plane(const Scene& scene, const Observer& observer) { return run_in<PlaneStrain>(scene, observer); }
+Outcome run_in_the_plane(const Scene& scene, const Observer& observer) {
+  return run_in<PlaneStrain>(scene, observer);
+}
 
 }  // namespace tremie::l_box

@@ -97,7 +97,8 @@ inline void add_bars(const Scene& scene, double spacing, std::vector<BoundaryPoi
 /// below it, along which it slips, half a cell between points; and the bars.
 template <class Geometry>
 std::vector<BoundaryPoint<Geometry::dim>> walls_inside(const Scene& scene,
-                                                    const std::array<Axis, Geometry::dim>& axes, double time) {
+                                                       const std::array<Axis, Geometry::dim>& axes,
+                                                       double time) {
   constexpr int D = Geometry::dim, up = Geometry::up;
   const Box& box = scene.box;
   const double spacing = 0.5 * axes[up].h;

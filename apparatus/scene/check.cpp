@@ -217,7 +217,9 @@ class Checker {
 
   /// Whether a scene that leaves the key out is incomplete. What another key of the section decides was read before.
   bool is_needed(const Key& key, const std::string& place) const {
-    const auto there = [&](const std::string& name) { return !name.empty() && values_.has(dotted(place, name)); };
+    const auto there = [&](const std::string& name) {
+      return !name.empty() && values_.has(dotted(place, name));
+    };
     if (there(key.needed_with)) return true;
     return key.required && applies(key, place) && !there(key.needed_without);
   }
@@ -231,8 +233,10 @@ class Checker {
   }
 
   void missing(const Key& key, const std::string& full, const Origin& origin) {
+    const bool bare = key.kind == Kind::number || key.kind == Kind::integer || key.kind == Kind::boolean;
+    const std::string quote = bare ? "" : "\"";
     const std::string example =
-        key.example.empty() ? "" : fmt::format(", like {} = \"{}\"", key.name, key.example);
+        key.example.empty() ? "" : fmt::format(", like {} = {}{}{}", key.name, quote, key.example, quote);
     const std::string when =
         key.only_with ? fmt::format(" with {} = {}", key.only_with->key, join(key.only_with->words)) : "";
     report(origin, full, fmt::format("missing key{}; allowed: {}{}", when, allowed_text(key), example));

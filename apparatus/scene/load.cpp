@@ -74,8 +74,8 @@ const ApparatusKeys& apparatus_of(const Node& document, const std::string& file,
   if (found != known.end() && runs(*found)) return *found;
   const std::string given = name ? *name : "";
   if (found != known.end())
-    throw InputError(fmt::format("{}: apparatus: a scene of \"{}\" is run by `{} {}`", describe(node->origin),
-                                 given, found->command, file));
+    throw InputError(fmt::format("{}: apparatus: a scene of \"{}\" is run by `tremie {} {}`",
+                                 describe(node->origin), given, found->command, file));
   throw InputError(fmt::format("{}: apparatus: \"{}\" is not allowed; allowed: {} (nearest: \"{}\")",
                                describe(node->origin), given, quoted_list(allowed), nearest(given, allowed)));
 }

@@ -43,7 +43,8 @@ Outcome run_implicit_in(const Scene& scene, const Observer& observer) {
           },
       .advance =
           [&](Checks& checks, Cost& cost) {
-            const StepReport step = implicit_step(body, scene.model.law, settings, cone_gone ? RigidWall<D>{} : wall);
+            const StepReport step =
+                implicit_step(body, scene.model.law, settings, cone_gone ? RigidWall<D>{} : wall);
             flows = step.bulk_speed > creeping;
             test_run::count_step(body, step, checks, cost);
             test_run::watch_fixed_step(body, scene.model, step, checks);

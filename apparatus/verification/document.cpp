@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "apparatus/report/process.hpp"
-#include "libmpm/io/write_error.hpp"
 #include "apparatus/verification/references/study_output.hpp"
+#include "libmpm/io/write_error.hpp"
 
 namespace tremie::verification {
 namespace {

@@ -9,9 +9,9 @@
 
 #include "apparatus/cell/cell.hpp"
 #include "apparatus/registry/registry.hpp"
+#include "apparatus/verification/case.hpp"
 #include "rheometer/reference/instrument.hpp"
 #include "rheometer/reference/reiner_riwlin.hpp"
-#include "apparatus/verification/case.hpp"
 
 namespace tremie::verification {
 namespace {

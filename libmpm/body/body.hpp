@@ -19,15 +19,15 @@ struct Body {
   Vec<D> gravity = Vec<D>::Zero();  ///< [m/s^2]
   Points<D> points;
   ActiveGrid<D> grid;
-  Motion<Geometry> motion{};                  ///< of the points
+  Motion<Geometry> motion{};               ///< of the points
   WallVelocities<D> walls{};               ///< of the walls at the ends of the axes
   std::vector<BoundaryPoint<D>> boundary;  ///< walls inside the grid
   double time = 0.0, dt = 0.0;             ///< [s]; dt of the last step
 
-  NodalState<D> nodes;    ///< of the last step, velocities at its start
-  std::vector<Vec<D>> v;  ///< nodal velocities at the end of the last step [m/s]
-  double dissipation = 0.0;          ///< power of the stresses in the last step [W], if asked for
-  std::vector<Vec<D>> wall_force;    ///< of the flat walls on each node in the last step [N], if asked for
+  NodalState<D> nodes;             ///< of the last step, velocities at its start
+  std::vector<Vec<D>> v;           ///< nodal velocities at the end of the last step [m/s]
+  double dissipation = 0.0;        ///< power of the stresses in the last step [W], if asked for
+  std::vector<Vec<D>> wall_force;  ///< of the flat walls on each node in the last step [N], if asked for
 };
 
 }  // namespace tremie

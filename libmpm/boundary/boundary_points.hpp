@@ -33,8 +33,8 @@ struct PenaltyPoint {
 /// The boundary points that lie in active cells.
 template <int D>
 std::vector<PenaltyPoint<D>> find_penalty_points(const ActiveGrid<D>& grid, const NodalState<D>& nodes,
-                                             const std::vector<BoundaryPoint<D>>& wall, double dt,
-                                             double stiffness) {
+                                                 const std::vector<BoundaryPoint<D>>& wall, double dt,
+                                                 double stiffness) {
   std::vector<PenaltyPoint<D>> bound;
   for (std::size_t k = 0; k < wall.size(); ++k) {
     const Index<D> cell = detail::cell_of<D>(grid.axes, wall[k].x);
@@ -66,8 +66,8 @@ Vec<D> wall_force(const PenaltyPoint<D>& b, const std::vector<std::array<int, po
 
 template <int D>
 void add_penalty_forces(const std::vector<PenaltyPoint<D>>& bound,
-                      const std::vector<std::array<int, power(3, D)>>& cell_nodes,
-                      const std::vector<Vec<D>>& v, Eigen::VectorXd& R) {
+                        const std::vector<std::array<int, power(3, D)>>& cell_nodes,
+                        const std::vector<Vec<D>>& v, Eigen::VectorXd& R) {
   for (const PenaltyPoint<D>& b : bound) {
     const Vec<D> force = wall_force<D>(b, cell_nodes, v);
     for (int i = 0; i < power(3, D); ++i) R.segment<D>(cell_nodes[b.cell][i] * D) += b.N[i] * force;
@@ -87,8 +87,8 @@ void add_penalty_stiffness(const std::vector<PenaltyPoint<D>>& bound, BlockSyste
 
 template <int D>
 double penalty_energy(const std::vector<PenaltyPoint<D>>& bound,
-                    const std::vector<std::array<int, power(3, D)>>& cell_nodes,
-                    const std::vector<Vec<D>>& v) {
+                      const std::vector<std::array<int, power(3, D)>>& cell_nodes,
+                      const std::vector<Vec<D>>& v) {
   double energy = 0.0;
   for (const PenaltyPoint<D>& b : bound) {
     Vec<D> u = b.velocity;

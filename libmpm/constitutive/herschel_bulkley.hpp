@@ -39,9 +39,10 @@ struct HerschelBulkley {
   static constexpr bool exact = true, viscous = true;
   static constexpr std::string_view word = "exact";
   static constexpr std::array<LawKey<HerschelBulkley>, 2> keys() {
-    return {{{"mix.consistency", &HerschelBulkley::k, "Pa.s^n", "", "12 Pa.s^n",
-              "k of Herschel-Bulkley, with flow_index in place of plastic_viscosity"},
-             {"mix.flow_index", &HerschelBulkley::n, "", "", "1.4", "n of Herschel-Bulkley", 0.2, 2.0, false}}};
+    return {
+        {{"mix.consistency", &HerschelBulkley::k, "Pa.s^n", "", "12 Pa.s^n",
+          "k of Herschel-Bulkley, with flow_index in place of plastic_viscosity"},
+         {"mix.flow_index", &HerschelBulkley::n, "", "", "1.4", "n of Herschel-Bulkley", 0.2, 2.0, false}}};
   }
 
   double newtonian() const { return n == 1.0 ? k : 0.0; }
@@ -106,7 +107,8 @@ struct RegularisedHerschelBulkley {
   double potential(double gamma_dot, double tau_y) const {
     const double x = gamma_dot * gamma_dot, e = 1.0 / (m * m), half = 0.5 * (n + 1.0);
     if (n == 1.0) return Papanastasiou{m}.potential(gamma_dot, tau_y);
-    return Papanastasiou{m}.potential(gamma_dot, tau_y) + k * (std::pow(x + e, half) - std::pow(e, half)) / (n + 1.0);
+    return Papanastasiou{m}.potential(gamma_dot, tau_y) +
+           k * (std::pow(x + e, half) - std::pow(e, half)) / (n + 1.0);
   }
   /// f grows, so the root is bracketed; Newton's method, and the middle where it would leave the bracket.
   double prox(double a, double tau_y, double r) const {
@@ -123,7 +125,9 @@ struct RegularisedHerschelBulkley {
     return d;
   }
   double stress(double gamma_dot, double tau_y) const { return secant(gamma_dot, tau_y) * gamma_dot; }
-  double dual_limit(double gamma_dot, double tau_y) const { return n == 1.0 ? tau_y : stress(gamma_dot, tau_y); }
+  double dual_limit(double gamma_dot, double tau_y) const {
+    return n == 1.0 ? tau_y : stress(gamma_dot, tau_y);
+  }
   double viscosity(double gamma_dot) const { return power(gamma_dot); }
   double largest_secant(double tau_y) const { return m * tau_y + std::max(power(0.0), power(fastest_rate)); }
 };

@@ -42,7 +42,7 @@ namespace tremie {
 template <class L>
 struct LawKey {
   std::string_view name;      ///< dotted, "model.regularisation"
-  double L::* member;         ///< SI
+  double L::*member;          ///< SI
   std::string_view unit;      ///< SI unit as the scene writes it; empty: a plain number
   std::string_view fallback;  ///< as the scene would write it; empty: must be given
   std::string_view example;

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <optional>
 
-#include "libmpm/explicit/tiled_particles.hpp"
 #include "libmpm/body/body.hpp"
 #include "libmpm/explicit/stability_limits.hpp"
+#include "libmpm/explicit/tiled_particles.hpp"
 
 namespace tremie {
 

@@ -20,8 +20,8 @@
 
 #include <bit>
 
-#include "libmpm/geometry/gradients.hpp"
 #include "libmpm/explicit/body.hpp"
+#include "libmpm/geometry/gradients.hpp"
 #include "libmpm/transfer/simd_sums.hpp"
 
 namespace tremie::detail {

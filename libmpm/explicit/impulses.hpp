@@ -124,9 +124,9 @@ void enter_controls(ExplicitState<Geometry>& state, const Tile<Geometry::dim>& t
 /// Of the points first ... last - 1 that are near the wall those that may touch it; it must see half a cell
 /// further than `gap_min`.
 template <class Geometry>
-std::vector<WallPoint<Geometry::dim>> find_wall_points(const RigidWall<Geometry::dim>& wall, double time, double dt,
-                                                    double gap_min, std::size_t first, std::size_t last,
-                                                    ExplicitState<Geometry>& state) {
+std::vector<WallPoint<Geometry::dim>> find_wall_points(const RigidWall<Geometry::dim>& wall, double time,
+                                                       double dt, double gap_min, std::size_t first,
+                                                       std::size_t last, ExplicitState<Geometry>& state) {
   constexpr int D = Geometry::dim;
   std::vector<WallPoint<D>> touching;
   const auto& axes = state.grid.axes;
@@ -182,7 +182,7 @@ void push_off_wall(const RigidWall<Geometry::dim>& wall, double time, double dt,
   state.grid.crew->run([&](int s) {
     const auto part = static_cast<std::size_t>(s);
     touching[part] = find_wall_points<Geometry>(wall, time, dt, gap_min, near * part / parts,
-                                             near * (part + 1) / parts, state);
+                                                near * (part + 1) / parts, state);
   });
   for (int sweep = 0; sweep < wall_sweeps; ++sweep)
     for (auto& part : touching)

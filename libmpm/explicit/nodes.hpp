@@ -112,8 +112,9 @@ TwoNodes for_two(const Vec<D>& a) {
 
 /// Velocities of block b from the momenta (with the impulses of the stresses already in them), and gravity.
 template <class Geometry>
-void velocities_from_sums(const Body<Geometry>& body, double friction, const Vec<Geometry::dim>& gravity_impulse,
-                          std::size_t b, ExplicitState<Geometry>& state) {
+void velocities_from_sums(const Body<Geometry>& body, double friction,
+                          const Vec<Geometry::dim>& gravity_impulse, std::size_t b,
+                          ExplicitState<Geometry>& state) {
   constexpr int D = Geometry::dim;
   const TwoNodes pull = for_two<D>(gravity_impulse);
   const auto velocity = [&pull](const TwoNodes& total, const TwoNodes& inverse) {

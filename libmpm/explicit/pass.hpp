@@ -4,10 +4,10 @@
 // scheme asks for. Between the sums over nodes, which go point by point, everything is done for eight
 // points at once.
 
+#include "libmpm/explicit/cell_pressures.hpp"
+#include "libmpm/explicit/gather.hpp"
 #include "libmpm/explicit/passes.hpp"
 #include "libmpm/geometry/gradients.hpp"
-#include "libmpm/explicit/gather.hpp"
-#include "libmpm/explicit/cell_pressures.hpp"
 #include "libmpm/transfer/single_sums.hpp"
 
 namespace tremie::detail {
@@ -21,7 +21,7 @@ struct StrainRate {
 /// slope[b][a] = dv_a/dx_b; v_0 and x_0 the first components of velocity and place.
 template <class Geometry, class Lanes, std::size_t n>
 [[gnu::always_inline]] inline StrainRate<Geometry, Lanes> strain_rate(const Lanes (&slope)[Geometry::dim][n],
-                                                                   const Lanes& v_0, const Lanes& x_0) {
+                                                                      const Lanes& v_0, const Lanes& x_0) {
   constexpr int D = Geometry::dim;
   Lanes L[D][D];
   for (int a = 0; a < D; ++a)
@@ -83,7 +83,7 @@ struct LaneStress {
 
 template <class Geometry, class Lanes>
 LaneStress<Geometry::dim, Lanes> stress_of(const StrainRate<Geometry, Lanes>& rate, const Lanes& viscosity,
-                                        const Lanes& pressure) {
+                                           const Lanes& pressure) {
   Lanes s[Geometry::n_strain];
   for (int k = 0; k < Geometry::n_strain; ++k) s[k] = rate.q[k] * viscosity;
   LaneStress<Geometry::dim, Lanes> stress;
@@ -162,8 +162,8 @@ void move_group(const std::array<Axis, D>& axes, const StencilFrame<D>& frame, c
 /// apart. affine[b][a]: its affine velocities, but with FLIP.
 template <Pass pass, class Geometry>
 void scatter_points(bool flip, bool apart, double impulse_dt, const Weights<Geometry::dim>& weights,
-                    const LaneStress<Geometry::dim, Octet>& stress, const Octet (&affine)[Geometry::dim][4], int n,
-                    const LanePoints<Geometry::dim>& points, std::size_t g, Cube<Geometry::dim>& sums,
+                    const LaneStress<Geometry::dim, Octet>& stress, const Octet (&affine)[Geometry::dim][4],
+                    int n, const LanePoints<Geometry::dim>& points, std::size_t g, Cube<Geometry::dim>& sums,
                     Cube<Geometry::dim>& forces) {
   constexpr int D = Geometry::dim;
   constexpr bool hooped = pass.stress && std::is_same_v<Geometry, Axisymmetric>;
@@ -228,7 +228,7 @@ struct TilePass {
   TileRows rows;            ///< that they have reached
   const HeldCells<D>* held;
 
-  bool cells;                                   ///< pressures go by the cell, and there are any in this pass
+  bool cells;  ///< pressures go by the cell, and there are any in this pass
   PressureCells<Geometry, Node>&before, &pressed;  ///< cells of the points as they were, and as they push
   const GroupCells* entered;  ///< pressure cells of each group, where `before` has been read
   const StencilFrame<D>& frame;
@@ -311,7 +311,7 @@ void visit_group(TilePass<pass, Geometry, Law, NodeLanes>& in, std::size_t g) {
   if (in.cells) push_cells(in, g, n, resistance.pressure, cell);
   in.rows |= rows_reached<D>(weights, n);
   scatter_points<pass, Geometry>(flip, &in.forces != &in.sums, in.input.impulse_dt, weights, stress,
-                              fields.moment, n, in.points, g, in.sums, in.forces);
+                                 fields.moment, n, in.points, g, in.sums, in.forces);
 }
 
 /// All groups of a tile.
@@ -355,27 +355,27 @@ PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& 
     return PressureCells<Geometry, Node>(grid.axes, tile.at, frame, settings.stress, held, wanted);
   };
   PressureCells<Geometry, Node> before = no_cells(cell_pressure),
-                             after = no_cells(cell_pressure && pressed_anew);
+                                after = no_cells(cell_pressure && pressed_anew);
   LaneSums reduced;
   TilePass<pass, Geometry, Law, Node> in{.mix = mix,
-                                      .law = law,
-                                      .settings = settings,
-                                      .input = input,
-                                      .state = state,
-                                      .tile = tile,
-                                      .points = state.points,
-                                      .v = v,
-                                      .v_start = v_start,
-                                      .sums = sums,
-                                      .forces = *forces,
-                                      .rows = 0,
-                                      .held = held,
-                                      .cells = cell_pressure,
-                                      .before = before,
-                                      .pressed = pressed_anew ? after : before,
-                                      .entered = nullptr,
-                                      .frame = frame,
-                                      .reduced = reduced};
+                                         .law = law,
+                                         .settings = settings,
+                                         .input = input,
+                                         .state = state,
+                                         .tile = tile,
+                                         .points = state.points,
+                                         .v = v,
+                                         .v_start = v_start,
+                                         .sums = sums,
+                                         .forces = *forces,
+                                         .rows = 0,
+                                         .held = held,
+                                         .cells = cell_pressure,
+                                         .before = before,
+                                         .pressed = pressed_anew ? after : before,
+                                         .entered = nullptr,
+                                         .frame = frame,
+                                         .reduced = reduced};
   static thread_local std::vector<GroupCells> entered;
   if (in.cells && pass.gather) read_pressure_cells(in, entered);
   visit_groups(in);

@@ -25,8 +25,9 @@ inline Singles in_single(const std::vector<Octet>& of, const GroupPair& pair) {
 /// Updates the state of a pair, gives its pressures to their cells and its stress back. The stress has the
 /// pressure where that does not go by the cell.
 template <Pass pass, class Geometry, class Law>
-LaneStress<Geometry::dim, Singles> press_pair(TilePass<pass, Geometry, Law, SingleNode>& in, const GroupPair& pair,
-                                           const SingleFields<Geometry::dim>& read) {
+LaneStress<Geometry::dim, Singles> press_pair(TilePass<pass, Geometry, Law, SingleNode>& in,
+                                              const GroupPair& pair,
+                                              const SingleFields<Geometry::dim>& read) {
   constexpr int D = Geometry::dim;
   auto& points = in.points;
   const GroupCells cell[2] = {cells_of_group(in, pair.g[0]), cells_of_group(in, pair.g[1])};
@@ -139,11 +140,12 @@ void press_batch(TilePass<pass, Geometry, Law, SingleNode>& in, Batch batch) {
   for (std::size_t i = 0; i < batch.size(); ++i)
     weigh_pair<kind, WeighedFor::stress>(in.frame, in.points, batch[i], weights[i]);
   for (std::size_t i = 0; i < batch.size(); ++i)
-    gather_slopes<D, std::is_same_v<Geometry, Axisymmetric>>(in.v.data(), weights[i], batch[i].real(), read[i]);
+    gather_slopes<D, std::is_same_v<Geometry, Axisymmetric>>(in.v.data(), weights[i], batch[i].real(),
+                                                             read[i]);
   for (std::size_t i = 0; i < batch.size(); ++i) stress[i] = press_pair(in, batch[i], read[i]);
   for (std::size_t i = 0; i < batch.size(); ++i)
     in.count(scatter_stress<Geometry>(in.input.impulse_dt, weights[i], stress[i], batch[i],
-                                   in_single(in.points.x[0], batch[i]), in.sums.data()));
+                                      in_single(in.points.x[0], batch[i]), in.sums.data()));
 }
 
 /// A pass with motion over a batch.

@@ -30,8 +30,8 @@
 #include <cmath>
 #include <limits>
 
-#include "libmpm/constitutive/simd_laws.hpp"
 #include "libmpm/constitutive/mix.hpp"
+#include "libmpm/constitutive/simd_laws.hpp"
 #include "libmpm/transfer/simd_stencils.hpp"
 
 namespace tremie {

@@ -31,8 +31,8 @@ PassSums pass_over_points(const Mix& mix, const Law& law, const ExplicitSettings
 }  // namespace detail
 
 template <class Geometry>
-ExplicitState<Geometry> start_explicit(Body<Geometry>& body, const YieldLaw& law, const ExplicitSettings& settings,
-                                    const Shape<Geometry::dim>& shape) {
+ExplicitState<Geometry> start_explicit(Body<Geometry>& body, const YieldLaw& law,
+                                       const ExplicitSettings& settings, const Shape<Geometry::dim>& shape) {
   ExplicitState<Geometry> state;
   state.shape = shape;
   state.grid.axes = body.grid.axes;
@@ -56,7 +56,8 @@ ExplicitState<Geometry> start_explicit(Body<Geometry>& body, const YieldLaw& law
 /// grid for the step to come happens in the same pass, with the impulses that the new stresses give in it.
 /// Returns the sums of each of n steps: one where there is a wall, or the points must be sorted.
 template <class Geometry, class Law>
-std::vector<detail::PassSums> stress_last(Body<Geometry>& body, const Law& law, const ExplicitSettings& settings,
+std::vector<detail::PassSums> stress_last(Body<Geometry>& body, const Law& law,
+                                          const ExplicitSettings& settings,
                                           const RigidWall<Geometry::dim>& wall, double dt, int n,
                                           ExplicitState<Geometry>& state) {
   const Vec<Geometry::dim> pull = dt * body.gravity, none = Vec<Geometry::dim>::Zero();
@@ -74,7 +75,7 @@ std::vector<detail::PassSums> stress_last(Body<Geometry>& body, const Law& law, 
   look_into_wall_cells(state);
   // Grid to points, stress, motion, points to grid.
   detail::PointsPass<detail::whole_pass, Geometry, Law> whole{body.mix, law, settings, {dt, state.next_dt},
-                                                           state,    n};
+                                                              state,    n};
   repeat_passes(state.grid, n, detail::controls_to_points(all_at_once, velocities, whole));
   std::vector<detail::PassSums> sums;
   for (int step = 0; step < n; ++step) sums.push_back(whole.sums(step));
@@ -190,14 +191,20 @@ std::vector<ExplicitReport> explicit_steps(Body<Geometry>& body, const YieldLaw&
   return reports;
 }
 
-template ExplicitState<Axisymmetric> start_explicit(Body<Axisymmetric>&, const YieldLaw&, const ExplicitSettings&, const Shape<2>&);
-template std::vector<ExplicitReport> explicit_steps(Body<Axisymmetric>&, const YieldLaw&, const ExplicitSettings&, std::int64_t,
+template ExplicitState<Axisymmetric> start_explicit(Body<Axisymmetric>&, const YieldLaw&,
+                                                    const ExplicitSettings&, const Shape<2>&);
+template std::vector<ExplicitReport> explicit_steps(Body<Axisymmetric>&, const YieldLaw&,
+                                                    const ExplicitSettings&, std::int64_t,
                                                     ExplicitState<Axisymmetric>&, const RigidWall<2>&);
-template ExplicitState<PlaneStrain> start_explicit(Body<PlaneStrain>&, const YieldLaw&, const ExplicitSettings&, const Shape<2>&);
-template std::vector<ExplicitReport> explicit_steps(Body<PlaneStrain>&, const YieldLaw&, const ExplicitSettings&, std::int64_t,
+template ExplicitState<PlaneStrain> start_explicit(Body<PlaneStrain>&, const YieldLaw&,
+                                                   const ExplicitSettings&, const Shape<2>&);
+template std::vector<ExplicitReport> explicit_steps(Body<PlaneStrain>&, const YieldLaw&,
+                                                    const ExplicitSettings&, std::int64_t,
                                                     ExplicitState<PlaneStrain>&, const RigidWall<2>&);
-template ExplicitState<ThreeD> start_explicit(Body<ThreeD>&, const YieldLaw&, const ExplicitSettings&, const Shape<3>&);
-template std::vector<ExplicitReport> explicit_steps(Body<ThreeD>&, const YieldLaw&, const ExplicitSettings&, std::int64_t,
-                                                    ExplicitState<ThreeD>&, const RigidWall<3>&);
+template ExplicitState<ThreeD> start_explicit(Body<ThreeD>&, const YieldLaw&, const ExplicitSettings&,
+                                              const Shape<3>&);
+template std::vector<ExplicitReport> explicit_steps(Body<ThreeD>&, const YieldLaw&, const ExplicitSettings&,
+                                                    std::int64_t, ExplicitState<ThreeD>&,
+                                                    const RigidWall<3>&);
 
 }  // namespace tremie

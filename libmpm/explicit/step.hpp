@@ -13,14 +13,15 @@ namespace tremie {
 /// Sorts the body's points into tiles and brings their mass, momentum and first stresses to the grid.
 /// body.points is empty from here to the next write_back.
 template <class Geometry>
-ExplicitState<Geometry> start_explicit(Body<Geometry>& body, const YieldLaw& law, const ExplicitSettings& settings,
-                                       const Shape<Geometry::dim>& shape);
+ExplicitState<Geometry> start_explicit(Body<Geometry>& body, const YieldLaw& law,
+                                       const ExplicitSettings& settings, const Shape<Geometry::dim>& shape);
 
 /// Advances the body by up to `most` steps, one or more, and reports on each; where one fails it is the last,
 /// and the points are not to be used. They are left on the tiles: write_back brings them to body.points.
 template <class Geometry>
-std::vector<ExplicitReport> explicit_steps(Body<Geometry>& body, const YieldLaw& law, const ExplicitSettings& settings,
-                                           std::int64_t most, ExplicitState<Geometry>& state,
+std::vector<ExplicitReport> explicit_steps(Body<Geometry>& body, const YieldLaw& law,
+                                           const ExplicitSettings& settings, std::int64_t most,
+                                           ExplicitState<Geometry>& state,
                                            const RigidWall<Geometry::dim>& wall = {});
 
 /// One step.

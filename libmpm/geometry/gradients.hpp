@@ -5,16 +5,16 @@
 
 #include <type_traits>
 
-#include "libmpm/parallel/simd.hpp"
 #include "libmpm/geometry/geometries.hpp"
+#include "libmpm/parallel/simd.hpp"
 
 namespace tremie {
 
 /// Strain-rate vector q and divergence from L[a][b] = dv_a/dx_b [1/s]; v_0 and x_0 are the first components
 /// of velocity and place, which the hoop rate of the axisymmetric space needs.
 template <class Geometry, class T>
-void strain_rate_of(const T (&L)[Geometry::dim][Geometry::dim], const T& v_0, const T& x_0, T (&q)[Geometry::n_strain],
-                    T& divergence) {
+void strain_rate_of(const T (&L)[Geometry::dim][Geometry::dim], const T& v_0, const T& x_0,
+                    T (&q)[Geometry::n_strain], T& divergence) {
   constexpr auto one_over_sqrt3 = static_cast<ScalarOf<T>>(inv_sqrt3);
   if constexpr (std::is_same_v<Geometry, Axisymmetric>) {
     const T hoop = v_0 / x_0;
@@ -40,8 +40,8 @@ void strain_rate_of(const T (&L)[Geometry::dim][Geometry::dim], const T& v_0, co
 /// Stress tensor in the space's plane and hoop stress from the deviatoric stress vector s and a pressure
 /// [Pa].
 template <class Geometry, class T>
-void stress_tensor_of(const T (&s)[Geometry::n_strain], const T& pressure, T (&sigma)[Geometry::dim][Geometry::dim],
-                      T& hoop) {
+void stress_tensor_of(const T (&s)[Geometry::n_strain], const T& pressure,
+                      T (&sigma)[Geometry::dim][Geometry::dim], T& hoop) {
   constexpr auto one_over_sqrt3 = static_cast<ScalarOf<T>>(inv_sqrt3);
   sigma[0][0] = s[0] + s[1] * one_over_sqrt3 - pressure;
   sigma[1][1] = s[1] * one_over_sqrt3 - s[0] - pressure;

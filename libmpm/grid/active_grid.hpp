@@ -10,9 +10,9 @@
 #include <functional>
 #include <vector>
 
+#include "libmpm/geometry/geometries.hpp"
 #include "libmpm/grid/axis.hpp"
 #include "libmpm/parallel/buffers.hpp"
-#include "libmpm/geometry/geometries.hpp"
 
 namespace tremie {
 
@@ -231,8 +231,9 @@ void number_nodes(ActiveGrid<D>& grid) {
   resize_for_overwrite(grid.cell_nodes, grid.cell_index.size());
 #pragma omp parallel for schedule(static)
   for (std::size_t c = 0; c < grid.cell_index.size(); ++c)
-    for_each_local_node(grid.cell_index[c],
-                     [&](int k, std::size_t place) { grid.cell_nodes[c][k] = grid.node_map.value[place]; });
+    for_each_local_node(grid.cell_index[c], [&](int k, std::size_t place) {
+      grid.cell_nodes[c][k] = grid.node_map.value[place];
+    });
 }
 
 template <int D>
@@ -348,8 +349,8 @@ const Block<D>* block_of_node(const ActiveGrid<D>& grid, const Index<D>& node) {
   for (const Block<D>& b : grid.blocks) {
     bool in = true;
     for (int d = 0; d < D; ++d)
-      in = in && node[d] >= grid.axes[d].first_node(b.low[d]) &&
-           node[d] <= grid.axes[d].first_node(b.high[d]);
+      in =
+          in && node[d] >= grid.axes[d].first_node(b.low[d]) && node[d] <= grid.axes[d].first_node(b.high[d]);
     if (in) return &b;
   }
   return nullptr;

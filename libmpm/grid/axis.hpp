@@ -30,7 +30,7 @@ struct Axis {
   FaceKind low = FaceKind::open;
   FaceKind high = FaceKind::open;
   bool periodic = false;
-  int n_cells = 0;                ///< of a periodic axis, or of one with a high wall; otherwise unused
+  int n_cells = 0;                       ///< of a periodic axis, or of one with a high wall; otherwise unused
   std::vector<int> repeated_knots = {};  ///< the cells above them, ascending; none at an end of the axis
 
   bool wall_low() const { return low != FaceKind::open; }

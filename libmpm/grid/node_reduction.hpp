@@ -75,8 +75,8 @@ class NodeReduction {
     using Value = Eigen::Matrix<Scalar, n, 1>;
     const Scalar* from = room.values<Scalar>();
     Value sum = Value::Zero();
-    for (auto s = static_cast<std::size_t>(first_chunk_[i]); s < reduction_.size() && reduction_[s].first_node <= i;
-         ++s)
+    for (auto s = static_cast<std::size_t>(first_chunk_[i]);
+         s < reduction_.size() && reduction_[s].first_node <= i; ++s)
       sum += Eigen::Map<const Value>(from + 4 * (reduction_[s].place + i));
     return sum;
   }

@@ -25,8 +25,8 @@
 #endif
 
 #include "libmpm/grid/active_grid.hpp"
-#include "libmpm/parallel/thread_pool.hpp"
 #include "libmpm/parallel/simd.hpp"
+#include "libmpm/parallel/thread_pool.hpp"
 
 namespace tremie {
 

@@ -118,8 +118,9 @@ SolveReport solve_admm(YieldProblem<Geometry>& problem, const AdmmSettings& sett
         update_friction_admm<D>(problem.friction, v, settings.over_relaxation, settings.tolerance);
     residuals = form.update(v);
     if (contact_changed && !form.contact_changed()) return report;
-    report.converged = residuals.within(settings.tolerance) && friction_settled && !contact_changed &&
-                       std::max(left, residuals.pressure) <= std::min(tolerated, form.tolerated_energy(residuals));
+    report.converged =
+        residuals.within(settings.tolerance) && friction_settled && !contact_changed &&
+        std::max(left, residuals.pressure) <= std::min(tolerated, form.tolerated_energy(residuals));
     if (report.converged) break;
   }
   return report;

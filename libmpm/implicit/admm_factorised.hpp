@@ -11,8 +11,10 @@ namespace detail {
 
 /// The local step: new rates d and stresses s at the velocities v, and what they miss.
 template <class Geometry, class Law>
-AdmmResiduals update_stress_and_rate(const YieldProblem<Geometry>& problem, const Law& law, const AdmmSettings& settings,
-                      double r, const std::vector<Vec<Geometry::dim>>& v, AdmmState<Geometry>& admm_state) {
+AdmmResiduals update_stress_and_rate(const YieldProblem<Geometry>& problem, const Law& law,
+                                     const AdmmSettings& settings, double r,
+                                     const std::vector<Vec<Geometry::dim>>& v,
+                                     AdmmState<Geometry>& admm_state) {
   constexpr int n = power(2, Geometry::dim);
   const auto& quad = problem.quadrature;
   std::vector<AdmmResiduals> part(quad.V.size());
@@ -26,9 +28,9 @@ AdmmResiduals update_stress_and_rate(const YieldProblem<Geometry>& problem, cons
       const Vec<Geometry::n_strain> a =
           s + r * (settings.over_relaxation * q + (1.0 - settings.over_relaxation) * d);
       const double a_norm = a.norm();
-      const Vec<Geometry::n_strain> d_new = a_norm > 0.0
-                                             ? Vec<Geometry::n_strain>(law.prox(a_norm, tau_y, r) / a_norm * a)
-                                             : Vec<Geometry::n_strain>(0.0 * a);
+      const Vec<Geometry::n_strain> d_new =
+          a_norm > 0.0 ? Vec<Geometry::n_strain>(law.prox(a_norm, tau_y, r) / a_norm * a)
+                       : Vec<Geometry::n_strain>(0.0 * a);
       part[c].primal += V * (r * (q - d_new)).squaredNorm();
       part[c].dual += V * (r * (d_new - d)).squaredNorm();
       part[c].scale += V * std::pow(tau_y + problem.eta * q.norm() + no_stress, 2);
@@ -67,7 +69,8 @@ struct FactorisedAdmm {
   double r = detail::penalty(problem, settings.penalty);
 
   bool prepare() {
-    assemble(problem, [&](int, int) { return problem.mu + r; }, system);
+    assemble(
+        problem, [&](int, int) { return problem.mu + r; }, system);
     if (!problem.friction.empty())
       add_friction_stiffness_admm<D>(problem.grid, detail::volumes_around_nodes(problem), problem.mu + r,
                                      problem.friction, system);
@@ -93,8 +96,9 @@ struct FactorisedAdmm {
   detail::AdmmResiduals start(const std::vector<Vec<D>>&) const { return {}; }
   double tolerated_energy(const detail::AdmmResiduals&) const { return 0.0; }
   detail::AdmmResiduals update(const std::vector<Vec<D>>& v) {
-    return std::visit([&](const auto& l) { return detail::update_stress_and_rate(problem, l, settings, r, v, state); },
-                      law);
+    return std::visit(
+        [&](const auto& l) { return detail::update_stress_and_rate(problem, l, settings, r, v, state); },
+        law);
   }
 };
 

@@ -104,8 +104,9 @@ inline IterationViscosities viscosities_of(const YieldProblem<ThreeD>& problem,
 /// residuals, and the forces R of stress, pressure and closed contacts on the nodes.
 template <class Law>
 AdmmResiduals pass_over_cells(YieldProblem<ThreeD>& problem, const Law& law, const AdmmSettings& settings,
-                         const IterationViscosities& viscosities, const std::vector<Vec<3>>& v, bool update,
-                         MatrixFreeSystem& system, PackedAdmmState& admm_state, Eigen::VectorXd& R) {
+                              const IterationViscosities& viscosities, const std::vector<Vec<3>>& v,
+                              bool update, MatrixFreeSystem& system, PackedAdmmState& admm_state,
+                              Eigen::VectorXd& R) {
   const double mu = problem.mu, rho = settings.over_relaxation, bulk = problem.K * problem.dt;
   const auto [r, opposing] = viscosities;
   const auto& quad = problem.quadrature;
@@ -175,7 +176,7 @@ AdmmResiduals pass_over_cells(YieldProblem<ThreeD>& problem, const Law& law, con
 
 /// Adds all other forces at v to what pass_over_cells() found.
 inline void residual_3d(const YieldProblem<ThreeD>& problem, const std::vector<Vec<3>>& v,
-                              Eigen::VectorXd& R) {
+                        Eigen::VectorXd& R) {
 #pragma omp parallel for schedule(static)
   for (int i = 0; i < problem.grid.n_nodes(); ++i)
     R.segment<3>(3 * i) = problem.nodes.mass[i] / problem.dt * (problem.nodes.v[i] - v[i]) -
@@ -207,8 +208,8 @@ struct MatrixFreeAdmm {
 
   double solve(double tolerated, std::vector<Vec<3>>& v) {
     detail::residual_3d(problem, v, R);
-    return system.solve(problem, R,
-                        {.reduction = settings.solve_reduction, .enough = settings.solve_share * tolerated}, v);
+    return system.solve(
+        problem, R, {.reduction = settings.solve_reduction, .enough = settings.solve_share * tolerated}, v);
   }
 
   /// An error e of v that a solve leaves has rates q(e), whose square over the volume is at most its energy

@@ -16,7 +16,7 @@ bool by_iteration(const ImplicitBody<Geometry>& body, const StepSettings& settin
 /// AdmmState of cells that were active before go on from where they were; new cells start unstressed.
 template <class Geometry>
 void carry_over_admm_state(const IndexMap<Geometry::dim>& old_map, const ActiveGrid<Geometry::dim>& grid,
-                 AdmmState<Geometry>& admm_state) {
+                           AdmmState<Geometry>& admm_state) {
   AdmmState<Geometry> now;
   now.stress.resize(grid.cell_index.size());
   now.rate.resize(grid.cell_index.size());
@@ -35,8 +35,8 @@ void carry_over_admm_state(const IndexMap<Geometry::dim>& old_map, const ActiveG
 
 /// The same in the form that this step's solver takes, which may not be the last one's.
 template <class Geometry>
-void carry_over_admm_state(const IndexMap<Geometry::dim>& old_map, const YieldLaw& law, const StepSettings& settings,
-                 ImplicitBody<Geometry>& body) {
+void carry_over_admm_state(const IndexMap<Geometry::dim>& old_map, const YieldLaw& law,
+                           const StepSettings& settings, ImplicitBody<Geometry>& body) {
   if constexpr (Geometry::dim == 3) {
     AdmmState<ThreeD>& admm_state = body.admm_state;
     if (by_iteration(body, settings)) {
@@ -55,8 +55,9 @@ void carry_over_admm_state(const IndexMap<Geometry::dim>& old_map, const YieldLa
 
 /// Friction goes on from the forces of the last step at the same nodes.
 template <class Geometry>
-void carry_friction(const std::vector<FrictionNode<Geometry::dim>>& old, const IndexMap<Geometry::dim>& old_nodes,
-                    const ActiveGrid<Geometry::dim>& grid, std::vector<FrictionNode<Geometry::dim>>& friction) {
+void carry_friction(const std::vector<FrictionNode<Geometry::dim>>& old,
+                    const IndexMap<Geometry::dim>& old_nodes, const ActiveGrid<Geometry::dim>& grid,
+                    std::vector<FrictionNode<Geometry::dim>>& friction) {
   std::vector<int> last_at(old_nodes.value.size(),
                            -1);  // by old node: the last of its entries, walls before held nodes
   for (std::size_t k = 0; k < old.size(); ++k) last_at[old[k].node] = static_cast<int>(k);

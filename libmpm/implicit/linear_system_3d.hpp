@@ -5,16 +5,16 @@
 #include <vector>
 
 #include "libmpm/boundary/friction.hpp"
-#include "libmpm/linear/conjugate_gradients.hpp"
-#include "libmpm/implicit/schur/preconditioner.hpp"
 #include "libmpm/implicit/problem/yield_problem.hpp"
+#include "libmpm/implicit/schur/preconditioner.hpp"
+#include "libmpm/linear/conjugate_gradients.hpp"
 
 namespace tremie {
 
 /// Adds what walls inside the grid do to the field x.
 template <class Vector>
 void add_penalty_products(const std::vector<PenaltyPoint<3>>& bound,
-                        const std::vector<std::array<int, 27>>& cell_nodes, const Vector& x, Vector& out) {
+                          const std::vector<std::array<int, 27>>& cell_nodes, const Vector& x, Vector& out) {
   using Scalar = typename Vector::Scalar;
   constexpr int stride = node_stride<Scalar>;
   for (const PenaltyPoint<3>& b : bound) {
@@ -68,8 +68,8 @@ void for_each_contact(const std::vector<ContactPoint<3>>& contact, const NodeRed
 }
 
 inline void add_penalty_blocks(const std::vector<PenaltyPoint<3>>& bound,
-                             const std::vector<std::array<int, 27>>& cell_nodes,
-                             std::vector<Mat<3, 3>>& blocks) {
+                               const std::vector<std::array<int, 27>>& cell_nodes,
+                               std::vector<Mat<3, 3>>& blocks) {
   for (const PenaltyPoint<3>& b : bound)
     for (int k = 0; k < 27; ++k) blocks[cell_nodes[b.cell][k]] += b.N[k] * b.N[k] * b.stiffness;
 }
@@ -160,7 +160,7 @@ class MatrixFreeSystem {
   }
 
   CellBatches batches;
-  ReductionBuffer forces;                       ///< room for what chunks of cells give their nodes
+  ReductionBuffer forces;                        ///< room for what chunks of cells give their nodes
   SchurComplementPreconditioner preconditioner;  ///< of the last prepare(); free for others between solves
   long long products = 0;
 
@@ -233,7 +233,7 @@ inline bool MatrixFreeSystem::prepare(YieldProblem<ThreeD>& problem, double eta)
 /// Inverse blocks of D at the nodes. A node's own viscous block is V eta (|g|^2 I + g g'/3) with its gradient
 /// g.
 inline std::vector<Mat<3, 3>> MatrixFreeSystem::node_blocks(const YieldProblem<ThreeD>& problem,
-                                                       const Eigen::VectorXd& diagonal) const {
+                                                            const Eigen::VectorXd& diagonal) const {
   const auto& grid = problem.grid;
   using Symmetric = Eigen::Matrix<double, 8, 1>;  // xx, yy, zz, xy, yz, xz and two zeros, for whole vectors
   std::array<std::array<std::array<Symmetric, 27>, 8>, 64> viscous;
@@ -276,7 +276,7 @@ inline std::vector<Mat<3, 3>> MatrixFreeSystem::node_blocks(const YieldProblem<T
 }
 
 inline void MatrixFreeSystem::multiply(const YieldProblem<ThreeD>& problem, const Eigen::VectorXf& x,
-                                  Eigen::VectorXf& out) {
+                                       Eigen::VectorXf& out) {
   const auto bulk = static_cast<float>(problem.K * problem.dt), eta = static_cast<float>(eta_);
   ++products;
   out.resize(x.size());
@@ -319,7 +319,7 @@ inline void MatrixFreeSystem::multiply(const YieldProblem<ThreeD>& problem, cons
 }
 
 inline double MatrixFreeSystem::solve(const YieldProblem<ThreeD>& problem, const Eigen::VectorXd& R,
-                                 const PcgTolerances& goal, std::vector<Vec<3>>& v) {
+                                      const PcgTolerances& goal, std::vector<Vec<3>>& v) {
   const int n = problem.grid.n_nodes();
   Eigen::VectorXf r(4 * n), x;
 #pragma omp parallel for schedule(static)
@@ -337,7 +337,7 @@ inline double MatrixFreeSystem::solve(const YieldProblem<ThreeD>& problem, const
 }
 
 inline void MatrixFreeSystem::shear_rates(const YieldProblem<ThreeD>& problem, const std::vector<Vec<3>>& v,
-                                     std::vector<double>& of_cell, double& mean) const {
+                                          std::vector<double>& of_cell, double& mean) const {
   of_cell.resize(batches.n_cells());
   std::vector<double> sum(batches.n_batches()), volume(batches.n_batches());
 #pragma omp parallel for schedule(static)

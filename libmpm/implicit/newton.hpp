@@ -25,7 +25,8 @@ struct NewtonSettings {
 namespace detail {
 
 template <class Geometry>
-double energy(const YieldProblem<Geometry>& problem, const YieldLaw& law, const std::vector<Vec<Geometry::dim>>& v) {
+double energy(const YieldProblem<Geometry>& problem, const YieldLaw& law,
+              const std::vector<Vec<Geometry::dim>>& v) {
   const auto& quad = problem.quadrature;
   double sum = 0.0;
   for (int i = 0; i < problem.grid.n_nodes(); ++i)
@@ -50,7 +51,8 @@ double energy(const YieldProblem<Geometry>& problem, const YieldLaw& law, const 
 
 /// The dual's share of the tangent, kept inside |s| <= f so that the tangent stays positive.
 template <int N>
-Mat<N, N> primal_dual_tangent(const YieldLaw& law, double mu, double tau_y, const Vec<N>& q, const Vec<N>& s) {
+Mat<N, N> primal_dual_tangent(const YieldLaw& law, double mu, double tau_y, const Vec<N>& q,
+                              const Vec<N>& s) {
   const double gamma_dot = q.norm(), own_secant = secant(law, gamma_dot, tau_y);
   const double factor = own_secant > 0.0 ? slope(law, gamma_dot, tau_y) / own_secant : 0.0;
   return (mu + own_secant) * Mat<N, N>::Identity() + 0.5 * factor * (s * q.transpose() + q * s.transpose());
@@ -58,8 +60,9 @@ Mat<N, N> primal_dual_tangent(const YieldLaw& law, double mu, double tau_y, cons
 
 /// Full Newton step of the ADMM state along dv, projected to the largest stress the yield part can carry.
 template <class Geometry>
-void step_dual_stress(const YieldProblem<Geometry>& problem, const YieldLaw& law, const std::vector<Vec<Geometry::dim>>& v,
-                const std::vector<Vec<Geometry::dim>>& dv, AdmmState<Geometry>& admm_state) {
+void step_dual_stress(const YieldProblem<Geometry>& problem, const YieldLaw& law,
+                      const std::vector<Vec<Geometry::dim>>& v, const std::vector<Vec<Geometry::dim>>& dv,
+                      AdmmState<Geometry>& admm_state) {
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < problem.grid.n_cells(); ++c)
     for (int k = 0; k < power(2, Geometry::dim); ++k) {
@@ -78,8 +81,8 @@ void step_dual_stress(const YieldProblem<Geometry>& problem, const YieldLaw& law
 /// Brings the ADMM state that are carried over from the last step inside what this one can carry: beyond it the
 /// tangent is not positive.
 template <class Geometry>
-void project_dual_stress(YieldProblem<Geometry>& problem, const YieldLaw& law, const std::vector<Vec<Geometry::dim>>& v,
-                         AdmmState<Geometry>& admm_state) {
+void project_dual_stress(YieldProblem<Geometry>& problem, const YieldLaw& law,
+                         const std::vector<Vec<Geometry::dim>>& v, AdmmState<Geometry>& admm_state) {
   const auto inside = [](auto& s, double limit) {
     const double size = s.norm();
     if (size > limit) s *= limit / size;
@@ -97,8 +100,8 @@ void project_dual_stress(YieldProblem<Geometry>& problem, const YieldLaw& law, c
 /// Solves the yield problem by primal-dual Newton from the guesses v and ADMM state, which it overwrites.
 template <class Geometry>
 SolveReport solve_newton(YieldProblem<Geometry>& problem, const YieldLaw& law, const NewtonSettings& settings,
-                         double force_scale, BlockSystem<Geometry::dim>& system, std::vector<Vec<Geometry::dim>>& v,
-                         AdmmState<Geometry>& admm_state) {
+                         double force_scale, BlockSystem<Geometry::dim>& system,
+                         std::vector<Vec<Geometry::dim>>& v, AdmmState<Geometry>& admm_state) {
   constexpr int D = Geometry::dim;
   const auto stress = [&](int c, int k, const Vec<Geometry::n_strain>& q) -> Vec<Geometry::n_strain> {
     return (problem.mu + secant(law, q.norm(), problem.quadrature.tau_y[c][k])) * q;

@@ -43,7 +43,8 @@ CellFill cell_fill(const YieldProblem<Geometry>& problem, const Points<Geometry:
   for (int c = 0; c < grid.n_cells(); ++c) {
     double full = 0.0, mass = 0.0, volume = 0.0;
     for (int k = 0; k < power(2, D); ++k)
-      full += part * Geometry::measure(position_in_cell<D>(grid.axes, grid.cell_index[c], quadrature_point<D>(k)));
+      full += part *
+              Geometry::measure(position_in_cell<D>(grid.axes, grid.cell_index[c], quadrature_point<D>(k)));
     for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
       mass += points.mass[grid.order[i]];
       volume += points.volume(grid.order[i]);
@@ -89,8 +90,9 @@ Eigen::VectorXd fill_forces(const YieldProblem<Geometry>& problem, const CellFil
 
 /// Nodal displacements [m] that even out the fill of the cells over a step.
 template <class Geometry>
-std::vector<Vec<Geometry::dim>> shifting_displacement(const YieldProblem<Geometry>& problem, const CellFill& cells,
-                                      BlockSystem<Geometry::dim>& system) {
+std::vector<Vec<Geometry::dim>> shifting_displacement(const YieldProblem<Geometry>& problem,
+                                                      const CellFill& cells,
+                                                      BlockSystem<Geometry::dim>& system) {
   constexpr int D = Geometry::dim, n_local = power(3, D), n_dof = n_local * D;
   const auto& grid = problem.grid;
   const std::vector<char> fixed = held_by_walls<D>(grid);

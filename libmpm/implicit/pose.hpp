@@ -49,9 +49,9 @@ void add_side_walls(double W, const YieldLaw& law, const std::vector<Vec<Geometr
 
 /// The step's convex problem over dt: inertia with gravity, viscosity and yield, bulk, walls.
 template <class Geometry>
-void pose(ImplicitBody<Geometry>& body, const YieldLaw& law, const StepSettings& settings, const RigidWall<Geometry::dim>& wall,
-          const std::vector<Vec<Geometry::dim>>& v_old, const IndexMap<Geometry::dim>& old_nodes, double dt,
-          std::optional<YieldProblem<Geometry>>& posed) {
+void pose(ImplicitBody<Geometry>& body, const YieldLaw& law, const StepSettings& settings,
+          const RigidWall<Geometry::dim>& wall, const std::vector<Vec<Geometry::dim>>& v_old,
+          const IndexMap<Geometry::dim>& old_nodes, double dt, std::optional<YieldProblem<Geometry>>& posed) {
   constexpr int D = Geometry::dim;
   body.v = v_old;
   for (std::size_t i = 0; i < v_old.size(); ++i) body.nodes.v[i] = v_old[i] + dt * body.gravity;

@@ -30,7 +30,7 @@ struct StepSettings {
   double time_left = 1e300;        ///< no step goes beyond it [s]
   double cfl = 0.6;                ///< largest move in a step, in cells
   double growth = 1.3;             ///< largest ratio of successive steps
-  double detached = 0.0;             ///< share of the points that may be drops in the air (strays.hpp)
+  double detached = 0.0;           ///< share of the points that may be drops in the air (strays.hpp)
   double friction_coefficient = 0.0;
   bool keep_forces = false;            ///< fill Body::wall_force and Body::dissipation
   double boundary_stiffness = 1000.0;  ///< of walls inside the grid, in m/dt
@@ -50,8 +50,8 @@ struct ImplicitBody : Body<Geometry> {
   AdmmState<Geometry> admm_state{};
   std::vector<FrictionNode<D>> friction{};
   std::vector<PenaltyPoint<D>> bound{};  ///< walls inside the grid that touched concrete in the last step
-  double time_error = 0.0;             ///< of the last step: its local error, if it was asked for [m]
-  double shear_rate = 0.0;             ///< mean of the last step [1/s]
+  double time_error = 0.0;               ///< of the last step: its local error, if it was asked for [m]
+  double shear_rate = 0.0;               ///< mean of the last step [1/s]
   BlockSystem<D> system{};
   std::conditional_t<D == 3, MatrixFreeSystem, Nothing> matrix_free{};  ///< for large bodies in 3D
 };

@@ -29,7 +29,7 @@ StepReport implicit_step(ImplicitBody<Geometry>& body, const YieldLaw& law, cons
   detail::carry_over_admm_state(old_cells, law, settings, body);
   old_cells = {};
   lay_out_quadrature<Geometry>(body.grid, body.points, body.mix.tau_0, body.mix.K, body.quadrature,
-                            settings.cut_cell_rule);
+                               settings.cut_cell_rule);
   body.v = body.nodes.v;
 
   // The step's convex problem and its solution, the velocities at the end of the step. One that does not
@@ -94,10 +94,15 @@ StepReport implicit_step(ImplicitBody<Geometry>& body, const YieldLaw& law, cons
           .shear_rate_mean = shear_rate_mean};
 }
 
-template StepReport implicit_step(ImplicitBody<Axisymmetric>&, const YieldLaw&, const StepSettings&, const RigidWall<2>&);
-template StepReport implicit_step(ImplicitBody<PlaneStrain>&, const YieldLaw&, const StepSettings&, const RigidWall<2>&);
-template StepReport implicit_step(ImplicitBody<Couette>&, const YieldLaw&, const StepSettings&, const RigidWall<1>&);
-template StepReport implicit_step(ImplicitBody<Polar>&, const YieldLaw&, const StepSettings&, const RigidWall<2>&);
-template StepReport implicit_step(ImplicitBody<ThreeD>&, const YieldLaw&, const StepSettings&, const RigidWall<3>&);
+template StepReport implicit_step(ImplicitBody<Axisymmetric>&, const YieldLaw&, const StepSettings&,
+                                  const RigidWall<2>&);
+template StepReport implicit_step(ImplicitBody<PlaneStrain>&, const YieldLaw&, const StepSettings&,
+                                  const RigidWall<2>&);
+template StepReport implicit_step(ImplicitBody<Couette>&, const YieldLaw&, const StepSettings&,
+                                  const RigidWall<1>&);
+template StepReport implicit_step(ImplicitBody<Polar>&, const YieldLaw&, const StepSettings&,
+                                  const RigidWall<2>&);
+template StepReport implicit_step(ImplicitBody<ThreeD>&, const YieldLaw&, const StepSettings&,
+                                  const RigidWall<3>&);
 
 }  // namespace tremie

@@ -53,8 +53,8 @@ void update_flocculation(const ImplicitBody<Geometry>& body, double dt, Points<G
 
 /// Mean shear rate of every cell over its Gauss places, and the volume mean of all [1/s].
 template <class Geometry>
-double shear_rates(const YieldProblem<Geometry>& problem, const StepSettings& settings, const ImplicitBody<Geometry>& body,
-                   std::vector<double>& of_cell) {
+double shear_rates(const YieldProblem<Geometry>& problem, const StepSettings& settings,
+                   const ImplicitBody<Geometry>& body, std::vector<double>& of_cell) {
   double sum = 0.0, volume = 0.0;
   if constexpr (Geometry::dim == 3)
     if (by_iteration(body, settings)) {
@@ -74,8 +74,10 @@ double shear_rates(const YieldProblem<Geometry>& problem, const StepSettings& se
 
 /// Displacements that even out the fill of the cells.
 template <class Geometry>
-std::vector<Vec<Geometry::dim>> particle_shift(const YieldProblem<Geometry>& problem, const StepSettings& settings,
-                                           const std::vector<double>& gamma_dot, ImplicitBody<Geometry>& body) {
+std::vector<Vec<Geometry::dim>> particle_shift(const YieldProblem<Geometry>& problem,
+                                               const StepSettings& settings,
+                                               const std::vector<double>& gamma_dot,
+                                               ImplicitBody<Geometry>& body) {
   const CellFill cells = cell_fill(problem, body.points, gamma_dot, settings.particle_shifting);
   if constexpr (Geometry::dim == 3)
     if (by_iteration(body, settings)) return shifting_displacement_3d(problem, cells, body.matrix_free);

@@ -2,8 +2,8 @@
 
 // How the points of a space move with the velocities of the grid.
 
-#include "libmpm/particles/particles.hpp"
 #include "libmpm/geometry/polar.hpp"
+#include "libmpm/particles/particles.hpp"
 
 namespace tremie {
 

@@ -10,8 +10,9 @@ namespace tremie {
 /// Fills the box [low, high] with points on a regular raster, `n` of them in each direction, where inside(x)
 /// holds. Each carries the volume of its own raster cell and the pressure pressure_at(x) [Pa] at the time 0.
 template <class Geometry, class Inside, class Pressure>
-void seed_box(const Vec<Geometry::dim>& low, const Vec<Geometry::dim>& high, const std::array<int, Geometry::dim>& n,
-              double density, double K, Inside inside, Pressure pressure_at, Points<Geometry::dim>& points) {
+void seed_box(const Vec<Geometry::dim>& low, const Vec<Geometry::dim>& high,
+              const std::array<int, Geometry::dim>& n, double density, double K, Inside inside,
+              Pressure pressure_at, Points<Geometry::dim>& points) {
   constexpr int D = Geometry::dim;
   Vec<D> spacing;
   std::size_t total = 1;

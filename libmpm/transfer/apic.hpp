@@ -12,8 +12,8 @@
 
 #include "libmpm/grid/active_grid.hpp"
 #include "libmpm/grid/node_reduction.hpp"
-#include "libmpm/particles/particles.hpp"
 #include "libmpm/particles/advection.hpp"
+#include "libmpm/particles/particles.hpp"
 #include "libmpm/transfer/stencil_3d.hpp"
 
 namespace tremie {
@@ -29,8 +29,7 @@ namespace detail {
 
 /// Positions of a cell's three nodes in each direction.
 template <int D>
-std::array<std::array<double, 3>, D> node_positions(const std::array<Axis, D>& axes,
-                                                       const Index<D>& cell) {
+std::array<std::array<double, 3>, D> node_positions(const std::array<Axis, D>& axes, const Index<D>& cell) {
   std::array<std::array<double, 3>, D> xi;
   for (int d = 0; d < D; ++d)
     for (int k = 0; k < 3; ++k) xi[d][k] = axes[d].node_position(axes[d].first_node(cell[d]) + k);

@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "libmpm/constitutive/flocculation.hpp"
-#include "rheometer/reference/reiner_riwlin.hpp"
 #include "rheometer/records/torque_record.hpp"
+#include "rheometer/reference/reiner_riwlin.hpp"
 
 namespace tremie {
 

@@ -117,7 +117,6 @@ CellResult run_cell(const MaterialCell& cell, const YieldLaw& law) {
   return Run(cell, law)();
 }
 
-
 std::vector<ShearSegment> parse_shear_history(std::string_view text, const std::string& name) {
   const NumberTable table = parse_number_table(text, name,
                                                {{"time",

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "apparatus/slump_flow/slump_flow.hpp"
 #include "apparatus/registry/error_estimate.hpp"
+#include "apparatus/slump_flow/slump_flow.hpp"
 
 namespace tremie::scene {
 namespace {

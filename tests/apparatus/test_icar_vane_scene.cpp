@@ -86,7 +86,8 @@ TEST(IcarVaneScene, AResolvedSceneReadsBack) {
     const Scene first = read_text(text, "a.toml", {"model.space=plane"});
     const Scene second = read_text(first.resolved, "a.toml");
     EXPECT_EQ(read_text(second.resolved, "a.toml").resolved, second.resolved);
-    EXPECT_EQ(std::any_cast<const icar_vane::Scene&>(first.test).speeds, std::any_cast<const icar_vane::Scene&>(second.test).speeds);
+    EXPECT_EQ(std::any_cast<const icar_vane::Scene&>(first.test).speeds,
+              std::any_cast<const icar_vane::Scene&>(second.test).speeds);
     EXPECT_EQ(std::any_cast<const icar_vane::Scene&>(second.test).model.cell, (std::array{0.005, 0.005}));
   }
 }

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "apparatus/common/shared_keys.hpp"
 #include "apparatus/scene/load.hpp"
 #include "apparatus/scene/resolved.hpp"
-#include "apparatus/common/shared_keys.hpp"
 
 namespace tremie::scene {
 namespace {

@@ -7,8 +7,8 @@
 #include <benchmark/benchmark.h>
 #include <omp.h>
 
-#include "libmpm/explicit/step.hpp"
 #include "apparatus/verification/references/bodies.hpp"
+#include "libmpm/explicit/step.hpp"
 
 namespace tremie {
 namespace {
@@ -25,7 +25,7 @@ Body<Geometry> block(bool thixotropic, int cells = Geometry::dim == 3 ? 12 : 60)
   body.gravity[Geometry::up] = -9.81;
   for (Axis& a : body.grid.axes) a = {.h = h, .low = FaceKind::free_slip};
   test::fill_box<Geometry>(body, Vec<D>::Zero(), Vec<D>::Constant(height), 2,
-                        [&](const auto& x) { return 2400.0 * 9.81 * (height - x[Geometry::up]); });
+                           [&](const auto& x) { return 2400.0 * 9.81 * (height - x[Geometry::up]); });
   if (!thixotropic) return body;
   body.mix.thixotropy = Thixotropy{1.3, 0.01};
   body.points.lambda.assign(body.points.size(), 1.0);
@@ -80,7 +80,7 @@ void law_alone(benchmark::State& run) {
       const auto rate = detail::strain_rate<Geometry, Octet>(slope, Octet{}, set.state.points.x[0][g]);
       const auto resistance =
           detail::update_state<Geometry::dim>(set.body.mix, law, 1e-9, rate.gamma_dot, rate.divergence,
-                                           all_lanes(1.0), set.state.points, g, sums);
+                                              all_lanes(1.0), set.state.points, g, sums);
       benchmark::DoNotOptimize(
           detail::stress_of<Geometry, Octet>(rate, resistance.viscosity, resistance.pressure));
     }

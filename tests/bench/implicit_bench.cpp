@@ -10,8 +10,8 @@
 
 #include <optional>
 
-#include "libmpm/implicit/step.hpp"
 #include "apparatus/verification/references/bodies.hpp"
+#include "libmpm/implicit/step.hpp"
 
 namespace tremie {
 namespace {
@@ -37,7 +37,7 @@ struct Set {
     if (D == 3) body.grid.axes[0].low = body.grid.axes[1].low = FaceKind::symmetry;
     body.grid.axes[Geometry::up].low = FaceKind::no_slip;
     test::fill_box<Geometry>(body, Vec<D>::Zero(), Vec<D>::Constant(cells * h), 2,
-                          [&](const auto& x) { return 2400.0 * 9.81 * (cells * h - x[Geometry::up]); });
+                             [&](const auto& x) { return 2400.0 * 9.81 * (cells * h - x[Geometry::up]); });
     if (thixotropic) {
       body.mix.thixotropy = Thixotropy{1.3, 0.01};
       body.points.lambda.assign(body.points.size(), 1.0);

@@ -2,8 +2,8 @@
 
 // Explicit steps of every kind, and a body for them.
 
-#include "libmpm/explicit/step.hpp"
 #include "apparatus/verification/references/bodies.hpp"
+#include "libmpm/explicit/step.hpp"
 
 namespace tremie::test {
 

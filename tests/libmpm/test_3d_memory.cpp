@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "libmpm/implicit/step.hpp"
 #include "apparatus/verification/references/bodies.hpp"
+#include "libmpm/implicit/step.hpp"
 #include "tests/peak_memory.hpp"
 
 namespace tremie {

@@ -17,7 +17,8 @@ struct Holes {
   Points<3> points;
   Quadrature<ThreeD> quadrature;
 
-  Holes(const Index<3>& extent, const std::array<bool, 3>& periodic = {}, std::vector<int> repeated_knots = {}) {
+  Holes(const Index<3>& extent, const std::array<bool, 3>& periodic = {},
+        std::vector<int> repeated_knots = {}) {
     for (int d = 0; d < 3; ++d) {
       grid.axes[d].periodic = periodic[d];
       if (periodic[d]) grid.axes[d].n_cells = extent[d];

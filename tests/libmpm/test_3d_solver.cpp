@@ -154,8 +154,8 @@ TEST(Solver3D, GradientsAndTheirAdjoint) {
   const auto give = [&](int chunk, double* to) {
     for (int b = batches.first_batch(chunk); b < batches.last_batch(chunk); ++b) give_batch(b, to);
   };
-  reduction.sweep_in_region<double>(forces, give,
-                                 [&](int i) { sum.segment<3>(3 * i) = reduction.sum_at<double, 3>(i, forces); });
+  reduction.sweep_in_region<double>(
+      forces, give, [&](int i) { sum.segment<3>(3 * i) = reduction.sum_at<double, 3>(i, forces); });
   EXPECT_LE(worst, 1e-11 * 100.0);  // gradients are of the order 1/h = 100 1/s
   EXPECT_NEAR(sum.dot(v) / work_on_gradients, 1.0, 1e-12);
 }

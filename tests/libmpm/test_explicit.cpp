@@ -15,8 +15,8 @@ using namespace test;
 
 /// Steps a body from here to there; returns the reports' worst.
 template <class Geometry>
-ExplicitReport advance(Body<Geometry>& body, const ExplicitSettings& settings, const Shape<Geometry::dim>& shape,
-                       int steps, const Papanastasiou& of = law) {
+ExplicitReport advance(Body<Geometry>& body, const ExplicitSettings& settings,
+                       const Shape<Geometry::dim>& shape, int steps, const Papanastasiou& of = law) {
   auto state = start_explicit(body, of, settings, shape);
   ExplicitReport worst;
   for (int i = 0; i < steps && !worst.failed; ++i) {

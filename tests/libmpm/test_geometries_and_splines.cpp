@@ -6,8 +6,8 @@
 #include <cmath>
 #include <random>
 
-#include "libmpm/grid/active_grid.hpp"
 #include "libmpm/geometry/polar.hpp"
+#include "libmpm/grid/active_grid.hpp"
 #include "libmpm/transfer/apic.hpp"
 
 namespace tremie {

@@ -29,7 +29,7 @@ ImplicitBody<Geometry> column(int levels, int across, bool hydrostatic, double t
   body.grid.axes[up] = {.h = h, .low = FaceKind::no_slip};
   high[up] = height;
   fill_box<Geometry>(body, low, high, 2,
-                  [&](const auto& x) { return hydrostatic ? rho * g * (height - x[up]) : 0.0; });
+                     [&](const auto& x) { return hydrostatic ? rho * g * (height - x[up]) : 0.0; });
   return body;
 }
 
@@ -176,7 +176,8 @@ ImplicitBody<Geometry> rotating(const Eigen::Vector3d& omega, double h, int per_
 /// round-off. Points that are moved to even out the fill of cells carry their momentum elsewhere: with it on,
 /// 1e-5 is allowed.
 template <class Geometry>
-void expect_angular_momentum_kept(ImplicitBody<Geometry> body, int steps, bool particle_shifting, double tolerance) {
+void expect_angular_momentum_kept(ImplicitBody<Geometry> body, int steps, bool particle_shifting,
+                                  double tolerance) {
   omp_set_num_threads(1);
   const auto start = angular_momentum<Geometry::dim>(body);
   StepSettings settings;

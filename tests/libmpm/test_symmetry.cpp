@@ -40,7 +40,8 @@ double difference(const Points<D>& part, const Points<D>& start, const Points<D>
 }
 
 template <class Geometry>
-double difference_after(int steps, ImplicitBody<Geometry> part, ImplicitBody<Geometry> whole, const StepSettings& settings) {
+double difference_after(int steps, ImplicitBody<Geometry> part, ImplicitBody<Geometry> whole,
+                        const StepSettings& settings) {
   omp_set_num_threads(1);
   const auto part_start = part.points, whole_start = whole.points;
   for (int i = 0; i < steps; ++i) {
@@ -111,7 +112,8 @@ TEST(Symmetry, HalfIsTheWholeInAPlane) {
 TEST(Symmetry, TwoLevelPcgAgreesWithTheFactor) {
   omp_set_num_threads(1);
   for (const double K : {33e3, 1e6}) {
-    ImplicitBody<ThreeD> factorised = slumping(true, FaceKind::no_slip), iterated = slumping(true, FaceKind::no_slip);
+    ImplicitBody<ThreeD> factorised = slumping(true, FaceKind::no_slip),
+                         iterated = slumping(true, FaceKind::no_slip);
     factorised.mix.K = iterated.mix.K = K;
     const auto start = factorised.points;
     StepSettings settings = settings_with(0), by_iteration = settings;

@@ -6,8 +6,8 @@
 #include <chrono>
 #include <thread>
 
-#include "libmpm/explicit/tile_layout.hpp"
 #include "libmpm/explicit/passes.hpp"
+#include "libmpm/explicit/tile_layout.hpp"
 
 namespace tremie {
 namespace {

@@ -6,8 +6,8 @@
 #include <random>
 #include <vector>
 
-#include "rheometer/reference/thixotropic_couette.hpp"
 #include "rheometer/records/torque_record.hpp"
+#include "rheometer/reference/thixotropic_couette.hpp"
 
 namespace tremie::synthetic {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "rheometer/reference/material_cell.hpp"
 #include "rheometer/records/torque_record.hpp"
+#include "rheometer/reference/material_cell.hpp"
 
 namespace tremie {
 namespace {

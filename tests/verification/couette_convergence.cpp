@@ -9,8 +9,8 @@
 #include <cmath>
 #include <iomanip>
 
-#include "rheometer/reference/thixotropic_couette.hpp"
 #include "apparatus/verification/references/study_output.hpp"
+#include "rheometer/reference/thixotropic_couette.hpp"
 
 namespace tremie::study {
 namespace {

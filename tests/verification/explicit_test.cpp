@@ -6,8 +6,8 @@
 
 #include <numbers>
 
-#include "libmpm/explicit/step.hpp"
 #include "apparatus/verification/references/bodies.hpp"
+#include "libmpm/explicit/step.hpp"
 
 namespace tremie {
 namespace {

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <iomanip>
 
+#include "apparatus/verification/references/study_output.hpp"
 #include "rheometer/fits/statistics.hpp"
 #include "tests/verification/fit_coverage.hpp"
-#include "apparatus/verification/references/study_output.hpp"
 
 namespace tremie::study {
 namespace {

@@ -84,7 +84,8 @@ void against_finite_elements(std::ofstream& md, std::ofstream& csv) {
       md << fmt::format(" {:.1f} % | {:.1f} | {} | {:.2f} |\n", 100 * worst, 1e3 * r.outcome.results.height,
                         r.outcome.cost.steps, r.cpu);
       csv << fmt::format("C instant,{},{},{},{:.4f},{:.4f},{}\n", name(grid),
-                         particle_shifting ? "evened" : "as they fall", "auto", r.cpu, worst, r.outcome.cost.steps);
+                         particle_shifting ? "evened" : "as they fall", "auto", r.cpu, worst,
+                         r.outcome.cost.steps);
     }
 }
 

@@ -5,9 +5,9 @@
 
 #include <cmath>
 
+#include "apparatus/verification/case.hpp"
 #include "apparatus/verification/document.hpp"
 #include "apparatus/verification/extremes.hpp"
-#include "apparatus/verification/case.hpp"
 
 namespace tremie::verification {
 namespace {

@@ -20,9 +20,9 @@
 #include <vector>
 
 #include "apparatus/icar_vane/icar_vane.hpp"
-#include "rheometer/reference/reiner_riwlin.hpp"
 #include "apparatus/verification/references/study_output.hpp"
 #include "apparatus/verification/references/vane_finite_elements.hpp"
+#include "rheometer/reference/reiner_riwlin.hpp"
 
 namespace {
 

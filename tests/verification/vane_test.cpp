@@ -7,11 +7,11 @@
 #include <numbers>
 
 #include "apparatus/icar_vane/icar_vane.hpp"
-#include "libmpm/constitutive/yield_law.hpp"
-#include "libmpm/particles/seeding.hpp"
-#include "libmpm/implicit/step.hpp"
-#include "rheometer/reference/reiner_riwlin.hpp"
 #include "apparatus/verification/references/vane_finite_elements.hpp"
+#include "libmpm/constitutive/yield_law.hpp"
+#include "libmpm/implicit/step.hpp"
+#include "libmpm/particles/seeding.hpp"
+#include "rheometer/reference/reiner_riwlin.hpp"
 
 namespace tremie::icar_vane {
 namespace {

@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "apparatus/cli/commands.hpp"
-#include "apparatus/cli/study/charts.hpp"
 #include "apparatus/cli/program.hpp"
+#include "apparatus/cli/study/charts.hpp"
 #include "apparatus/report/rheometer_files.hpp"
 #include "apparatus/report/run_folder.hpp"
 #include "apparatus/scene/input_error.hpp"

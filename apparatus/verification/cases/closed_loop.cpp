@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "apparatus/icar_vane/icar_vane.hpp"
-#include "rheometer/reference/reiner_riwlin.hpp"
 #include "apparatus/verification/suite.hpp"
+#include "rheometer/reference/reiner_riwlin.hpp"
 
 namespace tremie::verification {
 namespace {

@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include "apparatus/icar_vane/icar_vane.hpp"
+#include "apparatus/verification/references/vane_finite_elements.hpp"
+#include "apparatus/verification/suite.hpp"
 #include "rheometer/reference/reiner_riwlin.hpp"
 #include "rheometer/reference/thixotropic_couette.hpp"
-#include "apparatus/verification/suite.hpp"
-#include "apparatus/verification/references/vane_finite_elements.hpp"
 
 namespace tremie::verification {
 namespace {
@@ -168,6 +168,8 @@ Case blades(Depth depth) {
 
 }  // namespace
 
-CaseGroup couette_cases(Depth depth) { return {5, "Couette flow", {steady(depth), decay(depth), blades(depth)}}; }
+CaseGroup couette_cases(Depth depth) {
+  return {5, "Couette flow", {steady(depth), decay(depth), blades(depth)}};
+}
 
 }  // namespace tremie::verification

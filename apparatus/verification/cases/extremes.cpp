@@ -1,11 +1,12 @@
 // Rung 10: stiff and extreme scenes.
 
+#include "apparatus/verification/extremes.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
 
-#include "apparatus/verification/extremes.hpp"
 #include "apparatus/verification/suite.hpp"
 
 namespace tremie::verification {

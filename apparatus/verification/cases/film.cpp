@@ -1,10 +1,11 @@
 // Rung 4: a Bingham film down a plane and plane Poiseuille flow.
 
+#include "apparatus/verification/references/film.hpp"
+
 #include <fmt/format.h>
 
-#include "libmpm/explicit/step.hpp"
-#include "apparatus/verification/references/film.hpp"
 #include "apparatus/verification/suite.hpp"
+#include "libmpm/explicit/step.hpp"
 
 namespace tremie::verification {
 namespace {
@@ -134,8 +135,9 @@ CaseGroup film_cases(Depth depth) {
         [&](double y) { return film::exact_velocity(flow, y); }, 1.5, depth));
     group.cases.back().reference = "closed form: a parabola up to the plug";
     group.cases.push_back(flow_case(name + "_regularised", title + ", Papanastasiou m = 100 s", flow,
-                                   Papanastasiou{100.0}, film::RegularisedProfile(flow, 100.0), 1.8, depth));
-    group.cases.back().reference = "τ(γ̇) = ρ g_x (…) solved for γ̇ and summed by Gauss' rule on 4000 intervals";
+                                    Papanastasiou{100.0}, film::RegularisedProfile(flow, 100.0), 1.8, depth));
+    group.cases.back().reference =
+        "τ(γ̇) = ρ g_x (…) solved for γ̇ and summed by Gauss' rule on 4000 intervals";
     group.cases.push_back(schemes(flow, depth));
   }
   return group;

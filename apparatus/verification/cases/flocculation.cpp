@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "rheometer/reference/flocculation_ode.hpp"
 #include "apparatus/verification/references/flocculation_methods.hpp"
 #include "apparatus/verification/suite.hpp"
+#include "rheometer/reference/flocculation_ode.hpp"
 
 namespace tremie::verification {
 namespace {
@@ -124,8 +124,8 @@ CaseGroup flocculation_cases(Depth depth) {
   group.cases.push_back(
       history_case("gated", "Up and down through the gate, 0 to 5 to 0 1/s in 20 s", gate, depth));
   group.cases.back().bounds = {{.what = "update: error at 0.01 s",
-                               .value = group.cases.back().series[0].runs[3].error,
-                               .limit = 1e-10}};
+                                .value = group.cases.back().series[0].runs[3].error,
+                                .limit = 1e-10}};
   return group;
 }
 

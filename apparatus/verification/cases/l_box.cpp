@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "apparatus/verification/suite.hpp"
 #include "apparatus/verification/references/lbox_case.hpp"
+#include "apparatus/verification/suite.hpp"
 
 namespace tremie::verification {
 namespace {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <random>
 
+#include "apparatus/verification/suite.hpp"
 #include "libmpm/constitutive/stress.hpp"
 #include "libmpm/constitutive/yield_law.hpp"
-#include "apparatus/verification/suite.hpp"
 
 namespace tremie::verification {
 namespace {

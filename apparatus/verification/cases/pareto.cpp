@@ -32,15 +32,14 @@ Model explicitly(SchemeKind scheme, ShapeKind shape) {
 
 /// The default first.
 std::vector<Scheme> schemes(double finest_explicit) {
-  return {
-      {"exact yield, ADMM (the default)", implicit(ExactBingham{}, MethodKind::automatic), 5.0},
-      {"exact yield, Newton", implicit(ExactBingham{}, MethodKind::newton), 10.0},
-      {"Papanastasiou, m = 100 s", implicit(Papanastasiou{100.0}, MethodKind::automatic), 10.0},
-      {"Papanastasiou, m = 5 s", implicit(Papanastasiou{5.0}, MethodKind::automatic), 10.0},
-      {"explicit USL, splines, m = 5 s", explicitly(SchemeKind::explicit_usl, ShapeKind::b_spline),
-       finest_explicit},
-      {"explicit USF, GIMP, m = 5 s", explicitly(SchemeKind::explicit_usf, ShapeKind::gimp),
-       finest_explicit}};
+  return {{"exact yield, ADMM (the default)", implicit(ExactBingham{}, MethodKind::automatic), 5.0},
+          {"exact yield, Newton", implicit(ExactBingham{}, MethodKind::newton), 10.0},
+          {"Papanastasiou, m = 100 s", implicit(Papanastasiou{100.0}, MethodKind::automatic), 10.0},
+          {"Papanastasiou, m = 5 s", implicit(Papanastasiou{5.0}, MethodKind::automatic), 10.0},
+          {"explicit USL, splines, m = 5 s", explicitly(SchemeKind::explicit_usl, ShapeKind::b_spline),
+           finest_explicit},
+          {"explicit USF, GIMP, m = 5 s", explicitly(SchemeKind::explicit_usf, ShapeKind::gimp),
+           finest_explicit}};
 }
 
 /// Cells across [mm], half as high.

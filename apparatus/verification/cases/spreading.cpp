@@ -6,8 +6,8 @@
 
 #include "apparatus/verification/references/finite_elements.hpp"
 #include "apparatus/verification/references/huppert.hpp"
-#include "apparatus/verification/suite.hpp"
 #include "apparatus/verification/references/slender.hpp"
+#include "apparatus/verification/suite.hpp"
 
 namespace tremie::verification {
 namespace {

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "libmpm/constitutive/yield_law.hpp"
-#include "libmpm/particles/seeding.hpp"
 #include "libmpm/implicit/step.hpp"
+#include "libmpm/particles/seeding.hpp"
 
 namespace tremie::test {
 
@@ -77,8 +77,8 @@ bool all_finite(const Points<D>& points) {
 /// A box of points, n across each cell in each direction, without pressure unless `pressure_at` says
 /// otherwise.
 template <class Geometry, class Pressure>
-void fill_box(Body<Geometry>& body, const Vec<Geometry::dim>& low, const Vec<Geometry::dim>& high, int per_cell,
-              Pressure pressure_at) {
+void fill_box(Body<Geometry>& body, const Vec<Geometry::dim>& low, const Vec<Geometry::dim>& high,
+              int per_cell, Pressure pressure_at) {
   std::array<int, Geometry::dim> n;
   for (int d = 0; d < Geometry::dim; ++d)
     n[d] = static_cast<int>(std::lround((high[d] - low[d]) / body.grid.axes[d].h * per_cell));
@@ -86,7 +86,8 @@ void fill_box(Body<Geometry>& body, const Vec<Geometry::dim>& low, const Vec<Geo
       low, high, n, body.mix.density, body.mix.K, [](const auto&) { return true; }, pressure_at, body.points);
 }
 template <class Geometry>
-void fill_box(Body<Geometry>& body, const Vec<Geometry::dim>& low, const Vec<Geometry::dim>& high, int per_cell) {
+void fill_box(Body<Geometry>& body, const Vec<Geometry::dim>& low, const Vec<Geometry::dim>& high,
+              int per_cell) {
   fill_box(body, low, high, per_cell, [](const auto&) { return 0.0; });
 }
 

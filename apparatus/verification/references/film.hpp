@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "libmpm/constitutive/yield_law.hpp"
-#include "libmpm/particles/seeding.hpp"
 #include "libmpm/implicit/step.hpp"
+#include "libmpm/particles/seeding.hpp"
 
 namespace tremie::verification::film {
 

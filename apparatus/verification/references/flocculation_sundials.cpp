@@ -3,8 +3,8 @@
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
-#include "rheometer/reference/sundials_support.hpp"
 #include "apparatus/verification/references/flocculation_methods.hpp"
+#include "rheometer/reference/sundials_support.hpp"
 
 namespace tremie::study {
 

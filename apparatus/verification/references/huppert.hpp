@@ -7,15 +7,16 @@
 #include <omp.h>
 
 #include "apparatus/slump_flow/reading.hpp"
-#include "libmpm/implicit/step.hpp"
 #include "apparatus/verification/references/bodies.hpp"
 #include "apparatus/verification/references/lubrication.hpp"
+#include "libmpm/implicit/step.hpp"
 
 namespace tremie::verification {
 
 /// A round patch on a no-slip floor with depth h(r), in hydrostatic balance.
 template <class Depth>
-ImplicitBody<Axisymmetric> patch(const Mix& mix, double across, double up, double R, double top, Depth depth) {
+ImplicitBody<Axisymmetric> patch(const Mix& mix, double across, double up, double R, double top,
+                                 Depth depth) {
   ImplicitBody<Axisymmetric> body;
   body.mix = mix;
   body.gravity = {0.0, -9.81};

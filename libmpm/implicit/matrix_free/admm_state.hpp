@@ -46,7 +46,7 @@ inline double sum_of(const Lanes<double>& lanes) { return lanes.sum(); }
 /// Stress and rate that a stands for.
 template <class Law>
 void unpack_stress_and_rate(const Law& law, const Lanes<double> (&a)[5], const Lanes<double>& tau_y, double r,
-                Lanes<double> (&s)[5], Lanes<double> (&d)[5]) {
+                            Lanes<double> (&s)[5], Lanes<double> (&d)[5]) {
   const Lanes<double> size = norm(a);
   Lanes<double> factor;
   for (int l = 0; l < batch_size; ++l)
@@ -70,7 +70,8 @@ inline PackedAdmmState zero_admm_state(int n_cells) {
 }
 
 /// AdmmState of cells that were active before go on from where they were; new cells start unstressed.
-inline PackedAdmmState carried(const IndexMap<3>& old_map, const ActiveGrid<3>& grid, const PackedAdmmState& old) {
+inline PackedAdmmState carried(const IndexMap<3>& old_map, const ActiveGrid<3>& grid,
+                               const PackedAdmmState& old) {
   PackedAdmmState now = zero_admm_state(grid.n_cells());
   now.r = old.r;
   if (old.empty()) return now;

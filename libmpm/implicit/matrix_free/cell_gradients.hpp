@@ -15,8 +15,8 @@
 
 #include "libmpm/grid/active_grid.hpp"
 #include "libmpm/grid/node_reduction.hpp"
-#include "libmpm/parallel/buffers.hpp"
 #include "libmpm/implicit/matrix_free/cell_simd.hpp"
+#include "libmpm/parallel/buffers.hpp"
 
 namespace tremie {
 

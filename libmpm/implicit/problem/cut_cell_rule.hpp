@@ -19,7 +19,8 @@ namespace tremie {
 /// Local coordinates of the fitted places of cell c; bit d of k set means the upper place in direction d.
 template <class Geometry>
 std::array<Vec<Geometry::dim>, power(2, Geometry::dim)> cut_cell_rule(const ActiveGrid<Geometry::dim>& grid,
-                                                                const Points<Geometry::dim>& points, int c) {
+                                                                      const Points<Geometry::dim>& points,
+                                                                      int c) {
   constexpr int D = Geometry::dim;
   double section = 1.0;
   for (const Axis& a : grid.axes) section *= a.h;

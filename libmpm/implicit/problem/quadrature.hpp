@@ -11,10 +11,10 @@
 #include <type_traits>
 #include <vector>
 
-#include "libmpm/grid/active_grid.hpp"
 #include "libmpm/constitutive/equation_of_state.hpp"
-#include "libmpm/particles/particles.hpp"
+#include "libmpm/grid/active_grid.hpp"
 #include "libmpm/implicit/problem/cut_cell_rule.hpp"
+#include "libmpm/particles/particles.hpp"
 
 namespace tremie {
 
@@ -79,7 +79,8 @@ struct Quadrature {
   std::vector<std::array<Vec<D>, n_places>> place;  ///< local coordinates of the places, in a section
 
   void resize(std::size_t n) {
-    B.resize(n), resize_for_overwrite(V, n), resize_for_overwrite(tau_y, n), resize_for_overwrite(V_cell, n), resize_for_overwrite(p, n);
+    B.resize(n), resize_for_overwrite(V, n), resize_for_overwrite(tau_y, n), resize_for_overwrite(V_cell, n),
+        resize_for_overwrite(p, n);
     if constexpr (D < 3)
       resize_for_overwrite(b, n), resize_for_overwrite(place, n);
     else
@@ -141,8 +142,8 @@ void add_up_points(const ActiveGrid<Geometry::dim>& grid, const Points<Geometry:
   structure.fill(0.0);
   for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
     const int p = grid.order[i];
-    const auto share =
-        place_shares<Geometry::dim>(local_coordinates<Geometry::dim>(grid.axes, grid.cell_index[c], points.x[p]));
+    const auto share = place_shares<Geometry::dim>(
+        local_coordinates<Geometry::dim>(grid.axes, grid.cell_index[c], points.x[p]));
     const double section = points.volume(p) / Geometry::measure(points.x[p]);
     const double factor = points.thixotropic() ? 1.0 + points.lambda[p] : 1.0;
     for (std::size_t k = 0; k < share.size(); ++k) {
@@ -227,8 +228,8 @@ inline void lay_out_kinds(const ActiveGrid<3>& grid, Quadrature<ThreeD>& quadrat
 /// pressures. `fit`: the places of partly filled cells are fitted to their points (cut_cell_rule.hpp), in a
 /// section.
 template <class Geometry>
-void lay_out_quadrature(const ActiveGrid<Geometry::dim>& grid, const Points<Geometry::dim>& points, double tau_0,
-                        double K, Quadrature<Geometry>& quadrature, bool fit = false) {
+void lay_out_quadrature(const ActiveGrid<Geometry::dim>& grid, const Points<Geometry::dim>& points,
+                        double tau_0, double K, Quadrature<Geometry>& quadrature, bool fit = false) {
   constexpr int D = Geometry::dim, n = power(2, D);
   quadrature.resize(grid.cell_index.size());
   if constexpr (D == 3) detail::lay_out_kinds(grid, quadrature);

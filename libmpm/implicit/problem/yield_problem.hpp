@@ -17,9 +17,9 @@
 #include "libmpm/boundary/boundary_points.hpp"
 #include "libmpm/boundary/contact.hpp"
 #include "libmpm/grid/active_grid.hpp"
-#include "libmpm/linear/block_system.hpp"
-#include "libmpm/implicit/problem/quadrature.hpp"
 #include "libmpm/implicit/matrix_free/admm_state.hpp"
+#include "libmpm/implicit/problem/quadrature.hpp"
+#include "libmpm/linear/block_system.hpp"
 #include "libmpm/transfer/apic.hpp"
 
 namespace tremie {
@@ -49,13 +49,13 @@ struct YieldProblem {
   std::vector<char> fixed;  ///< a flag a component: prescribed by a wall
   std::vector<ContactPoint<D>> contact;   ///< moving rigid walls
   std::vector<FrictionNode<D>> friction;  ///< Coulomb friction on flat walls, yield drag of side walls
-  std::vector<PenaltyPoint<D>> bound;       ///< walls inside the grid
-  std::vector<PenaltyPoint<D>> surface;     ///< head of the moving free surface, in a section
+  std::vector<PenaltyPoint<D>> bound;     ///< walls inside the grid
+  std::vector<PenaltyPoint<D>> surface;   ///< head of the moving free surface, in a section
   std::vector<double> drag;               ///< viscous drag of side walls, a node each [kg/s]; empty: none
   double zeta = 0.0;                      ///< [Pa s], plane strain alone
   std::vector<double> p_offset = {};      ///< of the cells' pressures [Pa]; empty: those before the step
   double K_share = 1.0;                   ///< K over the mix's
-  double eta = mu;                        ///< viscosity that scales stresses: mu, and the law's at a typical rate
+  double eta = mu;  ///< viscosity that scales stresses: mu, and the law's at a typical rate
 
   /// Pressure of cell c without divergence.
   double offset(int c) const { return p_offset.empty() ? quadrature.p[c] : p_offset[c]; }
@@ -68,11 +68,12 @@ struct SolveReport {
 
 /// Strain-rate vector at Gauss place k of cell c.
 template <class Geometry>
-Vec<Geometry::n_strain> strain_rate(const YieldProblem<Geometry>& problem, const std::vector<Vec<Geometry::dim>>& v,
-                                 int c, int k) {
+Vec<Geometry::n_strain> strain_rate(const YieldProblem<Geometry>& problem,
+                                    const std::vector<Vec<Geometry::dim>>& v, int c, int k) {
   const auto& nodes = problem.grid.cell_nodes[c];
   Vec<Geometry::n_strain> q = problem.quadrature.B[c][k][0] * v[nodes[0]];
-  for (int i = 1; i < power(3, Geometry::dim); ++i) q.noalias() += problem.quadrature.B[c][k][i] * v[nodes[i]];
+  for (int i = 1; i < power(3, Geometry::dim); ++i)
+    q.noalias() += problem.quadrature.B[c][k][i] * v[nodes[i]];
   return q;
 }
 

@@ -120,8 +120,8 @@ inline void DivergenceOperator::number_rows(const ActiveGrid<3>& grid, const Qua
 }
 
 inline void DivergenceOperator::build(const ActiveGrid<3>& grid, const Quadrature<ThreeD>& quadrature,
-                                const std::vector<Mat<3, 3>>& inverse_blocks,
-                                const std::vector<double>& stiffness) {
+                                      const std::vector<Mat<3, 3>>& inverse_blocks,
+                                      const std::vector<double>& stiffness) {
   resize_for_overwrite(G_inverse, inverse_blocks.size());
 #pragma omp parallel for schedule(static)
   for (std::size_t i = 0; i < G_inverse.size(); ++i)

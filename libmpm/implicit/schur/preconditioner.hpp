@@ -19,8 +19,8 @@
 #include <utility>
 #include <vector>
 
-#include "libmpm/implicit/schur/two_level_pcg.hpp"
 #include "libmpm/implicit/schur/divergence_operator.hpp"
+#include "libmpm/implicit/schur/two_level_pcg.hpp"
 
 namespace tremie {
 
@@ -44,8 +44,8 @@ class SchurComplementPreconditioner {
   }
   const DivergenceOperator& rows() const { return rows_; }
   /// z = P^-1 r, four numbers a node; `room`: of the batches' chunks.
-  void apply(const CellBatches& batches, const ActiveGrid<3>& grid, const Eigen::VectorXf& r, ReductionBuffer& room,
-             Eigen::VectorXf& z);
+  void apply(const CellBatches& batches, const ActiveGrid<3>& grid, const Eigen::VectorXf& r,
+             ReductionBuffer& room, Eigen::VectorXf& z);
 
  private:
   void order_across_the_thin_way(const ActiveGrid<3>& grid);
@@ -192,7 +192,7 @@ void SchurComplementPreconditioner::fill_by_boxes(const ActiveGrid<3>& grid, Add
 /// The same on any grid.
 template <class Add>
 void SchurComplementPreconditioner::fill_by_nodes(const ActiveGrid<3>& grid, const CellBatches& batches,
-                                           Add add) const {
+                                                  Add add) const {
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < grid.n_cells(); ++c) {
     add(c, c, rows_.softness[c]);
@@ -208,7 +208,8 @@ void SchurComplementPreconditioner::fill_by_nodes(const ActiveGrid<3>& grid, con
 }
 
 template <class Add>
-void SchurComplementPreconditioner::fill(const ActiveGrid<3>& grid, const CellBatches& batches, Add add) const {
+void SchurComplementPreconditioner::fill(const ActiveGrid<3>& grid, const CellBatches& batches,
+                                         Add add) const {
   bool by_boxes = true;  // a periodic axis repeats places, a repeated knot adds nodes
   for (const Axis& a : grid.axes) by_boxes = by_boxes && !a.periodic && a.n_repeated_knots() == 0;
   by_boxes ? fill_by_boxes(grid, add) : fill_by_nodes(grid, batches, add);
@@ -232,9 +233,9 @@ inline void SchurComplementPreconditioner::lay_out(const ActiveGrid<3>& grid, do
 }
 
 inline bool SchurComplementPreconditioner::build(const ActiveGrid<3>& grid, const CellBatches& batches,
-                                          const Quadrature<ThreeD>& quadrature,
-                                          const std::vector<Mat<3, 3>>& G_inverse,
-                                          const std::vector<double>& stiffness, double ratio) {
+                                                 const Quadrature<ThreeD>& quadrature,
+                                                 const std::vector<Mat<3, 3>>& G_inverse,
+                                                 const std::vector<double>& stiffness, double ratio) {
   // What S^-1 misses, C makes ratio times as large. Single precision leaves no less than a few millionths.
   reduction_ = std::clamp(0.3 / ratio, 5e-6, 1e-2);
   rows_.build(grid, quadrature, G_inverse, stiffness);
@@ -254,7 +255,8 @@ inline bool SchurComplementPreconditioner::build(const ActiveGrid<3>& grid, cons
 }
 
 inline void SchurComplementPreconditioner::apply(const CellBatches& batches, const ActiveGrid<3>& grid,
-                                          const Eigen::VectorXf& r, ReductionBuffer& room, Eigen::VectorXf& z) {
+                                                 const Eigen::VectorXf& r, ReductionBuffer& room,
+                                                 Eigen::VectorXf& z) {
   const int n_cells = grid.n_cells(), n_nodes = grid.n_nodes();
   z.resize(r.size());
   y_.resize(r.size());
@@ -280,7 +282,8 @@ inline void SchurComplementPreconditioner::apply(const CellBatches& batches, con
     };
     reduction.sweep_in_region<float>(room, give, [&](int i) {
       z.segment<4>(4 * i) =
-          y_.segment<4>(4 * i) - DivergenceOperator::times(rows_.G_inverse[i], reduction.sum_at<float, 4>(i, room));
+          y_.segment<4>(4 * i) -
+          DivergenceOperator::times(rows_.G_inverse[i], reduction.sum_at<float, 4>(i, room));
     });
   }
   for (const MirrorNode<3>& m : grid.mirrors)

@@ -10,9 +10,9 @@
 //
 //   M^-1 = F' F + 1/2 P (P' S P)^-1 P'.
 
-#include "libmpm/linear/conjugate_gradients.hpp"
 #include "libmpm/implicit/schur/fsai.hpp"
 #include "libmpm/implicit/schur/matrix.hpp"
+#include "libmpm/linear/conjugate_gradients.hpp"
 #include "libmpm/linear/twisted_cholesky.hpp"
 
 namespace tremie {
@@ -36,8 +36,9 @@ class TwoLevelPcg {
 
   Fsai near_;
   Eigen::VectorXf coarse_;
-  std::vector<int> cube_;        ///< of each cell
-  std::vector<int> aggregate_begin_;  ///< cells aggregate_cell_[aggregate_begin_[k] .. aggregate_begin_[k + 1]) are in cube k
+  std::vector<int> cube_;  ///< of each cell
+  std::vector<int>
+      aggregate_begin_;  ///< cells aggregate_cell_[aggregate_begin_[k] .. aggregate_begin_[k + 1]) are in cube k
   std::vector<int> aggregate_cell_;
   TwistedCholesky<float> band_;
 };
