@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "apparatus/cli/commands.hpp"
-#include "apparatus/cli/passive_threads.hpp"
+#include "apparatus/cli/process/passive_threads.hpp"
 #include "apparatus/cli/progress.hpp"
 #include "apparatus/cli/set_option.hpp"
 #include "apparatus/registry/error_estimate.hpp"

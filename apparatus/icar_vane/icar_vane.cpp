@@ -2,11 +2,11 @@
 
 #include <omp.h>
 
-#include "apparatus/common/frames.hpp"
-#include "apparatus/common/run_checks.hpp"
-#include "apparatus/common/run_loop.hpp"
 #include "apparatus/icar_vane/readings.hpp"
 #include "apparatus/icar_vane/sections.hpp"
+#include "apparatus/run/frames.hpp"
+#include "apparatus/run/run_checks.hpp"
+#include "apparatus/run/run_loop.hpp"
 
 namespace tremie::icar_vane {
 namespace {

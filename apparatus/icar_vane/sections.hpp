@@ -5,8 +5,8 @@
 
 #include <numbers>
 
-#include "apparatus/common/step_settings.hpp"
 #include "apparatus/icar_vane/icar_vane.hpp"
+#include "apparatus/run/step_settings.hpp"
 #include "libmpm/implicit/particle_splitting.hpp"
 #include "libmpm/particles/seeding.hpp"
 

@@ -2,13 +2,13 @@
 
 // The L-box test in one geometry: set up, step until rest, read.
 
-#include "apparatus/common/frames.hpp"
-#include "apparatus/common/run_checks.hpp"
-#include "apparatus/common/run_loop.hpp"
-#include "apparatus/common/step_settings.hpp"
 #include "apparatus/l_box/l_box.hpp"
 #include "apparatus/l_box/reading.hpp"
 #include "apparatus/l_box/set_up.hpp"
+#include "apparatus/run/frames.hpp"
+#include "apparatus/run/run_checks.hpp"
+#include "apparatus/run/run_loop.hpp"
+#include "apparatus/run/step_settings.hpp"
 
 namespace tremie::l_box {
 

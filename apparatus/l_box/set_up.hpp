@@ -10,9 +10,9 @@
 #include <numbers>
 #include <vector>
 
-#include "apparatus/common/body_readings.hpp"
-#include "apparatus/common/step_settings.hpp"
 #include "apparatus/l_box/l_box.hpp"
+#include "apparatus/run/body_readings.hpp"
+#include "apparatus/run/step_settings.hpp"
 #include "libmpm/particles/seeding.hpp"
 
 namespace tremie::l_box {

@@ -9,9 +9,9 @@
 #include <thread>
 
 #include "apparatus/cell/apparatus.hpp"
-#include "apparatus/common/threads.hpp"
 #include "apparatus/icar_vane/apparatus.hpp"
 #include "apparatus/l_box/apparatus.hpp"
+#include "apparatus/run/threads.hpp"
 #include "apparatus/scene/resolved.hpp"
 #include "apparatus/slump_flow/apparatus.hpp"
 

@@ -1,7 +1,6 @@
 #include "apparatus/slump_flow/apparatus.hpp"
 
-#include "apparatus/slump_flow/keys.hpp"
-#include "apparatus/slump_flow/outcome.hpp"
+#include "apparatus/slump_flow/scene.hpp"
 
 namespace tremie::slump_flow {
 

@@ -2,10 +2,10 @@
 
 // The slump-flow test by explicit steps: many short ones between two readings.
 
-#include "apparatus/common/energy_watch.hpp"
-#include "apparatus/common/frames.hpp"
-#include "apparatus/common/run_checks.hpp"
-#include "apparatus/common/run_loop.hpp"
+#include "apparatus/run/energy_watch.hpp"
+#include "apparatus/run/frames.hpp"
+#include "apparatus/run/run_checks.hpp"
+#include "apparatus/run/run_loop.hpp"
 #include "apparatus/slump_flow/checks.hpp"
 #include "apparatus/slump_flow/series.hpp"
 #include "apparatus/slump_flow/set_up.hpp"

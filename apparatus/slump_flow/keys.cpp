@@ -1,8 +1,7 @@
-#include "apparatus/slump_flow/keys.hpp"
-
 #include <fmt/format.h>
 
 #include "apparatus/common/shared_keys.hpp"
+#include "apparatus/slump_flow/scene.hpp"
 
 namespace tremie::scene {
 namespace {

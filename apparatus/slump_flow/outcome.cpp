@@ -1,10 +1,9 @@
-#include "apparatus/slump_flow/outcome.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
 
 #include "apparatus/common/outcome_parts.hpp"
+#include "apparatus/slump_flow/scene.hpp"
 
 namespace tremie::scene {
 namespace {

@@ -1,5 +1,5 @@
 #include "apparatus/slump_flow/explicit_run.hpp"
-#include "apparatus/slump_flow/runs.hpp"
+#include "apparatus/slump_flow/set_up.hpp"
 
 namespace tremie::slump_flow {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "apparatus/common/body_readings.hpp"
+#include "apparatus/run/body_readings.hpp"
 #include "apparatus/slump_flow/reading.hpp"
 #include "apparatus/slump_flow/set_up.hpp"
 

@@ -2,8 +2,8 @@
 
 // The filled cone before its lift, the settings of its steps, and the wall that is lifted.
 
-#include "apparatus/common/body_readings.hpp"
-#include "apparatus/common/step_settings.hpp"
+#include "apparatus/run/body_readings.hpp"
+#include "apparatus/run/step_settings.hpp"
 #include "apparatus/slump_flow/cone.hpp"
 #include "apparatus/slump_flow/slump_flow.hpp"
 
@@ -55,5 +55,9 @@ inline void lifted_wall(const Scene& scene, double reach, RigidWall<2>& wall) {
 inline void lifted_wall(const Scene& scene, double reach, RigidWall<3>& wall) {
   wall = revolved(lifted_wall(scene, reach));
 }
+
+/// The two ways to run it, compiled apart.
+Outcome run_implicit(const Scene& scene, const Observer& observer);
+Outcome run_explicit(const Scene& scene, const Observer& observer);
 
 }  // namespace tremie::slump_flow

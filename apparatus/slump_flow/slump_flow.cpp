@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "apparatus/slump_flow/explicit_run.hpp"
-#include "apparatus/slump_flow/runs.hpp"
+#include "apparatus/slump_flow/set_up.hpp"
 
 namespace tremie::slump_flow {
 namespace {

@@ -27,12 +27,12 @@
 namespace tremie::detail {
 
 /// `of`, and of[0] where the id is that of no point.
-inline std::array<int, octet_size> in_place_of_none(const std::array<std::int32_t, octet_size>& id,
-                                                    const std::array<int, octet_size>& of) {
-  EightWhole ids, values;
+inline std::array<int, f64x8_size> in_place_of_none(const std::array<std::int32_t, f64x8_size>& id,
+                                                    const std::array<int, f64x8_size>& of) {
+  i32x8 ids, values;
   std::memcpy(&ids, id.data(), sizeof ids), std::memcpy(&values, of.data(), sizeof values);
-  const EightWhole chosen = ids < 0 ? EightWhole{} + of[0] : values;
-  std::array<int, octet_size> result;
+  const i32x8 chosen = ids < 0 ? i32x8{} + of[0] : values;
+  std::array<int, f64x8_size> result;
   std::memcpy(result.data(), &chosen, sizeof chosen);
   return result;
 }
@@ -55,31 +55,31 @@ class PressureCells {
         held_(held) {
     if (!wanted) return;
     entered_.fill(0), impulse_.fill(0.0);
-    if (follows_) moment_.fill(NodeLanes{}), points_.fill(0);
+    if (follows_) moment_.fill(f64x4{}), points_.fill(0);
     for (int d = 0; d < D; ++d) {
       origin_[d] = frame.axis[d].origin, per_cell_[d] = frame.axis[d].ih, first_[d] = frame.axis[d].first;
       along_[d][d] = static_cast<Real>(per_cell_[d]);
       for (int e = 0; e < D; ++e) across_[d][e] = e == d ? 0 : 1;
     }
-    centre_ = edges_at(NodeLanes{} + 0.5);
+    centre_ = edges_at(f64x4{} + 0.5);
   }
 
   /// Enters the points of group g: `cells` are theirs.
-  void enter(const LanePoints<D>& points, std::size_t g, std::array<int, octet_size>& cells) {
-    const std::array<Octet, D> x = places_of<D>(points, g);
+  void enter(const LanePoints<D>& points, std::size_t g, std::array<int, f64x8_size>& cells) {
+    const std::array<f64x8, D> x = places_of<D>(points, g);
     find_pressure_cells<D, Real>(frame_, x, cells);
     // What fills up a group need not have stayed with its points: it must not enter a cell of its own.
     cells = in_place_of_none(points.id[g], cells);
     for (const int cell : cells) entered_[static_cast<std::size_t>(cell)] = 1;
     if (!follows_) return;
-    Octet column[4] = {};
+    f64x8 column[4] = {};
     column[D] = points.mass[g];
     for (int d = 0; d < D; ++d) column[d] = column[D] * x[d];
-    NodeLanes moment[octet_size];
+    f64x4 moment[f64x8_size];
     to_rows(column, moment);
-    for (std::size_t l = 0; l < octet_size; ++l) moment_[static_cast<std::size_t>(cells[l])] += moment[l];
+    for (std::size_t l = 0; l < f64x8_size; ++l) moment_[static_cast<std::size_t>(cells[l])] += moment[l];
     if (frame_.kind != ShapeFunctions::b_spline) return;
-    for (std::size_t l = 0; l < octet_size; ++l) {
+    for (std::size_t l = 0; l < f64x8_size; ++l) {
       const auto c = static_cast<std::size_t>(cells[l]);
       if (moment[l][D] > 0.0 && points_[c] < few + 1) first_points_[c][points_[c]++] = moment[l];
     }
@@ -91,12 +91,12 @@ class PressureCells {
   }
 
   /// Of the cells of eight points.
-  Octet divergence(const std::array<int, octet_size>& cells) const {
+  f64x8 divergence(const std::array<int, f64x8_size>& cells) const {
     return look_up(divergence_.data(), cells);
   }
 
   /// Adds the impulses of n points, pressure times volume times step.
-  void push(const std::array<int, octet_size>& cells, int points, const Octet& impulse) {
+  void push(const std::array<int, f64x8_size>& cells, int points, const f64x8& impulse) {
     for (int l = 0; l < points; ++l)
       impulse_[static_cast<std::size_t>(cells[static_cast<std::size_t>(l)])] += impulse[l];
   }
@@ -113,8 +113,8 @@ class PressureCells {
       }
       with_rows(cell, [&](double share, int base, const auto& weights, double x_0) {
         constexpr int width = std::remove_cvref_t<decltype(weights)>::n_controls;
-        NodeLanes value = {}, slope[D] = {};
-        const NodeLanes moment[D] = {};
+        f64x4 value = {}, slope[D] = {};
+        const f64x4 moment[D] = {};
         if (std::is_same_v<Geometry, Axisymmetric>) value[0] = share * impulse / x_0;
         for (int d = 0; d < D; ++d) slope[d][d] = share * impulse;
         scatter<D, width>(&sums[base], weights, value, slope, moment);
@@ -184,17 +184,17 @@ class PressureCells {
   }();
 
   /// Place in a cell of what has this moment: mass times place, and mass.
-  NodeLanes place_in(std::size_t cell, const NodeLanes& moment) const {
+  f64x4 place_in(std::size_t cell, const f64x4& moment) const {
     const Index<D> at = index_of(cell);
-    NodeLanes begin = first_;
+    f64x4 begin = first_;
     for (int d = 0; d < D; ++d) begin[d] += at[d];
     return (moment * (1.0 / moment[D]) - origin_) * per_cell_ - begin;
   }
 
   /// Where the row of a cell is, in the cell.
-  NodeLanes place_of(std::size_t cell) const {
+  f64x4 place_of(std::size_t cell) const {
     if (follows_) return place_in(cell, moment_[cell]);
-    NodeLanes place = NodeLanes{} + 0.5;
+    f64x4 place = f64x4{} + 0.5;
     for (int d = 0; d < D && held_; ++d) place[d] = static_cast<double>((*held_)[cell].place[d]);
     return place;
   }
@@ -205,7 +205,7 @@ class PressureCells {
     return frame_.kind == ShapeFunctions::gimp && !std::is_same_v<Geometry, Axisymmetric>;
   }
 
-  Edges edges_at(const NodeLanes& place) const {
+  Edges edges_at(const f64x4& place) const {
     Node side[D][2];  // a corner's slopes are the product of its sides in all directions
     for (int d = 0; d < D; ++d) {
       const auto s = static_cast<Real>(place[d]);
@@ -238,12 +238,12 @@ class PressureCells {
   bool leaves_out_a_corner(std::size_t cell) const {
     const std::size_t count = points_[cell];
     if (count == 1 || count > few) return false;
-    const NodeLanes mean = place_of(cell);
-    NodeLanes place[few];
+    const f64x4 mean = place_of(cell);
+    f64x4 place[few];
     for (std::size_t p = 0; p < count; ++p) place[p] = place_in(cell, first_points_[cell][p]);
     for (int k = 0; k < power(2, D); ++k) {
       const Index<D> at = corner<D>(k);
-      const auto weight = [&at](const NodeLanes& s) {
+      const auto weight = [&at](const f64x4& s) {
         double w = 1.0;
         for (int d = 0; d < D; ++d) w *= at[d] == 1 ? s[d] : 1.0 - s[d];
         return w;
@@ -258,7 +258,7 @@ class PressureCells {
   /// use(share, base, weights, first coordinate) at the row's place, or at the points'.
   template <class Use>
   void with_rows(std::size_t cell, Use use) const {
-    const auto at_place = [&](const NodeLanes& place, double share) {
+    const auto at_place = [&](const f64x4& place, double share) {
       with_row(cell, place,
                [&](int base, const auto& weights, double x_0) { use(share, base, weights, x_0); });
     };
@@ -267,7 +267,7 @@ class PressureCells {
       return;
     }
     for (std::size_t p = 0; p < points_[cell]; ++p) {
-      const NodeLanes& point = first_points_[cell][p];
+      const f64x4& point = first_points_[cell][p];
       at_place(place_in(cell, point), point[D] / moment_[cell][D]);
     }
   }
@@ -275,7 +275,7 @@ class PressureCells {
   /// use(base, weights, first coordinate) at a place in a cell: three nodes a direction, or the cell's two
   /// corners.
   template <class Use>
-  void with_row(std::size_t cell, const NodeLanes& place, Use use) const {
+  void with_row(std::size_t cell, const f64x4& place, Use use) const {
     const Index<D> at = index_of(cell);
     const double x_0 = origin_[0] + (first_[0] + at[0] + place[0]) * frame_.axis[0].h;
     if (frame_.kind == ShapeFunctions::gimp) {
@@ -304,16 +304,16 @@ class PressureCells {
   const StencilFrame<D>& frame_;
   bool follows_;  ///< the rows' places are those of the points
   const HeldCells<D>* held_;
-  NodeLanes origin_ = {}, per_cell_ = {}, first_ = {};
+  f64x4 origin_ = {}, per_cell_ = {}, first_ = {};
   Node across_[D] = {}, along_[D] = {};                ///< ones but in direction d; 1/h in it
   Edges centre_;                                       ///< of a row at its cell's centre
   std::array<std::uint8_t, (n + 7) / 8 * 8> entered_;  ///< 1 where a cell has points
   std::array<double, n> divergence_, impulse_;
   // Where rows follow the points:
   static constexpr std::size_t few = 7;  ///< less than a cell is seeded with in space
-  std::array<NodeLanes, n> moment_;      ///< mass times place, and mass
+  std::array<f64x4, n> moment_;          ///< mass times place, and mass
   std::array<std::uint8_t, n> points_;   ///< in a cell; one more than a few stands for all that are more
-  std::array<std::array<NodeLanes, few + 1>, n> first_points_;  ///< their moments
+  std::array<std::array<f64x4, few + 1>, n> first_points_;  ///< their moments
 };
 
 }  // namespace tremie::detail

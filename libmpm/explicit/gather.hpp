@@ -38,13 +38,13 @@ struct PassSums {
 
 /// The same for each lane, while a tile's groups are visited.
 struct LaneSums {
-  Octet farthest = {}, speed2 = {}, volume = {}, volume_rate = {}, lambda = {};
-  OctetMask ran_away = {};
+  f64x8 farthest = {}, speed2 = {}, volume = {}, volume_rate = {}, lambda = {};
+  i64x8 ran_away = {};
   std::int64_t mixed = 0;
 
   PassSums reduced() const {
     bool away = false;
-    for (int l = 0; l < octet_size; ++l) away = away || ran_away[l] != 0;
+    for (int l = 0; l < f64x8_size; ++l) away = away || ran_away[l] != 0;
     return {largest(farthest), largest(speed2), sum(volume), sum(volume_rate), largest(lambda), away, mixed};
   }
 };
@@ -52,7 +52,7 @@ struct LaneSums {
 /// Grid fields at eight points, as far as a pass reads them.
 template <int D>
 struct Fields {
-  Octet v[4], v_start[4], L[D][4], moment[D][4];  ///< L[b][a] = dv_a/dx_b
+  f64x8 v[4], v_start[4], L[D][4], moment[D][4];  ///< L[b][a] = dv_a/dx_b
 };
 
 template <int D>
@@ -60,7 +60,7 @@ using Cube = typename TileGrid<D>::Buffer;
 
 /// Eight points whose stencils begin at one node.
 template <Wanted wanted, int D>
-void gather_side_by_side(const NodeLanes* node, const Weights<D>& weights, Fields<D>& fields) {
+void gather_side_by_side(const f64x4* node, const Weights<D>& weights, Fields<D>& fields) {
   for (int c = 0; c < D; ++c) {
     const auto at = gather_together<D, wanted>(node, c, weights);
     fields.v[c] = at.value;
@@ -72,8 +72,8 @@ void gather_side_by_side(const NodeLanes* node, const Weights<D>& weights, Field
 /// n points one by one; what fills up the group is taken with the first.
 template <Wanted wanted, int D>
 void gather_one_by_one(const Cube<D>& v, const Weights<D>& weights, int n, Fields<D>& fields) {
-  NodeLanes value[octet_size], slope[D][octet_size], moment[D][octet_size];
-  for (int l = 0; l < octet_size; ++l) {
+  f64x4 value[f64x8_size], slope[D][f64x8_size], moment[D][f64x8_size];
+  for (int l = 0; l < f64x8_size; ++l) {
     const int from = l < n ? l : 0;
     const auto at =
         gather<D, 3, wanted>(&v[weights.base[static_cast<std::size_t>(from)]], of_lane<D>(weights, from));
@@ -93,7 +93,7 @@ bool gather_by_place(const Cube<D>& v, const Weights<D>& weights, int n, Fields<
   constexpr int most_places = 3;  // as dear as one by one
   std::array<int, most_places> place;
   int places = 0;
-  OctetMask at = {};  // which of the places each point has
+  i64x8 at = {};  // which of the places each point has
   for (int l = 0; l < n; ++l) {
     const int base = weights.base[static_cast<std::size_t>(l)];
     int k = 0;
@@ -106,7 +106,7 @@ bool gather_by_place(const Cube<D>& v, const Weights<D>& weights, int n, Fields<
   for (int k = 1; k < places; ++k) {
     Fields<D> here;
     gather_side_by_side<wanted, D>(&v[place[static_cast<std::size_t>(k)]], weights, here);
-    const OctetMask take = at == k;
+    const i64x8 take = at == k;
     for (int c = 0; c < D; ++c) {
       fields.v[c] = take ? here.v[c] : fields.v[c];
       for (int d = 0; d < D && wanted.slopes; ++d) fields.L[d][c] = take ? here.L[d][c] : fields.L[d][c];

@@ -15,10 +15,10 @@ namespace tremie::detail {
 using HeldBy = std::uint8_t;
 
 /// Ones, but for the components that are held.
-inline constexpr std::array<NodeLanes, 8> left_by = [] {
-  std::array<NodeLanes, 8> left{};
+inline constexpr std::array<f64x4, 8> left_by = [] {
+  std::array<f64x4, 8> left{};
   for (std::size_t held = 0; held < left.size(); ++held)
-    left[held] = NodeLanes{held & 1 ? 0.0 : 1.0, held & 2 ? 0.0 : 1.0, held & 4 ? 0.0 : 1.0, 1.0};
+    left[held] = f64x4{held & 1 ? 0.0 : 1.0, held & 2 ? 0.0 : 1.0, held & 4 ? 0.0 : 1.0, 1.0};
   return left;
 }();
 
@@ -26,10 +26,10 @@ inline constexpr std::array<NodeLanes, 8> left_by = [] {
 template <int D>
 struct WallPoint {
   int n = 0;  ///< nodes that it reaches
-  std::array<NodeLanes*, power(3, D)> node;
+  std::array<f64x4*, power(3, D)> node;
   std::array<double, power(3, D)> N;
   std::array<HeldBy, power(3, D)> held;
-  NodeLanes normal = {};
+  f64x4 normal = {};
   double target = 0.0;   ///< least normal velocity [m/s]
   double inertia = 0.0;  ///< 1/kg: of the nodes against an impulse along the normal
   double given = 0.0;    ///< impulse so far [N s]
@@ -88,7 +88,7 @@ Side side_of(const ExplicitState<Geometry>& state, const Tile<Geometry::dim>& ti
 
 /// The velocity that a unit impulse along the normal gives the k-th node of a point.
 template <int D>
-NodeLanes given_by_push(const WallPoint<D>& p, std::size_t k) {
+f64x4 given_by_push(const WallPoint<D>& p, std::size_t k) {
   return p.N[k] * (*p.node[k])[D] * (p.normal * left_by[p.held[k]]);
 }
 
@@ -99,7 +99,7 @@ void enter_controls(ExplicitState<Geometry>& state, const Tile<Geometry::dim>& t
   constexpr int D = Geometry::dim;
   Side side[D];
   for (int d = 0; d < D; ++d) side[d] = side_of(state, tile, weights, l, d);
-  NodeLanes inertia = {};
+  f64x4 inertia = {};
   const auto enter = [&](int block, int within, double N, int held) {
     if (N == 0.0) return;
     const auto b = static_cast<std::size_t>(tile.block[static_cast<std::size_t>(block)]);
@@ -159,7 +159,7 @@ std::vector<WallPoint<Geometry::dim>> find_wall_points(const RigidWall<Geometry:
 /// Brings a point's approach to the wall to what it may be.
 template <int D>
 void push_off(WallPoint<D>& p) {
-  NodeLanes v = {};
+  f64x4 v = {};
   const auto n = static_cast<std::size_t>(p.n);
   for (std::size_t k = 0; k < n; ++k) v += p.N[k] * *p.node[k];
   double u = 0.0;
@@ -177,9 +177,9 @@ void push_off_wall(const RigidWall<Geometry::dim>& wall, double time, double dt,
   constexpr int D = Geometry::dim;
   if (!wall) return;
   look_around_wall(wall, time, state);
-  const std::size_t near = state.near_wall.size(), parts = static_cast<std::size_t>(state.grid.crew->size());
+  const std::size_t near = state.near_wall.size(), parts = static_cast<std::size_t>(state.grid.pool->size());
   std::vector<std::vector<WallPoint<D>>> touching(parts);
-  state.grid.crew->run([&](int s) {
+  state.grid.pool->run([&](int s) {
     const auto part = static_cast<std::size_t>(s);
     touching[part] = find_wall_points<Geometry>(wall, time, dt, gap_min, near * part / parts,
                                                 near * (part + 1) / parts, state);

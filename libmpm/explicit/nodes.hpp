@@ -10,7 +10,7 @@ namespace tremie::detail {
 /// takes up to the coefficient times that from the sliding.
 template <int D>
 void apply_walls(const std::array<Axis, D>& axes, const Shape<D>& shape, const WallVelocities<D>& walls,
-                 double friction_coefficient, const Index<D>& node, NodeLanes& v) {
+                 double friction_coefficient, const Index<D>& node, f64x4& v) {
   for (int d = 0; d < D; ++d) {
     const Axis& axis = axes[d];
     const bool low = axis.wall_low() && node[d] == shape.low_wall();
@@ -66,7 +66,7 @@ void update_block(const Body<Geometry>& body, double friction_coefficient, const
   const NodeBlock<D>& block = grid.blocks[b];
   sum_tiles<D>(grid, block, buffers, [&](int row, const FourNodes& total) {
     const int first = row * tile_cells;
-    NodeLanes* const v = &grid.v[b][static_cast<std::size_t>(first)];
+    f64x4* const v = &grid.v[b][static_cast<std::size_t>(first)];
     update(total, static_cast<std::size_t>(first));
     for (std::uint64_t on_walls = block.on_walls >> first & 0xf; on_walls != 0; on_walls &= on_walls - 1) {
       const int i = __builtin_ctzll(on_walls);
@@ -79,13 +79,13 @@ void update_block(const Body<Geometry>& body, double friction_coefficient, const
 
 /// 1/mass of two nodes, which their velocities have in entry D, in all their entries.
 template <int D>
-TwoNodes inverse_mass_of(const TwoNodes& two) {
+two_f64x4 inverse_mass_of(const two_f64x4& two) {
   return __builtin_shufflevector(two, two, D, D, D, D, D + 4, D + 4, D + 4, D + 4);
 }
 
 /// Velocities, and 1/mass in its place.
 template <int D>
-TwoNodes with_mass(const TwoNodes& v, const TwoNodes& inverse_mass) {
+two_f64x4 with_mass(const two_f64x4& v, const two_f64x4& inverse_mass) {
   if constexpr (D == 3)
     return __builtin_shufflevector(v, inverse_mass, 0, 1, 2, 8, 4, 5, 6, 12);
   else
@@ -95,17 +95,17 @@ TwoNodes with_mass(const TwoNodes& v, const TwoNodes& inverse_mass) {
 /// 1/mass of four nodes in all their entries, 0 where there is none.
 template <int D>
 FourNodes inverse_masses(const FourNodes& total) {
-  const NodeLanes mass = __builtin_shufflevector(total.low, total.high, D, D + 4, D + 8, D + 12);
+  const f64x4 mass = __builtin_shufflevector(total.low, total.high, D, D + 4, D + 8, D + 12);
   const auto there = mass > 0.0;
-  const NodeLanes inverse = there ? 1.0 / (there ? mass : NodeLanes{} + 1.0) : NodeLanes{};
+  const f64x4 inverse = there ? 1.0 / (there ? mass : f64x4{} + 1.0) : f64x4{};
   return {__builtin_shufflevector(inverse, inverse, 0, 0, 0, 0, 1, 1, 1, 1),
           __builtin_shufflevector(inverse, inverse, 2, 2, 2, 2, 3, 3, 3, 3)};
 }
 
 /// The same for two nodes.
 template <int D>
-TwoNodes for_two(const Vec<D>& a) {
-  NodeLanes one = {};
+two_f64x4 for_two(const Vec<D>& a) {
+  f64x4 one = {};
   for (int d = 0; d < D; ++d) one[d] = a[d];
   return both(one, one);
 }
@@ -116,10 +116,10 @@ void velocities_from_sums(const Body<Geometry>& body, double friction,
                           const Vec<Geometry::dim>& gravity_impulse, std::size_t b,
                           ExplicitState<Geometry>& state) {
   constexpr int D = Geometry::dim;
-  const TwoNodes pull = for_two<D>(gravity_impulse);
-  const auto velocity = [&pull](const TwoNodes& total, const TwoNodes& inverse) {
-    const TwoNodes moving = total * inverse + pull;
-    return with_mass<D>(inverse > 0.0 ? moving : TwoNodes{}, inverse);
+  const two_f64x4 pull = for_two<D>(gravity_impulse);
+  const auto velocity = [&pull](const two_f64x4& total, const two_f64x4& inverse) {
+    const two_f64x4 moving = total * inverse + pull;
+    return with_mass<D>(inverse > 0.0 ? moving : two_f64x4{}, inverse);
   };
   const auto divide = [&](const FourNodes& total, std::size_t at) {
     const FourNodes inverse = inverse_masses<D>(total);
@@ -136,9 +136,9 @@ template <class Geometry, class Buffer>
 void add_impulses(const Body<Geometry>& body, double friction, const std::vector<Buffer>& impulses, bool flip,
                   const Vec<Geometry::dim>& gravity_impulse, std::size_t b, ExplicitState<Geometry>& state) {
   constexpr int D = Geometry::dim;
-  const TwoNodes pull = for_two<D>(gravity_impulse);
-  const auto faster = [&pull](const TwoNodes& v, const TwoNodes& impulse) {
-    const TwoNodes inverse = inverse_mass_of<D>(v), moving = v + (impulse * inverse + pull);
+  const two_f64x4 pull = for_two<D>(gravity_impulse);
+  const auto faster = [&pull](const two_f64x4& v, const two_f64x4& impulse) {
+    const two_f64x4 inverse = inverse_mass_of<D>(v), moving = v + (impulse * inverse + pull);
     return with_mass<D>(inverse > 0.0 ? moving : v, inverse);
   };
   const auto add = [&](const FourNodes& total, std::size_t at) {

@@ -36,13 +36,13 @@ template <class Geometry, class Lanes, std::size_t n>
 
 /// Updates the flocculation of group g over dt, and gives its static yield stress [Pa].
 template <int D>
-Octet update_yield_stress(const Mix& mix, double dt, const Octet& gamma_dot, LanePoints<D>& points,
+f64x8 update_yield_stress(const Mix& mix, double dt, const f64x8& gamma_dot, LanePoints<D>& points,
                           std::size_t g, LaneSums& sums) {
   if (!points.thixotropic()) {
     if (!points.gamma_dot.empty()) points.gamma_dot[g] = gamma_dot;
     return all_lanes(mix.tau_0);
   }
-  Octet& lambda = points.lambda[g];
+  f64x8& lambda = points.lambda[g];
   if (dt > 0.0)
     lambda = flocculation_step(lambda, *mix.thixotropy, mix.tau_0, points.gamma_dot[g], gamma_dot, dt);
   points.gamma_dot[g] = gamma_dot;
@@ -58,19 +58,19 @@ Lanes viscosity_of(const Mix& mix, const Law& law, const Lanes& gamma_dot, const
 
 /// What eight points oppose to the flow, times volume.
 struct Resistance {
-  Octet viscosity, pressure;  ///< [Pa s m^3], [Pa m^3]
+  f64x8 viscosity, pressure;  ///< [Pa s m^3], [Pa m^3]
 };
 
 /// Updates volume and flocculation of group g over dt. `hold`: the volume that its viscous part is integrated
 /// over, in units of the points' own.
 template <int D, class Law>
-Resistance update_state(const Mix& mix, const Law& law, double dt, const Octet& gamma_dot,
-                        const Octet& divergence, const Octet& hold, LanePoints<D>& points, std::size_t g,
+Resistance update_state(const Mix& mix, const Law& law, double dt, const f64x8& gamma_dot,
+                        const f64x8& divergence, const f64x8& hold, LanePoints<D>& points, std::size_t g,
                         LaneSums& sums) {
-  const Octet tau_y = update_yield_stress(mix, dt, gamma_dot, points, g, sums);
-  Octet& ln_J = points.ln_J[g];
+  const f64x8 tau_y = update_yield_stress(mix, dt, gamma_dot, points, g, sums);
+  f64x8& ln_J = points.ln_J[g];
   ln_J += dt * divergence;
-  const Octet volume = points.V0[g] * exp(ln_J);
+  const f64x8 volume = points.V0[g] * exp(ln_J);
   sums.volume += volume, sums.volume_rate += volume * gamma_dot;
   return {hold * volume * viscosity_of(mix, law, gamma_dot, tau_y), volume * (-mix.K * ln_J)};
 }
@@ -122,17 +122,17 @@ template <int D, class Lanes>
 /// Moves group g with velocities v.
 template <int D>
 [[gnu::always_inline]] inline void move_places(const std::array<Axis, D>& axes, const StencilFrame<D>& frame,
-                                               double dt, const Octet* v, LanePoints<D>& points,
+                                               double dt, const f64x8* v, LanePoints<D>& points,
                                                std::size_t g, LaneSums& sums) {
-  Octet speed2 = {};
+  f64x8 speed2 = {};
   for (int d = 0; d < D; ++d) {
-    Octet& x = points.x[d][g];
+    f64x8& x = points.x[d][g];
     x += dt * v[d];
     const Axis& a = axes[d];
     if (a.wall_low()) x = max(x, all_lanes(a.origin + 1e-6 * a.h));
     if (a.wall_high()) x = min(x, all_lanes(a.origin + a.length() - 1e-6 * a.h));
     speed2 += points.v[d][g] * points.v[d][g];
-    const Octet cells = (dt * frame.axis[d].ih) * (v[d] < 0.0 ? -v[d] : v[d]);
+    const f64x8 cells = (dt * frame.axis[d].ih) * (v[d] < 0.0 ? -v[d] : v[d]);
     sums.ran_away |= ~(cells < 0.5);
     sums.farthest = max(sums.farthest, cells);
   }
@@ -145,12 +145,12 @@ void move_group(const std::array<Axis, D>& axes, const StencilFrame<D>& frame, c
                 double dt, const Weights<D>& weights, Fields<D>& fields, LanePoints<D>& points, std::size_t g,
                 LaneSums& sums) {
   for (int d = 0; d < D; ++d) {
-    Octet& v = points.v[d][g];
+    f64x8& v = points.v[d][g];
     v = transfer.flip ? fields.v[d] + transfer.flip_blend * (v - fields.v_start[d]) : fields.v[d];
   }
   move_places<D>(axes, frame, dt, fields.v, points, g, sums);
   if (transfer.flip) return;
-  const std::array<Octet, D> inverse = inverse_inertia<D>(frame, weights.inertia.data());
+  const std::array<f64x8, D> inverse = inverse_inertia<D>(frame, weights.inertia.data());
   for (int b = 0; b < D; ++b)
     for (int a = 0; a < D; ++a) fields.moment[b][a] *= inverse[b];
   if (points.C[0].empty()) return;
@@ -162,22 +162,22 @@ void move_group(const std::array<Axis, D>& axes, const StencilFrame<D>& frame, c
 /// apart. affine[b][a]: its affine velocities, but with FLIP.
 template <Pass pass, class Geometry>
 void scatter_points(bool flip, bool apart, double impulse_dt, const Weights<Geometry::dim>& weights,
-                    const LaneStress<Geometry::dim, Octet>& stress, const Octet (&affine)[Geometry::dim][4],
+                    const LaneStress<Geometry::dim, f64x8>& stress, const f64x8 (&affine)[Geometry::dim][4],
                     int n, const LanePoints<Geometry::dim>& points, std::size_t g, Cube<Geometry::dim>& sums,
                     Cube<Geometry::dim>& forces) {
   constexpr int D = Geometry::dim;
   constexpr bool hooped = pass.stress && std::is_same_v<Geometry, Axisymmetric>;
   constexpr Given momenta{.slopes = false}, impulses{.values = hooped, .moments = false};
   constexpr Given both{.values = pass.move || hooped, .slopes = pass.stress, .moments = pass.move};
-  const Octet mass = points.mass[g];
+  const f64x8 mass = points.mass[g];
   Spread<D> momentum, impulse;
   Spread<D>& forced = apart ? impulse : momentum;
-  for (Octet& value : momentum.value) value = Octet{};
-  for (Octet& value : impulse.value) value = Octet{};
+  for (f64x8& value : momentum.value) value = f64x8{};
+  for (f64x8& value : impulse.value) value = f64x8{};
   if (pass.move) momentum.value[D] = mass;
   for (int a = 0; a < D; ++a) {
     if (pass.move) momentum.value[a] = mass * points.v[a][g];
-    for (int b = 0; b < D && pass.move; ++b) momentum.moment[b][a] = flip ? Octet{} : mass * affine[b][a];
+    for (int b = 0; b < D && pass.move; ++b) momentum.moment[b][a] = flip ? f64x8{} : mass * affine[b][a];
     for (int b = 0; b < D && pass.stress; ++b) forced.slope[b][a] = -impulse_dt * stress.sigma[a][b];
   }
   if (hooped) forced.value[0] += -impulse_dt * stress.hoop / points.x[0][g];
@@ -191,9 +191,9 @@ void scatter_points(bool flip, bool apart, double impulse_dt, const Weights<Geom
 
 /// What eight points stand for in cells at walls, where the tile has such; `cell`: theirs in the tile.
 template <int D>
-Octet hold_of_group(const HeldCells<D>* held, const std::array<int, octet_size>& cell) {
-  Octet of = all_lanes(1.0);
-  for (std::size_t l = 0; l < octet_size && held; ++l)
+f64x8 hold_of_group(const HeldCells<D>* held, const std::array<int, f64x8_size>& cell) {
+  f64x8 of = all_lanes(1.0);
+  for (std::size_t l = 0; l < f64x8_size && held; ++l)
     of[l] = static_cast<double>((*held)[static_cast<std::size_t>(cell[l])].hold);
   return of;
 }
@@ -208,7 +208,7 @@ TileRows rows_reached(const Weights<D>& weights, int n) {
 }
 
 /// Pressure cells of a group's points.
-using GroupCells = std::array<int, octet_size>;
+using GroupCells = std::array<int, f64x8_size>;
 
 /// What a pass has in hand over one tile. Node: of the nodes that the tile sees.
 template <Pass pass, class Geometry, class Law, class Node>
@@ -251,15 +251,15 @@ GroupCells cells_of_group(const TilePass<pass, Geometry, Law, Node>& in, std::si
 /// The divergence that changes the volumes of group g: by the point where its pressures do not go by the
 /// cell.
 template <Pass pass, class Geometry, class Law, class Node>
-Octet divergence_of_group(const TilePass<pass, Geometry, Law, Node>& in, const Octet& by_point,
+f64x8 divergence_of_group(const TilePass<pass, Geometry, Law, Node>& in, const f64x8& by_point,
                           const GroupCells& cell) {
   if (!in.cells) return by_point;
-  return pass.gather ? in.before.divergence(cell) : Octet{};
+  return pass.gather ? in.before.divergence(cell) : f64x8{};
 }
 
 /// Gives the pressures of group g to its cells, in which it is entered if it was not or has moved since.
 template <Pass pass, class Geometry, class Law>
-void push_cells(TilePass<pass, Geometry, Law, NodeLanes>& in, std::size_t g, int n, const Octet& pressure,
+void push_cells(TilePass<pass, Geometry, Law, f64x4>& in, std::size_t g, int n, const f64x8& pressure,
                 GroupCells& cell) {
   if (!pass.gather || pass.move) in.pressed.enter(in.points, g, cell);
   in.pressed.push(cell, n, in.input.impulse_dt * pressure);
@@ -276,7 +276,7 @@ Fields<D> kept_affine(const LanePoints<D>& points, std::size_t g) {
 
 /// Eight points.
 template <Pass pass, class Geometry, class Law>
-void visit_group(TilePass<pass, Geometry, Law, NodeLanes>& in, std::size_t g) {
+void visit_group(TilePass<pass, Geometry, Law, f64x4>& in, std::size_t g) {
   constexpr int D = Geometry::dim;
   const bool flip = in.settings.transfer.flip;
   const int n = filled<D>(in.points, g);
@@ -293,15 +293,15 @@ void visit_group(TilePass<pass, Geometry, Law, NodeLanes>& in, std::size_t g) {
     fields = kept_affine(in.points, g);
   in.reduced.mixed += weights.together ? 0 : 1;
   Resistance resistance;
-  LaneStress<D, Octet> stress;
+  LaneStress<D, f64x8> stress;
   GroupCells cell;
   if (pass.stress) {
     cell = cells_of_group(in, g);
-    const auto rate = strain_rate<Geometry, Octet>(fields.L, fields.v[0], in.points.x[0][g]);
+    const auto rate = strain_rate<Geometry, f64x8>(fields.L, fields.v[0], in.points.x[0][g]);
     resistance = update_state<D>(in.mix, in.law, in.input.dt, rate.gamma_dot,
                                  divergence_of_group(in, rate.divergence, cell),
                                  hold_of_group<D>(in.held, cell), in.points, g, in.reduced);
-    stress = stress_of<Geometry, Octet>(rate, resistance.viscosity, in.cells ? Octet{} : resistance.pressure);
+    stress = stress_of<Geometry, f64x8>(rate, resistance.viscosity, in.cells ? f64x8{} : resistance.pressure);
   }
   if (pass.move && pass.gather) {
     move_group<D>(in.state.grid.axes, in.frame, in.settings.transfer, in.input.dt, weights, fields, in.points,
@@ -316,7 +316,7 @@ void visit_group(TilePass<pass, Geometry, Law, NodeLanes>& in, std::size_t g) {
 
 /// All groups of a tile.
 template <Pass pass, class Geometry, class Law>
-void visit_groups(TilePass<pass, Geometry, Law, NodeLanes>& in) {
+void visit_groups(TilePass<pass, Geometry, Law, f64x4>& in) {
   for (int g = in.tile.first_group; g < in.tile.last_group; ++g) visit_group(in, static_cast<std::size_t>(g));
 }
 
@@ -340,7 +340,7 @@ PassSums pass_over_tile(const Mix& mix, const Law& law, const ExplicitSettings& 
   const bool flip = settings.transfer.flip;
   auto& sums = sums_of<Node>(grid)[t];
   auto* forces = &sums;
-  if constexpr (std::is_same_v<Node, NodeLanes>)
+  if constexpr (std::is_same_v<Node, f64x4>)
     if (flip && pass.move && pass.stress) forces = &grid.forces[t];
   NodeCube<Node, TileGrid<D>::tile_nodes> v, v_start;
   if (pass.gather) read_blocks<D>(tile, grid.rows[t], grid.v, v);
@@ -390,8 +390,8 @@ PassSums pass_as_set(const Mix& mix, const Law& law, const ExplicitSettings& set
                      std::size_t t, ExplicitState<Geometry>& state) {
   if constexpr (!pass.stress || !pass.move)
     if (settings.single_precision)
-      return pass_over_tile<pass, SingleNode, Geometry>(mix, law, settings, input, t, state);
-  return pass_over_tile<pass, NodeLanes, Geometry>(mix, law, settings, input, t, state);
+      return pass_over_tile<pass, f32x4, Geometry>(mix, law, settings, input, t, state);
+  return pass_over_tile<pass, f64x4, Geometry>(mix, law, settings, input, t, state);
 }
 
 /// A pass over the points, tile by tile in any order, in each of some steps.

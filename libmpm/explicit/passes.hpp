@@ -62,7 +62,7 @@ void repeat_passes(TileGrid<D>& grid, int times, const Passes&... passes) {
   assert(times <= TileGrid<D>::most_times);
   const std::size_t n = static_cast<std::size_t>(times) * sizeof...(passes);
   for (std::size_t i = 0; i < n; ++i) grid.tile_work[i].start_anew();
-  grid.crew->run([&](int s) {
+  grid.pool->run([&](int s) {
     std::size_t number = 0;
     for (int time = 0; time < times; ++time) (detail::do_part(grid, s, number++, time, passes), ...);
   });
@@ -76,8 +76,8 @@ void run_passes(TileGrid<D>& grid, const Passes&... passes) {
 /// Visits each block; each thread has as many of them.
 template <int D, class Visit>
 void for_each_block(TileGrid<D>& grid, Visit visit) {
-  const std::int64_t n = std::ssize(grid.blocks), threads = grid.crew->size();
-  grid.crew->run([&](int s) {
+  const std::int64_t n = std::ssize(grid.blocks), threads = grid.pool->size();
+  grid.pool->run([&](int s) {
     for (std::int64_t b = n * s / threads; b < n * (s + 1) / threads; ++b) visit(static_cast<int>(b));
   });
 }

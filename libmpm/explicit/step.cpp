@@ -48,7 +48,7 @@ ExplicitState<Geometry> start_explicit(Body<Geometry>& body, const YieldLaw& law
   else
     detail::pass_over_points<detail::first_momenta>(body.mix, law, settings, input, state);
   if (!settings.keep_affine)
-    for (std::vector<Octet>& C : state.points.C) release(C);
+    for (std::vector<f64x8>& C : state.points.C) release(C);
   return state;
 }
 

@@ -65,12 +65,12 @@ std::vector<int> even_runs(const std::vector<Tile<D>>& tiles, int n) {
   return begin;
 }
 
-/// Sets the crew to the tiles.
+/// Sets the pool to the tiles.
 template <int D>
 void share_out(TileGrid<D>& grid, int n_threads) {
-  if (!grid.crew || grid.crew->size() != n_threads) grid.crew = std::make_unique<Crew>(n_threads);
+  if (!grid.pool || grid.pool->size() != n_threads) grid.pool = std::make_unique<ThreadPool>(n_threads);
   const std::vector<int> begin = even_runs<D>(grid.tiles, n_threads);
-  for (SharedWork& work : grid.tile_work) work.set_out(begin);
+  for (WorkSharing& work : grid.tile_work) work.set_out(begin);
   grid.block_claims.set_out(grid.blocks.size());
   grid.blocks_done.set_out(grid.blocks.size()), grid.tiles_done.set_out(grid.tiles.size());
   grid.passes = 0;
@@ -88,7 +88,7 @@ std::vector<BlockNodes<D>> kept(const std::vector<NodeBlock<D>>& old, const std:
 
 }  // namespace detail
 
-/// Lays the grid under these tiles, sorted by `at`, for a crew of n_threads. Velocities of nodes that were
+/// Lays the grid under these tiles, sorted by `at`, for a pool of n_threads. Velocities of nodes that were
 /// there are kept.
 template <int D>
 void lay_tiles(TileGrid<D>& grid, std::vector<Tile<D>> tiles, bool flip,

@@ -21,13 +21,13 @@ namespace tremie {
 /// id is -1.
 template <int D>
 struct LanePoints {
-  std::array<std::vector<Octet>, D> x, v;  ///< [m], [m/s]
-  std::array<std::vector<Octet>, D * D>
+  std::array<std::vector<f64x8>, D> x, v;  ///< [m], [m/s]
+  std::array<std::vector<f64x8>, D * D>
       C;                              ///< affine velocity, row by row [1/s]; empty where nobody reads it
-  std::vector<Octet> mass, V0, ln_J;  ///< [kg], [m^3], ln(V/V0)
-  std::vector<Octet> lambda;          ///< empty without thixotropy
-  std::vector<Octet> gamma_dot;       ///< [1/s]; empty where neither thixotropy nor a frame needs them
-  std::vector<std::array<std::int32_t, octet_size>> id;  ///< place in the Points that it came from
+  std::vector<f64x8> mass, V0, ln_J;  ///< [kg], [m^3], ln(V/V0)
+  std::vector<f64x8> lambda;          ///< empty without thixotropy
+  std::vector<f64x8> gamma_dot;       ///< [1/s]; empty where neither thixotropy nor a frame needs them
+  std::vector<std::array<std::int32_t, f64x8_size>> id;  ///< place in the Points that it came from
   std::size_t n = 0;                                     ///< number of real points
 
   std::size_t groups() const { return mass.size(); }
@@ -35,8 +35,8 @@ struct LanePoints {
 };
 
 template <int D>
-std::array<Octet, D> places_of(const LanePoints<D>& points, std::size_t group) {
-  std::array<Octet, D> x;
+std::array<f64x8, D> places_of(const LanePoints<D>& points, std::size_t group) {
+  std::array<f64x8, D> x;
   for (int d = 0; d < D; ++d) x[d] = points.x[d][group];
   return x;
 }
@@ -44,7 +44,7 @@ std::array<Octet, D> places_of(const LanePoints<D>& points, std::size_t group) {
 /// Number of real points in a group; they come first.
 template <int D>
 int filled(const LanePoints<D>& points, std::size_t group) {
-  int n = octet_size;
+  int n = f64x8_size;
   while (n > 0 && points.id[group][static_cast<std::size_t>(n - 1)] < 0) --n;
   return n;
 }
@@ -65,10 +65,10 @@ double& entry(Mat<D, D>& value, int k) {
 /// Visits the quantities that both kinds of points have, each with its arrays here and its array there.
 template <int D, class Visit>
 void for_each_quantity(LanePoints<D>& lanes, Points<D>& points, Visit visit) {
-  const auto one = [](std::vector<Octet>& array) { return std::span<std::vector<Octet>>(&array, 1); };
-  visit(std::span<std::vector<Octet>>(lanes.x), points.x);
-  visit(std::span<std::vector<Octet>>(lanes.v), points.v);
-  visit(std::span<std::vector<Octet>>(lanes.C), points.C);
+  const auto one = [](std::vector<f64x8>& array) { return std::span<std::vector<f64x8>>(&array, 1); };
+  visit(std::span<std::vector<f64x8>>(lanes.x), points.x);
+  visit(std::span<std::vector<f64x8>>(lanes.v), points.v);
+  visit(std::span<std::vector<f64x8>>(lanes.C), points.C);
   visit(one(lanes.mass), points.mass);
   visit(one(lanes.V0), points.V0);
   visit(one(lanes.ln_J), points.ln_J);
@@ -81,11 +81,11 @@ void for_each_quantity(LanePoints<D>& lanes, Points<D>& points, Visit visit) {
 /// Writes the state of the points to where they came from; what is not kept of them stays empty there.
 template <int D>
 void write_back(LanePoints<D>& lanes, const std::array<Axis, D>& axes, Points<D>& points) {
-  detail::for_each_quantity<D>(lanes, points, [&](std::span<std::vector<Octet>> from, auto& to) {
+  detail::for_each_quantity<D>(lanes, points, [&](std::span<std::vector<f64x8>> from, auto& to) {
     if (from.front().empty()) return;
     to.resize(lanes.n);
     for (std::size_t g = 0; g < lanes.groups(); ++g)
-      for (int l = 0; l < octet_size; ++l) {
+      for (int l = 0; l < f64x8_size; ++l) {
         const std::int32_t id = lanes.id[g][static_cast<std::size_t>(l)];
         if (id < 0) break;  // the rest fills up the group
         for (std::size_t k = 0; k < from.size(); ++k)
@@ -103,22 +103,22 @@ void write_back(LanePoints<D>& lanes, const std::array<Axis, D>& axes, Points<D>
 /// there is no room for both in a large body. `rates`: keeps shear rates for a mix without thixotropy, too.
 template <int D>
 void take_points(Points<D>& points, bool affine, bool rates, LanePoints<D>& lanes) {
-  const std::size_t n = points.size(), groups = (n + octet_size - 1) / octet_size;
+  const std::size_t n = points.size(), groups = (n + f64x8_size - 1) / f64x8_size;
   points.C.resize(affine ? n : 0, Mat<D, D>::Zero());  // none were brought back to points that start anew
   if (rates) points.gamma_dot.resize(n, 0.0);
   lanes.n = n;
-  detail::for_each_quantity<D>(lanes, points, [&](std::span<std::vector<Octet>> to, auto& from) {
+  detail::for_each_quantity<D>(lanes, points, [&](std::span<std::vector<f64x8>> to, auto& from) {
     for (std::size_t k = 0; k < to.size() && !from.empty(); ++k) {
       to[k].reserve(groups + groups / 4);  // sorting fills groups up
-      to[k].assign(groups, Octet{});
+      to[k].assign(groups, f64x8{});
       for (std::size_t p = 0; p < n; ++p)
-        to[k][p / octet_size][p % octet_size] = detail::entry(from[p], static_cast<int>(k));
+        to[k][p / f64x8_size][p % f64x8_size] = detail::entry(from[p], static_cast<int>(k));
     }
     release(from);
   });
   lanes.id.assign(groups, {});
-  for (std::size_t p = 0; p < groups * octet_size; ++p)
-    lanes.id[p / octet_size][p % octet_size] = p < n ? static_cast<std::int32_t>(p) : -1;
+  for (std::size_t p = 0; p < groups * f64x8_size; ++p)
+    lanes.id[p / f64x8_size][p % f64x8_size] = p < n ? static_cast<std::int32_t>(p) : -1;
 }
 
 namespace detail {
@@ -172,7 +172,7 @@ TileBox<D> sort_keys(const std::array<Axis, D>& axes, double stencil_shift, cons
   box.low.fill(std::numeric_limits<int>::max()), high.fill(std::numeric_limits<int>::min());
   const auto each = [&](auto visit) {
     for (std::size_t g = 0; g < lanes.groups(); ++g)
-      for (std::size_t l = 0; l < octet_size && lanes.id[g][l] >= 0; ++l) visit(g, l);
+      for (std::size_t l = 0; l < f64x8_size && lanes.id[g][l] >= 0; ++l) visit(g, l);
   };
   each([&](std::size_t g, std::size_t l) {
     for (int d = 0; d < D; ++d) {
@@ -184,7 +184,7 @@ TileBox<D> sort_keys(const std::array<Axis, D>& axes, double stencil_shift, cons
   std::uint64_t cells = power(tile_cells, D);
   for (int d = 0; d < D; ++d) cells *= static_cast<std::uint64_t>(box.size[d]);
   if (cells >> 32 != 0) throw std::length_error("the points lie further apart than 4e9 cells can tell");
-  keys.reserve(lanes.groups() * octet_size);
+  keys.reserve(lanes.groups() * f64x8_size);
   each([&](std::size_t g, std::size_t l) {
     Index<D> tile;
     std::uint64_t cell = 0;
@@ -193,7 +193,7 @@ TileBox<D> sort_keys(const std::array<Axis, D>& axes, double stencil_shift, cons
       tile[d] = tile_of(axes[d], c);
       cell = cell * tile_cells + static_cast<std::uint64_t>(((c % tile_cells) + tile_cells) % tile_cells);
     }
-    keys.emplace_back(box.number(tile) * power(tile_cells, D) + cell, g * octet_size + l);
+    keys.emplace_back(box.number(tile) * power(tile_cells, D) + cell, g * f64x8_size + l);
   });
   std::sort(keys.begin(), keys.end());
   return box;
@@ -204,7 +204,7 @@ TileBox<D> sort_keys(const std::array<Axis, D>& axes, double stencil_shift, cons
 inline constexpr std::size_t own_group = 5;
 
 /// Slots that make up each group, -1 for what fills it up.
-using GroupSlots = std::array<std::int32_t, octet_size>;
+using GroupSlots = std::array<std::int32_t, f64x8_size>;
 
 /// Groups of one cell's points first, of several cells' points at the end. Returns how many the latter are.
 /// Those of `packed` points are full but for the last, whatever cells they hold, and are not counted.
@@ -218,61 +218,61 @@ inline std::size_t form_groups(const SortKey* first, const SortKey* last, bool p
     groups.push_back(group);
   };
   const auto of_key = [](const SortKey& key) { return key.slot(); };
-  for (; packed && first != last; first += std::min<std::ptrdiff_t>(octet_size, last - first))
-    add(first, static_cast<std::size_t>(std::min<std::ptrdiff_t>(octet_size, last - first)), of_key);
+  for (; packed && first != last; first += std::min<std::ptrdiff_t>(f64x8_size, last - first))
+    add(first, static_cast<std::size_t>(std::min<std::ptrdiff_t>(f64x8_size, last - first)), of_key);
   while (first != last) {
     const SortKey* end =
         std::find_if(first, last, [&](const SortKey& key) { return key.cell() != first->cell(); });
     for (std::size_t n;
-         (n = std::min<std::size_t>(octet_size, static_cast<std::size_t>(end - first))) >= own_group;
+         (n = std::min<std::size_t>(f64x8_size, static_cast<std::size_t>(end - first))) >= own_group;
          first += n)
       add(first, n, of_key);
     for (; first != end; ++first) left.push_back(of_key(*first));
   }
   const std::size_t before = groups.size();
-  for (std::size_t i = 0; i < left.size(); i += octet_size)
-    add(&left[i], std::min<std::size_t>(octet_size, left.size() - i), [](std::int32_t slot) { return slot; });
+  for (std::size_t i = 0; i < left.size(); i += f64x8_size)
+    add(&left[i], std::min<std::size_t>(f64x8_size, left.size() - i), [](std::int32_t slot) { return slot; });
   return groups.size() - before;
 }
 
 /// Brings what an array keeps of the points into the groups. What fills up a group stands where its first
 /// point does, so that its weights are finite. `scratch` has the old array afterwards.
-inline void permute(const std::vector<GroupSlots>& groups, bool zero_filled, std::vector<Octet>& array,
-                    std::vector<Octet>& scratch) {
+inline void permute(const std::vector<GroupSlots>& groups, bool zero_filled, std::vector<f64x8>& array,
+                    std::vector<f64x8>& scratch) {
   if (array.empty()) return;
   scratch.reserve(array.capacity());
   scratch.resize(groups.size());
   for (std::size_t g = 0; g < groups.size(); ++g)
-    for (std::size_t l = 0; l < octet_size; ++l) {
+    for (std::size_t l = 0; l < f64x8_size; ++l) {
       const bool real = groups[g][l] >= 0;
       const auto slot = static_cast<std::size_t>(groups[g][real ? l : 0]);
-      scratch[g][l] = real || !zero_filled ? array[slot / octet_size][slot % octet_size] : 0.0;
+      scratch[g][l] = real || !zero_filled ? array[slot / f64x8_size][slot % f64x8_size] : 0.0;
     }
   array.swap(scratch);
 }
 
 template <int D>
 void permute_points(const std::vector<GroupSlots>& groups, LanePoints<D>& lanes) {
-  std::vector<std::vector<Octet>*> arrays;
+  std::vector<std::vector<f64x8>*> arrays;
   Points<D> none;
-  for_each_quantity<D>(lanes, none, [&](std::span<std::vector<Octet>> of_quantity, auto&) {
-    for (std::vector<Octet>& array : of_quantity) arrays.push_back(&array);
+  for_each_quantity<D>(lanes, none, [&](std::span<std::vector<f64x8>> of_quantity, auto&) {
+    for (std::vector<f64x8>& array : of_quantity) arrays.push_back(&array);
   });
   constexpr std::size_t many = 20000;  // below, waking OpenMP's threads takes longer
 #pragma omp parallel if (groups.size() > many)
   {
-    std::vector<Octet> scratch;
+    std::vector<f64x8> scratch;
 #pragma omp for schedule(dynamic)
     for (std::size_t i = 0; i < arrays.size(); ++i)
       permute(groups, arrays[i] == &lanes.mass || arrays[i] == &lanes.V0, *arrays[i], scratch);
   }
-  std::vector<std::array<std::int32_t, octet_size>> id(groups.size());
+  std::vector<std::array<std::int32_t, f64x8_size>> id(groups.size());
   for (std::size_t g = 0; g < groups.size(); ++g)
-    for (std::size_t l = 0; l < octet_size; ++l) {
+    for (std::size_t l = 0; l < f64x8_size; ++l) {
       const std::int32_t slot = groups[g][l];
       id[g][l] = slot < 0 ? -1
-                          : lanes.id[static_cast<std::size_t>(slot) / octet_size]
-                                    [static_cast<std::size_t>(slot) % octet_size];
+                          : lanes.id[static_cast<std::size_t>(slot) / f64x8_size]
+                                    [static_cast<std::size_t>(slot) % f64x8_size];
     }
   lanes.id = std::move(id);
 }
@@ -282,7 +282,7 @@ template <int D>
 void wrap_points(const std::array<Axis, D>& axes, LanePoints<D>& lanes) {
   for (int d = 0; d < D; ++d)
     if (axes[d].periodic)
-      for (Octet& x : lanes.x[d]) x -= axes[d].length() * floor((x - axes[d].origin) / axes[d].length());
+      for (f64x8& x : lanes.x[d]) x -= axes[d].length() * floor((x - axes[d].origin) / axes[d].length());
 }
 
 }  // namespace detail

@@ -106,8 +106,8 @@ class CellFills {
   }
 
   void add_group(const LanePoints<D>& points, std::size_t g) {
-    const Octet volume = points.V0[g] * exp(points.ln_J[g]);
-    for (std::size_t l = 0; l < octet_size && points.id[g][l] >= 0; ++l) {
+    const f64x8 volume = points.V0[g] * exp(points.ln_J[g]);
+    for (std::size_t l = 0; l < f64x8_size && points.id[g][l] >= 0; ++l) {
       Index<D> cell;
       Vec<D> middle, place;
       double full = 1.0;

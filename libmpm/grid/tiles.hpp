@@ -35,41 +35,41 @@ inline constexpr int tile_span = 2 * tile_cells;  ///< nodes that a tile sees in
 
 /// One entry a node: components 0 to D-1 a vector, component D the mass, or of velocities 1/mass [1/kg], 0
 /// where there is none.
-using NodeLanes [[gnu::vector_size(32)]] = double;
+using f64x4 [[gnu::vector_size(32)]] = double;
 
 /// The same in single precision.
-using SingleNode [[gnu::vector_size(16)]] = float;
+using f32x4 [[gnu::vector_size(16)]] = float;
 
-inline NodeLanes in_double(const NodeLanes& node) { return node; }
-inline NodeLanes in_double(const SingleNode& node) {
+inline f64x4 in_double(const f64x4& node) { return node; }
+inline f64x4 in_double(const f32x4& node) {
 #ifdef __AVX__  // the compiler would do it by halves
   return _mm256_cvtps_pd(node);
 #else
-  return __builtin_convertvector(node, NodeLanes);
+  return __builtin_convertvector(node, f64x4);
 #endif
 }
-inline void add_to(NodeLanes& node, const NodeLanes& a) { node += a; }
-inline void add_to(SingleNode& node, const NodeLanes& a) { node += __builtin_convertvector(a, SingleNode); }
+inline void add_to(f64x4& node, const f64x4& a) { node += a; }
+inline void add_to(f32x4& node, const f64x4& a) { node += __builtin_convertvector(a, f32x4); }
 
 /// Two nodes side by side.
-using TwoNodes [[gnu::vector_size(64), gnu::may_alias]] = double;
-using TwoSingles [[gnu::vector_size(32), gnu::may_alias]] = float;
+using two_f64x4 [[gnu::vector_size(64), gnu::may_alias]] = double;
+using two_f32x4 [[gnu::vector_size(32), gnu::may_alias]] = float;
 
-inline TwoNodes both(const NodeLanes& a, const NodeLanes& b) {
+inline two_f64x4 both(const f64x4& a, const f64x4& b) {
   return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
 }
-inline TwoSingles both(const SingleNode& a, const SingleNode& b) {
+inline two_f32x4 both(const f32x4& a, const f32x4& b) {
   return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
 }
 
 /// A node and the next, from any one on.
-inline TwoNodes load_two(const NodeLanes* from) {
-  TwoNodes two;
+inline two_f64x4 load_two(const f64x4* from) {
+  two_f64x4 two;
   std::memcpy(&two, from, sizeof two);
   return two;
 }
-inline TwoSingles load_two(const SingleNode* from) {
-  TwoSingles two;
+inline two_f32x4 load_two(const f32x4* from) {
+  two_f32x4 two;
   std::memcpy(&two, from, sizeof two);
   return two;
 }
@@ -102,25 +102,25 @@ struct NodeBlock {
 /// The nodes that a tile sees, aligned so that an even one and the next make one vector of eight. In
 /// single precision four are taken at once, from any one on: there is room behind the last.
 template <class Node, int n>
-struct alignas(64) NodeCube : std::array<Node, n + (std::is_same_v<Node, SingleNode> ? 4 : 0)> {};
+struct alignas(64) NodeCube : std::array<Node, n + (std::is_same_v<Node, f32x4> ? 4 : 0)> {};
 
 template <int D>
-using BlockNodes = std::array<NodeLanes, power(tile_cells, D)>;
+using BlockNodes = std::array<f64x4, power(tile_cells, D)>;
 
 template <int D>
 struct TileGrid {
   static constexpr int tile_nodes = power(tile_span, D);
   static constexpr int passes_in_a_step = 2, most_times = 8;  ///< that follow each other without a wait
-  using Buffer = NodeCube<NodeLanes, tile_nodes>;
-  using SingleBuffer = NodeCube<SingleNode, tile_nodes>;
+  using Buffer = NodeCube<f64x4, tile_nodes>;
+  using SingleBuffer = NodeCube<f32x4, tile_nodes>;
 
   std::array<Axis, D> axes;
   std::vector<Tile<D>> tiles;
   std::vector<NodeBlock<D>> blocks;
-  std::unique_ptr<Crew> crew;
-  std::array<SharedWork, passes_in_a_step * most_times> tile_work;  ///< in passes that follow each other
-  Claims block_claims;
-  DoneMarks blocks_done, tiles_done;
+  std::unique_ptr<ThreadPool> pool;
+  std::array<WorkSharing, passes_in_a_step * most_times> tile_work;  ///< in passes that follow each other
+  EpochClaims block_claims;
+  EpochFlags blocks_done, tiles_done;
   std::int64_t passes = 0;             ///< so far, since the grid was laid
   std::vector<BlockNodes<D>> v;        ///< a block: velocities, in the rows that a tile reaches
   std::vector<BlockNodes<D>> v_start;  ///< a block: before the step's forces, for FLIP alone
@@ -136,7 +136,7 @@ struct TileGrid {
 /// The buffers of sums, of either precision.
 template <class Node, int D>
 auto& sums_of(TileGrid<D>& grid) {
-  if constexpr (std::is_same_v<Node, SingleNode>)
+  if constexpr (std::is_same_v<Node, f32x4>)
     return grid.single_sums;
   else
     return grid.sums;
@@ -182,8 +182,8 @@ TileRows stencil_rows(int base) {
 template <class Node, int n>
 void clear_rows(TileRows rows, NodeCube<Node, n>& cube) {
   for_each_row(rows, [&](int row) {
-    auto* const from = reinterpret_cast<TwoNodes*>(&cube[static_cast<std::size_t>(row * tile_span)]);
-    for (std::size_t i = 0; i < tile_span * sizeof(Node) / sizeof(TwoNodes); ++i) from[i] = TwoNodes{};
+    auto* const from = reinterpret_cast<two_f64x4*>(&cube[static_cast<std::size_t>(row * tile_span)]);
+    for (std::size_t i = 0; i < tile_span * sizeof(Node) / sizeof(two_f64x4); ++i) from[i] = two_f64x4{};
   });
 }
 
@@ -214,11 +214,11 @@ int row_in_cube(int k, int row) {
 }
 
 /// Copies four nodes.
-inline void copy_row(const NodeLanes* from, NodeLanes* to) { std::copy_n(from, tile_cells, to); }
-inline void copy_row(const NodeLanes* from, SingleNode* to) {
-  Octet low, high;
+inline void copy_row(const f64x4* from, f64x4* to) { std::copy_n(from, tile_cells, to); }
+inline void copy_row(const f64x4* from, f32x4* to) {
+  f64x8 low, high;
   std::memcpy(&low, from, sizeof low), std::memcpy(&high, from + tile_cells / 2, sizeof high);
-  const Singles row = to_single(low, high);
+  const f32x16 row = to_single(low, high);
   std::memcpy(to, &row, sizeof row);
 }
 
@@ -237,11 +237,11 @@ void read_blocks(const Tile<D>& tile, TileRows rows, const std::vector<BlockNode
 
 /// Four nodes of a row.
 struct FourNodes {
-  TwoNodes low = {}, high = {};
+  two_f64x4 low = {}, high = {};
 };
 
-inline FourNodes load_row(const NodeLanes* from) { return {load_two(from), load_two(from + tile_cells / 2)}; }
-inline void store_row(const FourNodes& four, NodeLanes* to) {
+inline FourNodes load_row(const f64x4* from) { return {load_two(from), load_two(from + tile_cells / 2)}; }
+inline void store_row(const FourNodes& four, f64x4* to) {
   store_two(four.low, to), store_two(four.high, to + tile_cells / 2);
 }
 
@@ -250,15 +250,15 @@ namespace detail {
 /// Sums of four nodes of a row.
 struct FourSums {
   FourNodes sum;
-  void add(const NodeLanes* row) {
+  void add(const f64x4* row) {
     const FourNodes more = load_row(row);
     sum.low += more.low, sum.high += more.high;
   }
   FourNodes total() const { return sum; }
 };
 struct FourSingleSums {
-  Singles sum = {};
-  void add(const SingleNode* row) {
+  f32x16 sum = {};
+  void add(const f32x4* row) {
     using Row [[gnu::vector_size(64), gnu::may_alias]] = float;
     sum += *reinterpret_cast<const Row*>(row);
   }

@@ -4,8 +4,8 @@
 // pressure_preconditioner.hpp is the matrix itself, but for walls inside the grid and its single precision:
 // one or two iterations.
 
-#include "libmpm/implicit/linear_system_3d.hpp"
 #include "libmpm/implicit/particle_shifting.hpp"
+#include "libmpm/implicit/solvers/linear_system_3d.hpp"
 
 namespace tremie {
 

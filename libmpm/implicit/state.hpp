@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "libmpm/body/body.hpp"
-#include "libmpm/implicit/admm_factorised.hpp"
-#include "libmpm/implicit/admm_matrix_free.hpp"
-#include "libmpm/implicit/newton.hpp"
 #include "libmpm/implicit/particle_shifting_3d.hpp"
+#include "libmpm/implicit/solvers/admm_factorised.hpp"
+#include "libmpm/implicit/solvers/admm_matrix_free.hpp"
+#include "libmpm/implicit/solvers/newton.hpp"
 
 namespace tremie {
 

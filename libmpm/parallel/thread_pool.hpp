@@ -3,7 +3,7 @@
 // Threads that stay together from pass to pass, and work that they share.
 //
 // An explicit step of a few thousand points takes a tenth of a millisecond. Starting and ending a parallel
-// region of OpenMP in it costs a twentieth of that; a crew that waits at a counter for the next round costs a
+// region of OpenMP in it costs a twentieth of that; a pool that waits at a counter for the next round costs a
 // fifth as much.
 
 #include <atomic>
@@ -40,15 +40,15 @@ T wait_while(const std::atomic<T>& value, Not not_yet) {
 
 }  // namespace detail
 
-class Crew {
+class ThreadPool {
  public:
   /// n in all; the caller of run() is one of them.
-  explicit Crew(int n) {
+  explicit ThreadPool(int n) {
     for (int s = 1; s < n; ++s) others_.emplace_back([this, s] { stand_by(s); });
   }
-  Crew(const Crew&) = delete;
-  Crew& operator=(const Crew&) = delete;
-  ~Crew() {
+  ThreadPool(const ThreadPool&) = delete;
+  ThreadPool& operator=(const ThreadPool&) = delete;
+  ~ThreadPool() {
     visit_ = nullptr;
     start_round();
     for (std::thread& other : others_) other.join();
@@ -90,9 +90,9 @@ class Crew {
   alignas(64) std::vector<std::thread> others_;  // last: they read the rest
 };
 
-/// Pieces of work 0 ... n - 1 in runs, one for each thread of a crew. Every second run goes from its end, so
+/// Pieces of work 0 ... n - 1 in runs, one for each thread of a pool. Every second run goes from its end, so
 /// that two threads meet where their runs do: what lies there has been in both caches.
-class SharedWork {
+class WorkSharing {
  public:
   /// Thread s has the pieces begin[s] ... begin[s + 1] - 1.
   void set_out(const std::vector<int>& begin) {
@@ -132,7 +132,7 @@ class SharedWork {
 
 /// Of each of n things the number of the last pass that is done with it. One line of a cache for each: what
 /// one thread looks at again and again another must not write beside.
-class DoneMarks {
+class EpochFlags {
  public:
   void set_out(std::size_t n) { marks_ = std::make_unique<Mark[]>(n); }
   void mark(int i, std::int64_t pass) {
@@ -153,7 +153,7 @@ class DoneMarks {
 };
 
 /// Of n things each goes to whom asks for it first in a pass.
-class Claims {
+class EpochClaims {
  public:
   void set_out(std::size_t n) { claims_ = std::make_unique<Claim[]>(n); }
   bool taken(int i, std::int64_t pass) const {

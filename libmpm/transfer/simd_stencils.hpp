@@ -32,9 +32,9 @@ struct Shape {
 /// where their stencils begin in the tile's cube.
 template <int D>
 struct Weights {
-  std::array<std::array<Octet, 3>, D> w, dw, wa;
-  std::array<Octet, D> inertia;  ///< sum of w times arm squared [m^2]
-  std::array<int, octet_size> base;
+  std::array<std::array<f64x8, 3>, D> w, dw, wa;
+  std::array<f64x8, D> inertia;  ///< sum of w times arm squared [m^2]
+  std::array<int, f64x8_size> base;
   bool together = false;  ///< all stencils begin at the same place
 };
 
@@ -50,7 +50,7 @@ struct StencilAxisOf {
   Real low = Real(1e30), high = Real(1e30);  ///< cell (GIMP: corner) at a low and at a high wall
 };
 /// Places in cells, from a tile's first on: a point on a wall is at a whole number, to the bit.
-inline Octet place_in_tile(double origin, double per_cell, double first, const Octet& x) {
+inline f64x8 place_in_tile(double origin, double per_cell, double first, const f64x8& x) {
   return (x - origin) * per_cell - first;
 }
 using StencilAxis = StencilAxisOf<double>;
@@ -130,14 +130,14 @@ template <class Real, class Lanes>
 /// Cells of eight points at x, numbered within the frame's tile. Real: in which their stencils are found; a
 /// point whose place is rounded up into the next cell there must be in the same cell here.
 template <int D, class Real>
-void find_pressure_cells(const StencilFrame<D>& frame, const std::array<Octet, D>& x,
-                         std::array<int, octet_size>& cells) {
-  Octet cell = {};
+void find_pressure_cells(const StencilFrame<D>& frame, const std::array<f64x8, D>& x,
+                         std::array<int, f64x8_size>& cells) {
+  f64x8 cell = {};
   const bool gimp = frame.kind == ShapeFunctions::gimp;
-  const Octet low = all_lanes(gimp ? -2.0 : -1.0), high = all_lanes(tile_cells);
+  const f64x8 low = all_lanes(gimp ? -2.0 : -1.0), high = all_lanes(tile_cells);
   for (int d = 0; d < D; ++d) {
     const StencilAxis& axis = frame.axis[d];
-    Octet X = place_in_tile(axis.origin, axis.ih, axis.first, x[d]);
+    f64x8 X = place_in_tile(axis.origin, axis.ih, axis.first, x[d]);
     if (std::is_same_v<Real, float> && !gimp) X = to_double(to_single(X, X), 0);
     cell = cell * tile_pressure_cells + (min(max(floor(X), low), high) + 2.0);
   }
@@ -154,14 +154,14 @@ inline constexpr Wanted slopes_and_moments{}, slopes_only{.moments = false},
 /// Weights of eight points at x in a tile, as far as they are wanted. Points more than a cell outside of it
 /// are taken at its rim: the caller makes sure that there are none.
 template <int D, Wanted wanted = slopes_and_moments>
-void weigh(const StencilFrame<D>& frame, const std::array<Octet, D>& x, Weights<D>& weights) {
-  Octet base = {};
-  const Octet low = all_lanes(-1.0), high = all_lanes(tile_cells);
+void weigh(const StencilFrame<D>& frame, const std::array<f64x8, D>& x, Weights<D>& weights) {
+  f64x8 base = {};
+  const f64x8 low = all_lanes(-1.0), high = all_lanes(tile_cells);
 #pragma GCC unroll 3
   for (int d = 0; d < D; ++d) {
     const StencilAxis& axis = frame.axis[d];
-    const Octet X = place_in_tile(axis.origin, axis.ih, axis.first, x[d]);
-    Octet w[3], dw[3], arm[3], at;
+    const f64x8 X = place_in_tile(axis.origin, axis.ih, axis.first, x[d]);
+    f64x8 w[3], dw[3], arm[3], at;
     if (frame.kind == ShapeFunctions::gimp) {
       at = min(max(nearest(X), low), high);
       detail::gimp_weights(axis, at, X - at, w, dw, arm);
@@ -170,7 +170,7 @@ void weigh(const StencilFrame<D>& frame, const std::array<Octet, D>& x, Weights<
       detail::b_spline_weights(axis, at, X - at, w, dw, arm);
     }
     base = base * tile_span + (at + 1.0);
-    weights.inertia[d] = Octet{};
+    weights.inertia[d] = f64x8{};
     for (int k = 0; k < 3; ++k) {
       weights.w[d][k] = w[k];
       if (wanted.slopes) weights.dw[d][k] = dw[k];
@@ -184,7 +184,7 @@ void weigh(const StencilFrame<D>& frame, const std::array<Octet, D>& x, Weights<
 }
 template <int D>
 void weigh(const std::array<Axis, D>& axes, const Shape<D>& shape, const Index<D>& tile,
-           const std::array<Octet, D>& x, Weights<D>& weights) {
+           const std::array<f64x8, D>& x, Weights<D>& weights) {
   weigh<D>(stencil_frame<D>(axes, shape, tile), x, weights);
 }
 
@@ -211,9 +211,9 @@ PointWeights<D, 3> of_lane(const Weights<D>& weights, int l) {
 /// out in turn.
 template <int R, Wanted wanted>
 struct Gathered {
-  NodeLanes value = {};
-  NodeLanes slope[wanted.slopes && R > 0 ? R : 1] = {};
-  NodeLanes moment[wanted.moments && R > 0 ? R : 1] = {};
+  f64x4 value = {};
+  f64x4 slope[wanted.slopes && R > 0 ? R : 1] = {};
+  f64x4 moment[wanted.moments && R > 0 ? R : 1] = {};
 };
 
 template <int D, int n, Wanted wanted, int d = 0, class Node>
@@ -242,10 +242,10 @@ template <int D, int n, Wanted wanted, int d = 0, class Node>
 /// moment[e] times the arm's component e.
 template <int D, int n, int d = 0, class Node>
 [[gnu::always_inline]] inline void scatter(Node* node, const PointWeights<D, n>& p,
-                                           const NodeLanes (&along)[D][n], const NodeLanes& carried,
-                                           const NodeLanes& weight) {
+                                           const f64x4 (&along)[D][n], const f64x4& carried,
+                                           const f64x4& weight) {
   for (int k = 0; k < n; ++k) {
-    const NodeLanes next = p.w[d][k] * carried + weight * along[d][k];
+    const f64x4 next = p.w[d][k] * carried + weight * along[d][k];
     Node* const at = node + k * stride<D>(tile_span, d);
     if constexpr (d == D - 1)
       add_to(*at, next);
@@ -255,12 +255,12 @@ template <int D, int n, int d = 0, class Node>
 }
 
 template <int D, int n, class Node>
-[[gnu::always_inline]] inline void scatter(Node* node, const PointWeights<D, n>& p, const NodeLanes& value,
-                                           const NodeLanes (&slope)[D], const NodeLanes (&moment)[D]) {
-  NodeLanes along[D][n];
+[[gnu::always_inline]] inline void scatter(Node* node, const PointWeights<D, n>& p, const f64x4& value,
+                                           const f64x4 (&slope)[D], const f64x4 (&moment)[D]) {
+  f64x4 along[D][n];
   for (int d = 0; d < D; ++d)
     for (int k = 0; k < n; ++k) along[d][k] = p.dw[d][k] * slope[d] + p.wa[d][k] * moment[d];
-  scatter<D, n, 0>(node, p, along, value, NodeLanes{} + 1.0);
+  scatter<D, n, 0>(node, p, along, value, f64x4{} + 1.0);
 }
 
 }  // namespace tremie

@@ -43,16 +43,16 @@ template <class Weight, class Lanes>
 /// on.
 template <int R, Wanted wanted>
 struct GatheredLanes {
-  Octet value;
-  Octet slope[wanted.slopes && R > 0 ? R : 1];
-  Octet moment[wanted.moments && R > 0 ? R : 1];
+  f64x8 value;
+  f64x8 slope[wanted.slopes && R > 0 ? R : 1];
+  f64x8 moment[wanted.moments && R > 0 ? R : 1];
 };
 
 /// Component c at eight points whose stencils all begin at `node`; otherwise as gather() for one point. The
 /// weights of a direction add up to 1, and their slopes and first moments to 0: the differences of the outer
 /// nodes from the middle one are all that they see.
 template <int D, Wanted wanted, int d = 0>
-[[gnu::always_inline]] inline GatheredLanes<D - d, wanted> gather_together(const NodeLanes* node, int c,
+[[gnu::always_inline]] inline GatheredLanes<D - d, wanted> gather_together(const f64x4* node, int c,
                                                                            const Weights<D>& p) {
   GatheredLanes<D - d, wanted> sum;
   if constexpr (d == D) {
@@ -64,7 +64,7 @@ template <int D, Wanted wanted, int d = 0>
     };
     const auto first = part(0), middle = part(1), last = part(2);
     const auto value = detail::differences(first.value, middle.value, last.value);
-    const auto mean = [&p](const Octet& low, const Octet& mid, const Octet& high) {
+    const auto mean = [&p](const f64x8& low, const f64x8& mid, const f64x8& high) {
       return detail::sum_to_one(p.w[d][0], p.w[d][2], detail::differences(low, mid, high));
     };
     sum.value = detail::sum_to_one(p.w[d][0], p.w[d][2], value);
@@ -82,26 +82,26 @@ template <int D, Wanted wanted, int d = 0>
 }
 
 /// The same vector in both halves, and two vectors side by side.
-inline Octet twice(const NodeLanes& a) {
+inline f64x8 twice(const f64x4& a) {
 #ifdef __AVX512F__  // one load; a shuffle would take an arithmetic unit
   return _mm512_maskz_broadcast_f64x4(0xff, a);
 #else
   return __builtin_shufflevector(a, a, 0, 1, 2, 3, 0, 1, 2, 3);
 #endif
 }
-inline Octet side_by_side(const NodeLanes& a, const NodeLanes& b) {
+inline f64x8 side_by_side(const f64x4& a, const f64x4& b) {
   return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
 }
-inline Octet pair(double a, double b) { return Octet{a, a, a, a, b, b, b, b}; }
-inline NodeLanes low_half(const Octet& a) { return __builtin_shufflevector(a, a, 0, 1, 2, 3); }
+inline f64x8 pair(double a, double b) { return f64x8{a, a, a, a, b, b, b, b}; }
+inline f64x4 low_half(const f64x8& a) { return __builtin_shufflevector(a, a, 0, 1, 2, 3); }
 
 /// Rows of four (one a point) to columns of eight (one a component), and back.
-inline void to_columns(const NodeLanes (&row)[octet_size], Octet (&column)[4]) {
-  Octet low[2], high[2];  // components 0 and 2, 1 and 3 of points 0-3 and 4-7
+inline void to_columns(const f64x4 (&row)[f64x8_size], f64x8 (&column)[4]) {
+  f64x8 low[2], high[2];  // components 0 and 2, 1 and 3 of points 0-3 and 4-7
   for (int i = 0; i < 2; ++i) {
-    const NodeLanes* r = row + 4 * i;
-    const Octet even = side_by_side(r[0], r[2]);
-    const Octet odd = side_by_side(r[1], r[3]);
+    const f64x4* r = row + 4 * i;
+    const f64x8 even = side_by_side(r[0], r[2]);
+    const f64x8 odd = side_by_side(r[1], r[3]);
     low[i] = __builtin_shufflevector(even, odd, 0, 8, 2, 10, 4, 12, 6, 14);
     high[i] = __builtin_shufflevector(even, odd, 1, 9, 3, 11, 5, 13, 7, 15);
   }
@@ -112,29 +112,29 @@ inline void to_columns(const NodeLanes (&row)[octet_size], Octet (&column)[4]) {
 }
 
 /// One vector of four a point, even points first: where four_a_point brings them.
-using FourAPoint = std::array<Octet, octet_size / 2>;
-inline NodeLanes of_point(const FourAPoint& four, std::size_t l) {
-  return reinterpret_cast<const NodeLanes*>(four.data())[l % 2 * (octet_size / 2) + l / 2];
+using FourAPoint = std::array<f64x8, f64x8_size / 2>;
+inline f64x4 of_point(const FourAPoint& four, std::size_t l) {
+  return reinterpret_cast<const f64x4*>(four.data())[l % 2 * (f64x8_size / 2) + l / 2];
 }
-inline void four_a_point(const Octet (&column)[4], FourAPoint& four) {
+inline void four_a_point(const f64x8 (&column)[4], FourAPoint& four) {
   for (std::size_t odd = 0; odd < 2; ++odd) {
-    const Octet front = odd ? __builtin_shufflevector(column[0], column[1], 1, 9, 3, 11, 5, 13, 7, 15)
+    const f64x8 front = odd ? __builtin_shufflevector(column[0], column[1], 1, 9, 3, 11, 5, 13, 7, 15)
                             : __builtin_shufflevector(column[0], column[1], 0, 8, 2, 10, 4, 12, 6, 14);
-    const Octet back = odd ? __builtin_shufflevector(column[2], column[3], 1, 9, 3, 11, 5, 13, 7, 15)
+    const f64x8 back = odd ? __builtin_shufflevector(column[2], column[3], 1, 9, 3, 11, 5, 13, 7, 15)
                            : __builtin_shufflevector(column[2], column[3], 0, 8, 2, 10, 4, 12, 6, 14);
     four[2 * odd] = __builtin_shufflevector(front, back, 0, 1, 8, 9, 2, 3, 10, 11);
     four[2 * odd + 1] = __builtin_shufflevector(front, back, 4, 5, 12, 13, 6, 7, 14, 15);
   }
 }
-inline void to_rows(const Octet (&column)[4], NodeLanes (&row)[octet_size]) {
+inline void to_rows(const f64x8 (&column)[4], f64x4 (&row)[f64x8_size]) {
   FourAPoint four;
   four_a_point(column, four);
-  for (std::size_t l = 0; l < octet_size; ++l) row[l] = of_point(four, l);
+  for (std::size_t l = 0; l < f64x8_size; ++l) row[l] = of_point(four, l);
 }
 
 /// Products of the weights of all directions but the last: those of the rows of nodes that a point sees.
 template <int D>
-using RowWeights = std::array<Octet, power(3, D - 1)>;
+using RowWeights = std::array<f64x8, power(3, D - 1)>;
 
 template <int D>
 void multiply_rows(const Weights<D>& weights, RowWeights<D>& rows) {
@@ -148,7 +148,7 @@ void multiply_rows(const Weights<D>& weights, RowWeights<D>& rows) {
 /// and with the arm's component d, one vector a component. What is not `given` is not read.
 template <int D>
 struct Spread {
-  Octet value[4], slope[D][D], moment[D][D];
+  f64x8 value[4], slope[D][D], moment[D][D];
 };
 
 /// What is given of a Spread.
@@ -159,9 +159,9 @@ struct Given {
 /// slope[d] times the gradient plus moment[d] times the arm, at the nodes k of direction d.
 template <int D, Given given>
 [[gnu::always_inline]] inline void along_direction(const Weights<D>& weights, const Spread<D>& spread, int d,
-                                                   int k, Octet (&along)[D]) {
+                                                   int k, f64x8 (&along)[D]) {
   for (int c = 0; c < D; ++c) {
-    along[c] = Octet{};
+    along[c] = f64x8{};
     if constexpr (given.slopes) along[c] = weights.dw[d][k] * spread.slope[d][c];
     if constexpr (given.moments) along[c] += weights.wa[d][k] * spread.moment[d][c];
   }
@@ -171,12 +171,12 @@ template <int D, Given given>
 template <int D, Given given>
 void carry_to_rows(const Weights<D>& weights, const Spread<D>& spread,
                    FourAPoint (&carried)[power(3, D - 1)]) {
-  Octet second[3][D];
+  f64x8 second[3][D];
   for (int j = 0; j < 3 && D == 3; ++j) along_direction<D, given>(weights, spread, 1, j, second[j]);
 #pragma GCC unroll 3
   for (int i = 0; i < 3; ++i) {
-    const Octet& w = weights.w[0][i];
-    Octet first[4] = {}, along[D];
+    const f64x8& w = weights.w[0][i];
+    f64x8 first[4] = {}, along[D];
     along_direction<D, given>(weights, spread, 0, i, along);
     for (int c = 0; c < 4 && given.values; ++c) first[c] = w * spread.value[c];
     for (int c = 0; c < D; ++c) first[c] += along[c];
@@ -185,7 +185,7 @@ void carry_to_rows(const Weights<D>& weights, const Spread<D>& spread,
     } else {
 #pragma GCC unroll 3
       for (int j = 0; j < 3; ++j) {
-        Octet row[4];
+        f64x8 row[4];
         for (int c = 0; c < 4; ++c) row[c] = weights.w[1][j] * first[c];
         for (int c = 0; c < D; ++c) row[c] += w * second[j][c];
         four_a_point(row, carried[3 * i + j]);
@@ -211,30 +211,30 @@ constexpr int row_offset(int r) {
 /// the sums stay in registers.
 template <int D>
 [[gnu::always_inline]] inline void add_run(const Weights<D>& weights, const CarriedRows<D>& rows,
-                                           std::size_t first, std::size_t last, NodeLanes* sums) {
+                                           std::size_t first, std::size_t last, f64x4* sums) {
   constexpr int n = power(3, D - 1);
-  Octet two[n], one[n];
+  f64x8 two[n], one[n];
   const int base = weights.base[first], odd = base & 1, other = odd ? 0 : 2;
-  NodeLanes* const pair_at = sums + base + odd;
-  NodeLanes* const other_at = sums + base + other;
+  f64x4* const pair_at = sums + base + odd;
+  f64x4* const other_at = sums + base + other;
 #pragma GCC unroll 9
   for (int r = 0; r < n; ++r)
-    two[r] = *reinterpret_cast<const Octet*>(pair_at + row_offset<D>(r)), one[r] = Octet{};
+    two[r] = *reinterpret_cast<const f64x8*>(pair_at + row_offset<D>(r)), one[r] = f64x8{};
   const auto& w = weights.w[D - 1];
   for (std::size_t l = first; l < last; ++l) {
-    const Octet w_pair = pair(w[odd][l], w[odd + 1][l]), w_other = all_lanes(w[other][l]);
-    const Octet along_pair = side_by_side(of_point(rows.along[odd], l), of_point(rows.along[odd + 1], l));
-    const Octet along_other = twice(of_point(rows.along[other], l));
+    const f64x8 w_pair = pair(w[odd][l], w[odd + 1][l]), w_other = all_lanes(w[other][l]);
+    const f64x8 along_pair = side_by_side(of_point(rows.along[odd], l), of_point(rows.along[odd + 1], l));
+    const f64x8 along_other = twice(of_point(rows.along[other], l));
 #pragma GCC unroll 9
     for (int r = 0; r < n; ++r) {
-      const Octet value = twice(of_point(rows.value[r], l)), weight = all_lanes(rows.weight[r][l]);
+      const f64x8 value = twice(of_point(rows.value[r], l)), weight = all_lanes(rows.weight[r][l]);
       two[r] = two[r] + w_pair * value + weight * along_pair;
       one[r] = one[r] + w_other * value + weight * along_other;
     }
   }
 #pragma GCC unroll 9
   for (int r = 0; r < n; ++r) {
-    *reinterpret_cast<Octet*>(pair_at + row_offset<D>(r)) = two[r];
+    *reinterpret_cast<f64x8*>(pair_at + row_offset<D>(r)) = two[r];
     other_at[row_offset<D>(r)] += low_half(one[r]);
   }
 }
@@ -242,8 +242,7 @@ template <int D>
 /// Points of several places, run by run of those with the same. noipa: below -O3 with AVX-512 g++ 12 sees a
 /// loop here that writes to no memory, and drops the call.
 template <int D>
-[[gnu::noipa]] void add_by_runs(const Weights<D>& weights, const CarriedRows<D>& rows, int n,
-                                NodeLanes* sums) {
+[[gnu::noipa]] void add_by_runs(const Weights<D>& weights, const CarriedRows<D>& rows, int n, f64x4* sums) {
   const auto end = static_cast<std::size_t>(n);
   for (std::size_t first = 0, last; first < end; first = last) {
     for (last = first + 1; last < end && weights.base[last] == weights.base[first];) ++last;
@@ -254,18 +253,18 @@ template <int D>
 /// Adds what the first n of eight points spread to their nodes in the tile's cube; the others spread
 /// nothing.
 template <int D, Given given>
-void scatter_group(const Weights<D>& weights, const Spread<D>& spread, int n, NodeLanes* sums) {
+void scatter_group(const Weights<D>& weights, const Spread<D>& spread, int n, f64x4* sums) {
   CarriedRows<D> rows;
   multiply_rows<D>(weights, rows.weight);
   carry_to_rows<D, given>(weights, spread, rows.value);
   for (int k = 0; k < 3; ++k) {
-    Octet column[4] = {}, along[D];
+    f64x8 column[4] = {}, along[D];
     along_direction<D, given>(weights, spread, D - 1, k, along);
     std::copy_n(along, D, column);
     four_a_point(column, rows.along[k]);
   }
   if (weights.together)
-    add_run<D>(weights, rows, 0, octet_size, sums);
+    add_run<D>(weights, rows, 0, f64x8_size, sums);
   else
     add_by_runs<D>(weights, rows, n, sums);
 }

@@ -27,7 +27,8 @@ double speed_under(double T, const YieldLaw& law, double tau_y, double mu, const
 
 }  // namespace
 
-double couette_torque(const YieldLaw& law, double tau_y, double mu, double omega, const Instrument& instrument) {
+double couette_torque(const YieldLaw& law, double tau_y, double mu, double omega,
+                      const Instrument& instrument) {
   check(instrument);
   if (!(omega > 0.0)) throw std::invalid_argument("the cylinder must turn");
   double low = 0.0, high = 1e-6;

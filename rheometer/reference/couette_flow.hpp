@@ -12,6 +12,7 @@ namespace tremie {
 ///
 /// to 1e-10 of it, for the yield stress tau_y [Pa] and the plastic viscosity mu [Pa s]. What is below its yield stress
 /// does not turn. Throws std::invalid_argument unless omega > 0.
-double couette_torque(const YieldLaw& law, double tau_y, double mu, double omega, const Instrument& instrument);
+double couette_torque(const YieldLaw& law, double tau_y, double mu, double omega,
+                      const Instrument& instrument);
 
 }  // namespace tremie

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "apparatus/common/energy_watch.hpp"
-#include "apparatus/common/run_checks.hpp"
 #include "apparatus/registry/registry.hpp"
+#include "apparatus/run/energy_watch.hpp"
+#include "apparatus/run/run_checks.hpp"
 
 namespace tremie {
 namespace {

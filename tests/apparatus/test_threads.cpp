@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "apparatus/common/threads.hpp"
+#include "apparatus/run/threads.hpp"
 
 namespace tremie::test_run {
 namespace {

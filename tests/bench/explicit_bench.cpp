@@ -71,18 +71,18 @@ void pass_of(benchmark::State& run) {
 template <class Geometry, bool thixotropic>
 void law_alone(benchmark::State& run) {
   Set<Geometry> set(thixotropic, false, StressUpdate::last, false);
-  Octet slope[Geometry::dim][Geometry::dim] = {};
+  f64x8 slope[Geometry::dim][Geometry::dim] = {};
   slope[0][0] = all_lanes(0.3), slope[0][1] = all_lanes(0.7);
   detail::LaneSums sums;
   for (auto _ : run)
     for (std::size_t g = 0; g < set.state.points.groups(); ++g) {
       benchmark::DoNotOptimize(slope);
-      const auto rate = detail::strain_rate<Geometry, Octet>(slope, Octet{}, set.state.points.x[0][g]);
+      const auto rate = detail::strain_rate<Geometry, f64x8>(slope, f64x8{}, set.state.points.x[0][g]);
       const auto resistance =
           detail::update_state<Geometry::dim>(set.body.mix, law, 1e-9, rate.gamma_dot, rate.divergence,
                                               all_lanes(1.0), set.state.points, g, sums);
       benchmark::DoNotOptimize(
-          detail::stress_of<Geometry, Octet>(rate, resistance.viscosity, resistance.pressure));
+          detail::stress_of<Geometry, f64x8>(rate, resistance.viscosity, resistance.pressure));
     }
   set.count(run);
 }

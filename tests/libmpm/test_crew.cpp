@@ -15,13 +15,13 @@ namespace {
 
 // In each of many rounds every member is called once, and what all of them wrote is there when run() returns:
 // each adds the round's number to its own sum, which is no atomic.
-TEST(Crew, EveryMemberOnceARound) {
+TEST(ThreadPool, EveryMemberOnceARound) {
   for (const int n : {1, 2, 5}) {
-    Crew crew(n);
-    EXPECT_EQ(crew.size(), n);
+    ThreadPool pool(n);
+    EXPECT_EQ(pool.size(), n);
     std::vector<long> sum(static_cast<std::size_t>(n), 0);
     for (long round = 1; round <= 2000; ++round) {
-      crew.run([&](int s) { sum[static_cast<std::size_t>(s)] += round; });
+      pool.run([&](int s) { sum[static_cast<std::size_t>(s)] += round; });
       ASSERT_EQ(std::accumulate(sum.begin(), sum.end(), 0L), n * round * (round + 1) / 2);
     }
   }
@@ -29,11 +29,11 @@ TEST(Crew, EveryMemberOnceARound) {
 
 // A member that has looked in vain for long enough sleeps, and is woken by the next round; so is the caller
 // by the last of the others.
-TEST(Crew, WakesWhoSleeps) {
-  Crew crew(3);
+TEST(ThreadPool, WakesWhoSleeps) {
+  ThreadPool pool(3);
   for (int round = 0; round < 3; ++round) {
     std::atomic<int> calls = 0;
-    crew.run([&](int s) {
+    pool.run([&](int s) {
       if (s > 0) std::this_thread::sleep_for(std::chrono::milliseconds(30));
       ++calls;
     });
@@ -42,20 +42,20 @@ TEST(Crew, WakesWhoSleeps) {
   }
 }
 
-// A crew that never had a round lets its threads go.
-TEST(Crew, GoesWithoutARound) { Crew crew(4); }
+// A pool that never had a round lets its threads go.
+TEST(ThreadPool, GoesWithoutARound) { ThreadPool pool(4); }
 
 // One thread sleeps at its first piece: the other does all that is left, and none is done twice.
-TEST(SharedWork, OthersDoWhatIsLeft) {
-  SharedWork work;
+TEST(WorkSharing, OthersDoWhatIsLeft) {
+  WorkSharing work;
   work.set_out({0, 50, 60});
-  Crew crew(2);
+  ThreadPool pool(2);
   for (int slow = 0; slow < 2; ++slow) {
     work.start_anew();
     std::array<std::atomic<int>, 60> visits{};
     std::array<int, 2> done{};
     std::atomic<bool> slow_has_begun = false, other_is_done = false;
-    crew.run([&](int s) {
+    pool.run([&](int s) {
       while (s != slow && !slow_has_begun) std::this_thread::yield();
       work.take(s, [&](int piece) {
         ++visits[static_cast<std::size_t>(piece)];
@@ -72,8 +72,8 @@ TEST(SharedWork, OthersDoWhatIsLeft) {
 }
 
 // Runs are done towards each other: 0 1 2 and 6 5 4 3.
-TEST(SharedWork, EverySecondRunGoesFromItsEnd) {
-  SharedWork work;
+TEST(WorkSharing, EverySecondRunGoesFromItsEnd) {
+  WorkSharing work;
   work.set_out({0, 3, 7});
   std::vector<int> pieces;
   work.take(0, [&](int piece) { pieces.push_back(piece); });
@@ -85,12 +85,12 @@ TEST(SharedWork, EverySecondRunGoesFromItsEnd) {
 }
 
 // Who waits sees what was written before the mark, also when it has gone to sleep over it.
-TEST(DoneMarks, AreWaitedFor) {
-  DoneMarks marks;
+TEST(EpochFlags, AreWaitedFor) {
+  EpochFlags marks;
   marks.set_out(2);
   int written = 0, seen = 0;
-  Crew crew(2);
-  crew.run([&](int s) {
+  ThreadPool pool(2);
+  pool.run([&](int s) {
     if (s == 0) {
       marks.wait_for(1, 3);
       seen = written;

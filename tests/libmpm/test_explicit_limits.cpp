@@ -40,7 +40,7 @@ Pencil patch(const std::array<Axis, D>& axes, const Shape<D>& shape, Row row) {
   Pencil p{Eigen::MatrixXd::Zero(nodes * D, nodes * D), Eigen::VectorXd::Zero(nodes * D)};
   const double V = 1.0 / power(2, D);
   for (int i = 0; i < power(2 * cells, D); ++i) {
-    std::array<Octet, D> x, centre;
+    std::array<f64x8, D> x, centre;
     for (int d = 0, rest = i; d < D; ++d, rest /= 2 * cells) {
       x[d] = all_lanes(0.5 * (rest % (2 * cells) + 0.5));
       centre[d] = floor(x[d]) + 0.5;

@@ -15,10 +15,10 @@
 namespace tremie {
 namespace {
 
-Octet random_lanes(std::mt19937& random, double low, double high) {
+f64x8 random_lanes(std::mt19937& random, double low, double high) {
   std::uniform_real_distribution<double> u(low, high);
-  Octet a;
-  for (int l = 0; l < octet_size; ++l) a[l] = u(random);
+  f64x8 a;
+  for (int l = 0; l < f64x8_size; ++l) a[l] = u(random);
   return a;
 }
 
@@ -27,16 +27,16 @@ TEST(LaneFunctions, ExpAndMeanDecay) {
   std::mt19937 random(1);
   for (int i = 0; i < 2000; ++i) {
     const double reach = std::pow(10.0, -8.0 + 10.8 * i / 2000.0);
-    const Octet x = random_lanes(random, -reach, reach), y = exp(x);
-    const Octet z = x < 0.0 ? -x : x, d = mean_decay(z), left = decay(z);
-    for (int l = 0; l < octet_size; ++l) {
+    const f64x8 x = random_lanes(random, -reach, reach), y = exp(x);
+    const f64x8 z = x < 0.0 ? -x : x, d = mean_decay(z), left = decay(z);
+    for (int l = 0; l < f64x8_size; ++l) {
       EXPECT_NEAR(y[l] / std::exp(x[l]), 1.0, 1e-15);
       EXPECT_NEAR(d[l] / (-std::expm1(-z[l]) / z[l]), 1.0, 2e-15);
       EXPECT_NEAR(left[l] / std::exp(-z[l]), 1.0, 1e-15);
     }
   }
-  EXPECT_EQ(exp(Octet{})[0], 1.0);
-  EXPECT_EQ(mean_decay(Octet{})[0], 1.0);
+  EXPECT_EQ(exp(f64x8{})[0], 1.0);
+  EXPECT_EQ(mean_decay(f64x8{})[0], 1.0);
   EXPECT_GT(exp(all_lanes(-1e5))[3], 0.0);
   EXPECT_TRUE(std::isfinite(exp(all_lanes(1e5))[3]));
 }
@@ -47,46 +47,46 @@ TEST(LaneFunctions, ExpAndMeanDecayInSinglePrecision) {
   std::mt19937 random(1);
   for (int i = 0; i < 2000; ++i) {
     const double reach = std::pow(10.0, -8.0 + 9.8 * i / 2000.0);
-    const Singles x = to_single(random_lanes(random, -reach, reach), random_lanes(random, -reach, reach));
-    const Singles y = exp(x), z = x < 0.0F ? -x : x, d = mean_decay(z);
-    for (std::size_t l = 0; l < singles_size; ++l) {
+    const f32x16 x = to_single(random_lanes(random, -reach, reach), random_lanes(random, -reach, reach));
+    const f32x16 y = exp(x), z = x < 0.0F ? -x : x, d = mean_decay(z);
+    for (std::size_t l = 0; l < f32x16_size; ++l) {
       const double at = static_cast<double>(x[l]), far = std::abs(at);
       EXPECT_NEAR(static_cast<double>(y[l]) / std::exp(at), 1.0, 2.4e-7);
       EXPECT_NEAR(static_cast<double>(d[l]) / (-std::expm1(-far) / far), 1.0, 6e-7);
     }
   }
-  EXPECT_EQ(exp(Singles{})[0], 1.0F);
-  EXPECT_EQ(mean_decay(Singles{})[0], 1.0F);
-  EXPECT_GT(exp(-1e5F - Singles{})[3], 0.0F);
-  EXPECT_TRUE(std::isfinite(exp(1e5F - Singles{})[3]));
-  EXPECT_NEAR(static_cast<double>(mean_decay(1e7F - Singles{})[3]), 1e-7, 1e-13);
+  EXPECT_EQ(exp(f32x16{})[0], 1.0F);
+  EXPECT_EQ(mean_decay(f32x16{})[0], 1.0F);
+  EXPECT_GT(exp(-1e5F - f32x16{})[3], 0.0F);
+  EXPECT_TRUE(std::isfinite(exp(1e5F - f32x16{})[3]));
+  EXPECT_NEAR(static_cast<double>(mean_decay(1e7F - f32x16{})[3]), 1e-7, 1e-13);
 }
 
 TEST(LaneFunctions, LookUp) {
   std::array<double, 40> table;
   std::array<float, 40> strided;
   for (std::size_t i = 0; i < table.size(); ++i) table[i] = 0.5 * double(i), strided[i] = 0.5F * float(i);
-  const std::array<int, octet_size> a{3, 0, 3, 39, 17, 1, 8, 9}, b{1, 2, 3, 4, 5, 6, 7, 12};
-  const Octet one = look_up(table.data(), a);
-  const Singles two = look_up<3 * sizeof(float)>(strided.data(), b, b);
-  std::array<int, octet_size> back;
+  const std::array<int, f64x8_size> a{3, 0, 3, 39, 17, 1, 8, 9}, b{1, 2, 3, 4, 5, 6, 7, 12};
+  const f64x8 one = look_up(table.data(), a);
+  const f32x16 two = look_up<3 * sizeof(float)>(strided.data(), b, b);
+  std::array<int, f64x8_size> back;
   to_whole(2.0 * one, back);
-  for (std::size_t l = 0; l < octet_size; ++l) {
+  for (std::size_t l = 0; l < f64x8_size; ++l) {
     EXPECT_EQ(one[l], 0.5 * a[l]);
     EXPECT_EQ(two[l], 1.5F * float(b[l]));
-    EXPECT_EQ(two[octet_size + l], two[l]);
+    EXPECT_EQ(two[f64x8_size + l], two[l]);
     EXPECT_EQ(back[l], a[l]);
   }
 }
 
 // The whole number between two goes to the even one.
 TEST(LaneFunctions, FloorAndNearest) {
-  const Octet x = {-2.0, -1.5, -0.1, 0.0, 0.5, 1.0, 2.5, 1e6 + 0.5}, f = floor(x), n = nearest(x);
-  const Singles y = to_single(x, -x), g = floor(y), m = nearest(y);
-  for (std::size_t l = 0; l < octet_size; ++l) {
+  const f64x8 x = {-2.0, -1.5, -0.1, 0.0, 0.5, 1.0, 2.5, 1e6 + 0.5}, f = floor(x), n = nearest(x);
+  const f32x16 y = to_single(x, -x), g = floor(y), m = nearest(y);
+  for (std::size_t l = 0; l < f64x8_size; ++l) {
     EXPECT_EQ(f[l], std::floor(x[l]));
     EXPECT_EQ(n[l], std::nearbyint(x[l]));
-    for (const std::size_t k : {l, l + octet_size}) {
+    for (const std::size_t k : {l, l + f64x8_size}) {
       EXPECT_EQ(g[k], std::floor(y[k]));
       EXPECT_EQ(m[k], std::nearbyint(y[k]));
     }
@@ -96,21 +96,21 @@ TEST(LaneFunctions, FloorAndNearest) {
 TEST(LaneLaws, AsTheScalarLaws) {
   std::mt19937 random(2);
   for (int i = 0; i < 500; ++i) {
-    const Octet gamma = random_lanes(random, 0.0, std::pow(10.0, -9.0 + i / 45.0));
-    const Octet tau_y = random_lanes(random, 1.0, 900.0);
+    const f64x8 gamma = random_lanes(random, 0.0, std::pow(10.0, -9.0 + i / 45.0));
+    const f64x8 tau_y = random_lanes(random, 1.0, 900.0);
     const Papanastasiou smooth{5.0};
     const BiViscous broken{0.01};
-    const Octet a = secant(smooth, gamma, tau_y), b = secant(broken, gamma, tau_y);
-    for (int l = 0; l < octet_size; ++l) {
+    const f64x8 a = secant(smooth, gamma, tau_y), b = secant(broken, gamma, tau_y);
+    for (int l = 0; l < f64x8_size; ++l) {
       EXPECT_NEAR(a[l] / smooth.secant(gamma[l], tau_y[l]), 1.0, 1e-10);  // the scalar series below 1e-5
       EXPECT_DOUBLE_EQ(b[l], broken.secant(gamma[l], tau_y[l]));
       EXPECT_LE(a[l], largest_secant(smooth, tau_y[l]) * (1.0 + 1e-15));
       EXPECT_LE(b[l], largest_secant(broken, tau_y[l]));
     }
-    const Singles rates = to_single(gamma, gamma), yields = to_single(tau_y, tau_y);
-    const Octet c = to_double(secant(smooth, rates, yields), 1),
+    const f32x16 rates = to_single(gamma, gamma), yields = to_single(tau_y, tau_y);
+    const f64x8 c = to_double(secant(smooth, rates, yields), 1),
                 d = to_double(secant(broken, rates, yields), 1);
-    for (int l = 0; l < octet_size; ++l) {
+    for (int l = 0; l < f64x8_size; ++l) {
       EXPECT_NEAR(c[l] / a[l], 1.0, 1e-6);  // five units in the last place, and the arguments' rounding
       EXPECT_NEAR(d[l] / b[l], 1.0, 1e-6);
     }
@@ -123,11 +123,11 @@ TEST(LaneLaws, FlocculationAsTheScalarUpdate) {
   for (const Kinetics kinetics : {Kinetics::gated, Kinetics::roussel})
     for (int i = 0; i < 500; ++i) {
       const Thixotropy t{1.3, 0.03, kinetics, 0.1, 0.0};
-      const Octet lambda = random_lanes(random, 0.0, 7.0);
-      const Octet g0 = random_lanes(random, 0.0, i % 2 ? 0.2 : 10.0);
-      const Octet g1 = random_lanes(random, 0.0, i % 3 ? 0.2 : 10.0);
-      const Octet next = flocculation_step(lambda, t, 54.0, g0, g1, 0.37);
-      for (int l = 0; l < octet_size; ++l)
+      const f64x8 lambda = random_lanes(random, 0.0, 7.0);
+      const f64x8 g0 = random_lanes(random, 0.0, i % 2 ? 0.2 : 10.0);
+      const f64x8 g1 = random_lanes(random, 0.0, i % 3 ? 0.2 : 10.0);
+      const f64x8 next = flocculation_step(lambda, t, 54.0, g0, g1, 0.37);
+      for (int l = 0; l < f64x8_size; ++l)
         EXPECT_NEAR(next[l], flocculation_step(lambda[l], t, 54.0, g0[l], g1[l], 0.37), 1e-13);
     }
 }
@@ -185,13 +185,13 @@ TEST_P(ShapeFunctionsOfLanes, PartitionOfUnityAndLinearFields) {
   std::mt19937 random(5);
   for (int i = 0; i < 300; ++i) {
     const int tile = i % 2;  // the high wall lies in the second one
-    std::array<Octet, 2> x = {random_lanes(random, -0.1 + 0.08 * tile, tile ? 0.02 : -0.02),
+    std::array<f64x8, 2> x = {random_lanes(random, -0.1 + 0.08 * tile, tile ? 0.02 : -0.02),
                               random_lanes(random, 0.0, 0.04)};
     if (i == 0) x[0] = all_lanes(-0.1);
     Weights<2> weights;
     weigh<2>(axes, shape, {tile, 0}, x, weights);
     for (int d = 0; d < 2; ++d)
-      for (int l = 0; l < octet_size; ++l) {
+      for (int l = 0; l < f64x8_size; ++l) {
         const int base = d == 0 ? weights.base[static_cast<std::size_t>(l)] / tile_span
                                 : weights.base[static_cast<std::size_t>(l)] % tile_span;
         double one = 0.0, place = 0.0, flat = 0.0, slope = 0.0;
@@ -223,12 +223,12 @@ TEST(FactoredSums, GatherAndScatterAreAdjoint) {
   for (Axis& a : axes) a = {.h = 0.1};
   std::mt19937 random(6);
   Weights<D> weights;
-  const std::array<Octet, D> x = {random_lanes(random, 0.0, 0.4), random_lanes(random, 0.0, 0.4),
+  const std::array<f64x8, D> x = {random_lanes(random, 0.0, 0.4), random_lanes(random, 0.0, 0.4),
                                   random_lanes(random, 0.0, 0.4)};
   weigh<D>(axes, {}, {0, 0, 0}, x, weights);
-  std::array<NodeLanes, TileGrid<D>::tile_nodes> v, sums{};
+  std::array<f64x4, TileGrid<D>::tile_nodes> v, sums{};
   std::uniform_real_distribution<double> u(-1.0, 1.0);
-  for (NodeLanes& node : v) node = NodeLanes{u(random), u(random), u(random), u(random)};
+  for (f64x4& node : v) node = f64x4{u(random), u(random), u(random), u(random)};
   const auto w = of_lane<D>(weights, 3);
   const auto got = gather<D, 3, slopes_and_moments>(&v[weights.base[3]], w);
   double value = 0.0, slope = 0.0, moment = 0.0;
@@ -243,7 +243,7 @@ TEST(FactoredSums, GatherAndScatterAreAdjoint) {
   EXPECT_NEAR(got.slope[1][1], slope, 1e-12);
   EXPECT_NEAR(got.moment[2][1], moment, 1e-15);
 
-  NodeLanes P = {1.0, -2.0, 0.5, 3.0}, S[D] = {P * 0.1, P * 0.2, P * 0.3}, Q[D] = {P * 2.0, P, P * -1.0};
+  f64x4 P = {1.0, -2.0, 0.5, 3.0}, S[D] = {P * 0.1, P * 0.2, P * 0.3}, Q[D] = {P * 2.0, P, P * -1.0};
   scatter<D, 3>(&sums[weights.base[3]], w, P, S, Q);
   double left = 0.0, right = 0.0;
   for (std::size_t i = 0; i < v.size(); ++i)
@@ -272,12 +272,12 @@ struct EightPoints {
     // GIMP's stencils go by the nearest corner.
     const double low = at_wall ? 0.0 : kind == ShapeFunctions::gimp ? 0.151 : 0.2;
     const double high = low + (together ? at_wall && kind == ShapeFunctions::gimp ? 0.049 : 0.098 : 0.2);
-    const std::array<Octet, D> x = {random_lanes(random, low, high), random_lanes(random, low, high),
+    const std::array<f64x8, D> x = {random_lanes(random, low, high), random_lanes(random, low, high),
                                     random_lanes(random, low, high)};
     weigh<D>(axes, shape, {0, 0, 0}, x, weights);
     std::uniform_real_distribution<double> u(-1.0, 1.0);
-    for (NodeLanes& node : v) node = NodeLanes{u(random), u(random), u(random), u(random)};
-    for (Octet& value : spread.value) value = random_lanes(random, -1.0, 1.0);
+    for (f64x4& node : v) node = f64x4{u(random), u(random), u(random), u(random)};
+    for (f64x8& value : spread.value) value = random_lanes(random, -1.0, 1.0);
     for (int d = 0; d < D; ++d)
       for (int c = 0; c < D; ++c)
         spread.slope[d][c] = random_lanes(random, -0.1, 0.1),
@@ -297,11 +297,11 @@ TEST(GroupSums, AsPointByPoint) {
     EightPoints eight(together, kind, at_wall);
     EXPECT_EQ(eight.weights.together, together);
     TileGrid<D>::Buffer got{}, expected{};
-    scatter_group<D, Given{}>(eight.weights, eight.spread, octet_size, got.data());
-    for (int l = 0; l < octet_size; ++l) {
+    scatter_group<D, Given{}>(eight.weights, eight.spread, f64x8_size, got.data());
+    for (int l = 0; l < f64x8_size; ++l) {
       const auto w = of_lane<D>(eight.weights, l);
       const int base = eight.weights.base[static_cast<std::size_t>(l)];
-      NodeLanes value = {}, slope[D] = {}, moment[D] = {};
+      f64x4 value = {}, slope[D] = {}, moment[D] = {};
       for (int c = 0; c < 4; ++c) value[c] = eight.spread.value[c][l];
       for (int d = 0; d < D; ++d)
         for (int c = 0; c < D; ++c)
@@ -325,13 +325,13 @@ TEST(GroupSums, AsPointByPoint) {
 
 // Rows to columns and back; the first lane of each row is a component.
 TEST(GroupSums, RowsAndColumns) {
-  NodeLanes rows[octet_size], back[octet_size];
-  for (int l = 0; l < octet_size; ++l)
+  f64x4 rows[f64x8_size], back[f64x8_size];
+  for (int l = 0; l < f64x8_size; ++l)
     for (int c = 0; c < 4; ++c) rows[l][c] = 10 * l + c;
-  Octet columns[4];
+  f64x8 columns[4];
   to_columns(rows, columns);
   to_rows(columns, back);
-  for (int l = 0; l < octet_size; ++l)
+  for (int l = 0; l < f64x8_size; ++l)
     for (int c = 0; c < 4; ++c) {
       EXPECT_EQ(columns[c][l], rows[l][c]);
       EXPECT_EQ(back[l][c], rows[l][c]);
@@ -361,7 +361,7 @@ TEST(SortedPoints, GroupsOfOneCell) {
     }
     for (int g = tile.first_group; g < tile.last_group; ++g) {
       std::set<Index<D>> cells;
-      for (int l = 0; l < octet_size; ++l) {
+      for (int l = 0; l < f64x8_size; ++l) {
         const int id = lanes.id[static_cast<std::size_t>(g)][static_cast<std::size_t>(l)];
         if (id < 0) {
           EXPECT_EQ(lanes.mass[static_cast<std::size_t>(g)][l], 0.0);

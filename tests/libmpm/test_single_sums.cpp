@@ -16,13 +16,13 @@ constexpr double h = 0.1;
 constexpr double rounding = 3e-6;
 constexpr std::size_t numbers_of_points[] = {16, 11, 1};
 
-Octet random_lanes(std::mt19937& random, double low, double high) {
+f64x8 random_lanes(std::mt19937& random, double low, double high) {
   std::uniform_real_distribution<double> u(low, high);
-  Octet x;
-  for (int l = 0; l < octet_size; ++l) x[l] = u(random);
+  f64x8 x;
+  for (int l = 0; l < f64x8_size; ++l) x[l] = u(random);
   return x;
 }
-Singles random_singles(std::mt19937& random, double size) {
+f32x16 random_singles(std::mt19937& random, double size) {
   return to_single(random_lanes(random, -size, size), random_lanes(random, -size, size));
 }
 
@@ -38,7 +38,7 @@ auto with_kind(ShapeFunctions kind, Use use) {
 template <int D>
 SingleWeights<D> unwritten() {
   SingleWeights<D> weights;
-  const Singles nan = std::numeric_limits<float>::quiet_NaN() - Singles{};
+  const f32x16 nan = std::numeric_limits<float>::quiet_NaN() - f32x16{};
   for (std::size_t i = 0; i < offsetof(SingleWeights<D>, base) / sizeof nan; ++i)
     std::memcpy(reinterpret_cast<char*>(&weights) + i * sizeof nan, &nan, sizeof nan);
   return weights;
@@ -62,7 +62,7 @@ Shape<D> shape_of(ShapeFunctions kind) {
   return shape;
 }
 
-/// Sixteen points in cells next to a wall and away from it, with their weights in both precisions and what a
+/// Batch16 points in cells next to a wall and away from it, with their weights in both precisions and what a
 /// tile's nodes carry. Weights that a pass does not ask for are not numbers.
 template <int D>
 struct SixteenPoints {
@@ -73,16 +73,16 @@ struct SixteenPoints {
   typename TileGrid<D>::SingleBuffer single_v;
 
   /// `n`: points beyond it stand where the first of their eight does.
-  explicit SixteenPoints(const Case& of, std::size_t n = singles_size) : kind(of.kind) {
+  explicit SixteenPoints(const Case& of, std::size_t n = f32x16_size) : kind(of.kind) {
     const auto axes = held_axes<D>(0.0);
     const auto shape = shape_of<D>(of.kind);
     std::mt19937 random(3);
-    std::array<Octet, D> x[2];
+    std::array<f64x8, D> x[2];
     for (int half = 0; half < 2; ++half) {
-      for (Octet& lanes : x[half]) {
+      for (f64x8& lanes : x[half]) {
         lanes = random_lanes(random, of.low, of.high);
-        for (std::size_t l = 0; l < octet_size; ++l)
-          if (static_cast<std::size_t>(half) * octet_size + l >= n) lanes[l] = lanes[0];
+        for (std::size_t l = 0; l < f64x8_size; ++l)
+          if (static_cast<std::size_t>(half) * f64x8_size + l >= n) lanes[l] = lanes[0];
       }
       weigh<D>(axes, shape, {}, x[half], weights[half]);
     }
@@ -93,23 +93,23 @@ struct SixteenPoints {
       weigh_single<k, WeighedFor::giving, D>(frame, x, with_arms);
     });
     std::uniform_real_distribution<double> u(-1.0, 1.0);
-    single_v.fill(SingleNode{});
+    single_v.fill(f32x4{});
     for (std::size_t i = 0; i < v.size(); ++i) {
-      v[i] = NodeLanes{u(random), u(random), u(random), u(random)};
-      single_v[i] = __builtin_convertvector(v[i], SingleNode);
+      v[i] = f64x4{u(random), u(random), u(random), u(random)};
+      single_v[i] = __builtin_convertvector(v[i], f32x4);
     }
   }
 
   void read_moments(std::size_t n, SingleFields<D>& moments) const {
     with_kind(kind, [&](auto k) { gather_moments<k, D>(single_v.data(), with_moments, n, moments); });
   }
-  Reached give(const SingleMomenta<D>& momenta, std::size_t n, SingleNode* sums) const {
+  Reached give(const SingleMomenta<D>& momenta, std::size_t n, f32x4* sums) const {
     return with_kind(kind, [&](auto k) { return scatter_momenta<k, D>(with_arms, momenta, n, sums); });
   }
 
-  const Weights<D>& of(std::size_t l) const { return weights[l / octet_size]; }
-  int base(std::size_t l) const { return of(l).base[l % octet_size]; }
-  PointWeights<D, 3> one(std::size_t l) const { return of_lane<D>(of(l), static_cast<int>(l % octet_size)); }
+  const Weights<D>& of(std::size_t l) const { return weights[l / f64x8_size]; }
+  int base(std::size_t l) const { return of(l).base[l % f64x8_size]; }
+  PointWeights<D, 3> one(std::size_t l) const { return of_lane<D>(of(l), static_cast<int>(l % f64x8_size)); }
 };
 
 // A smooth field is read the same wherever a rounding puts a point's stencil; these nodes are random, so
@@ -117,7 +117,7 @@ struct SixteenPoints {
 template <int D>
 void stencils_begin_alike(const Case& c) {
   const SixteenPoints<D> points(c);
-  for (std::size_t l = 0; l < singles_size; ++l) {
+  for (std::size_t l = 0; l < f32x16_size; ++l) {
     EXPECT_EQ(points.with_slopes.base[l], points.base(l));
     EXPECT_EQ(points.with_moments.base[l], points.base(l));
     EXPECT_EQ(points.with_arms.base[l], points.base(l));
@@ -145,7 +145,7 @@ void gather_as_double_does(const Case& of) {
         }
       }
     }
-    for (std::size_t l = n; l < singles_size; ++l) EXPECT_TRUE(std::isfinite(moments.along[0][0][l]));
+    for (std::size_t l = n; l < f32x16_size; ++l) EXPECT_TRUE(std::isfinite(moments.along[0][0][l]));
   }
 }
 
@@ -156,8 +156,8 @@ void what_fills_up_reads_as_its_first(const Case& of) {
     const SixteenPoints<D> points(of, n);
     SingleFields<D> moments;
     points.read_moments(n, moments);
-    const std::size_t first = (n - 1) / octet_size * octet_size;
-    for (std::size_t l = n; l < first + octet_size; ++l)
+    const std::size_t first = (n - 1) / f64x8_size * f64x8_size;
+    for (std::size_t l = n; l < first + f64x8_size; ++l)
       for (int c = 0; c < D; ++c) {
         EXPECT_EQ(moments.value[c][l], moments.value[c][first]);
         for (int d = 0; d < D; ++d) EXPECT_EQ(moments.along[d][c][l], moments.along[d][c][first]);
@@ -169,9 +169,9 @@ template <int D>
 void inertia_as_double_has_it(const Case& of) {
   const SixteenPoints<D> points(of);
   for (int d = 0; d < D; ++d)
-    for (std::size_t l = 0; l < singles_size; ++l)
+    for (std::size_t l = 0; l < f32x16_size; ++l)
       EXPECT_NEAR(static_cast<double>(points.with_moments.inertia[d][l]),
-                  points.of(l).inertia[static_cast<std::size_t>(d)][l % octet_size], rounding * h * h);
+                  points.of(l).inertia[static_cast<std::size_t>(d)][l % f64x8_size], rounding * h * h);
 }
 
 /// What the first n points add in double precision; `one`: what point l gives.
@@ -181,7 +181,7 @@ typename TileGrid<D>::Buffer expected_sums(const SixteenPoints<D>& points, std::
   typename TileGrid<D>::Buffer sums{};
   rows = 0;
   for (std::size_t l = 0; l < n; ++l) {
-    NodeLanes value = {}, slope[D] = {}, moment[D] = {};
+    f64x4 value = {}, slope[D] = {}, moment[D] = {};
     one(l, value, slope, moment);
     scatter<D, 3>(&sums[static_cast<std::size_t>(points.base(l))], points.one(l), value, slope, moment);
     rows |= stencil_rows<D>(points.base(l));
@@ -199,17 +199,17 @@ void expect_sums(const Single& got, const Double& expected) {
 template <int D>
 SingleMomenta<D> random_momenta(std::mt19937& random) {
   SingleMomenta<D> momenta;
-  for (Singles& value : momenta.value) value = random_singles(random, 1.0);
+  for (f32x16& value : momenta.value) value = random_singles(random, 1.0);
   for (auto& moment : momenta.moment)
-    for (Singles& component : moment) component = random_singles(random, 1.0 / h);
+    for (f32x16& component : moment) component = random_singles(random, 1.0 / h);
   return momenta;
 }
 template <int D>
 SingleImpulses<D> random_impulses(std::mt19937& random) {
   SingleImpulses<D> impulses;
-  for (Singles& value : impulses.value) value = random_singles(random, 1.0);
+  for (f32x16& value : impulses.value) value = random_singles(random, 1.0);
   for (auto& slope : impulses.slope)
-    for (Singles& component : slope) component = random_singles(random, h);
+    for (f32x16& component : slope) component = random_singles(random, h);
   return impulses;
 }
 
@@ -219,7 +219,7 @@ void momenta_as_double_has_them(const Case& of) {
   std::mt19937 random(4);
   const SingleMomenta<D> momenta = random_momenta<D>(random);
   // In double precision moments are about the point.
-  const auto one = [&](std::size_t l, NodeLanes& value, NodeLanes*, NodeLanes* moment) {
+  const auto one = [&](std::size_t l, f64x4& value, f64x4*, f64x4* moment) {
     for (int c = 0; c <= D; ++c) value[c] = static_cast<double>(momenta.value[c][l]);
     for (int d = 0; d < D; ++d)
       for (int c = 0; c < D; ++c) {
@@ -244,7 +244,7 @@ void impulses_as_double_has_them(const Case& of) {
   std::mt19937 random(5);
   const SingleImpulses<D> impulses = random_impulses<D>(random);
   for (const bool values : {false, true}) {
-    const auto one = [&](std::size_t l, NodeLanes& value, NodeLanes* slope, NodeLanes*) {
+    const auto one = [&](std::size_t l, f64x4& value, f64x4* slope, f64x4*) {
       for (int c = 0; c < D && values; ++c) value[c] = static_cast<double>(impulses.value[c][l]);
       for (int d = 0; d < D; ++d)
         for (int c = 0; c < D; ++c) slope[d][c] = static_cast<double>(impulses.slope[d][c][l]);
@@ -265,10 +265,10 @@ void impulses_as_double_has_them(const Case& of) {
 
 /// Sums over a cube and the largest entry of it.
 template <class Cube>
-std::pair<NodeLanes, double> total_of(const Cube& cube) {
-  NodeLanes total = {};
+std::pair<f64x4, double> total_of(const Cube& cube) {
+  f64x4 total = {};
   double largest = 0.0;
-  for (const SingleNode& node : cube) {
+  for (const f32x4& node : cube) {
     total += in_double(node);
     for (int c = 0; c < 4; ++c) largest = std::max(largest, std::abs(static_cast<double>(node[c])));
   }
@@ -283,18 +283,18 @@ void nothing_is_lost(const Case& of) {
   std::mt19937 random(6);
   const SingleImpulses<D> impulses = random_impulses<D>(random);
   typename TileGrid<D>::SingleBuffer pushed{}, moved{};
-  scatter_impulses<D, false>(points.with_slopes, impulses, singles_size, pushed.data());
-  const double tolerance = power(3, D) * singles_size * 6e-8;
+  scatter_impulses<D, false>(points.with_slopes, impulses, f32x16_size, pushed.data());
+  const double tolerance = power(3, D) * f32x16_size * 6e-8;
   const auto [push, hardest] = total_of(pushed);
   EXPECT_GT(hardest, 0.1);
   for (int c = 0; c < D; ++c) EXPECT_NEAR(push[c], 0.0, tolerance * hardest);
 
   const SingleMomenta<D> momenta = random_momenta<D>(random);
-  points.give(momenta, singles_size, moved.data());
+  points.give(momenta, f32x16_size, moved.data());
   const auto [sum, most] = total_of(moved);
   for (int c = 0; c <= D; ++c) {
     double given = 0.0;
-    for (std::size_t l = 0; l < singles_size; ++l) {
+    for (std::size_t l = 0; l < f32x16_size; ++l) {
       given += static_cast<double>(momenta.value[c][l]);
       // The arms of a point's nodes from its middle one average to minus the middle one's from the point.
       for (int d = 0; d < D && c < D; ++d)
@@ -339,7 +339,7 @@ TEST(OnAWall, TheWallsControlHasAllTheWeight) {
     for (const ShapeFunctions kind : {ShapeFunctions::b_spline, ShapeFunctions::gimp}) {
       const auto axes = held_axes<D>(origin);
       const auto shape = shape_of<D>(kind);
-      const std::array<Octet, D> x = {all_lanes(origin), all_lanes(origin)}, both[2] = {x, x};
+      const std::array<f64x8, D> x = {all_lanes(origin), all_lanes(origin)}, both[2] = {x, x};
       Weights<D> weights;
       SingleWeights<D> single;
       weigh<D>(axes, shape, {}, x, weights);
@@ -352,7 +352,7 @@ TEST(OnAWall, TheWallsControlHasAllTheWeight) {
         EXPECT_NEAR(static_cast<double>(single.w[0][k][0]), all, 1e-16) << origin;
       }
       EXPECT_EQ(single.base[0], weights.base[0]);
-      std::array<int, octet_size> cell, single_cell;
+      std::array<int, f64x8_size> cell, single_cell;
       find_pressure_cells<D, double>(frame, x, cell);
       find_pressure_cells<D, float>(frame, x, single_cell);
       EXPECT_EQ(cell[0], 2 * tile_pressure_cells + 2);
@@ -365,11 +365,11 @@ TEST(PressureCellsInSingle, AreTheStencils) {
   constexpr int D = 2;
   const auto axes = held_axes<D>(0.0);
   const auto shape = shape_of<D>(ShapeFunctions::b_spline);
-  const std::array<Octet, D> x = {all_lanes(0.3 - 1e-10), all_lanes(0.25)}, both[2] = {x, x};
+  const std::array<f64x8, D> x = {all_lanes(0.3 - 1e-10), all_lanes(0.25)}, both[2] = {x, x};
   SingleWeights<D> single;
   const auto frame = stencil_frame<D>(axes, shape, {});
   weigh_single<ShapeFunctions::b_spline, WeighedFor::stress, D>(frame, both, single);
-  std::array<int, octet_size> cell;
+  std::array<int, f64x8_size> cell;
   find_pressure_cells<D, float>(frame, x, cell);
   EXPECT_EQ(single.base[0], 4 * tile_span + 3);
   EXPECT_EQ(cell[0], 5 * tile_pressure_cells + 4);

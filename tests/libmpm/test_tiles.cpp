@@ -58,7 +58,7 @@ TEST(Tiles, AStencilReachesThreeRowsADirection) {
 
 TEST(Tiles, OnlyTheRowsThatAreMeantAreCleared) {
   TileGrid<2>::Buffer cube;
-  cube.fill(NodeLanes{} + 1.0);
+  cube.fill(f64x4{} + 1.0);
   clear_rows(all_rows<2> & ~TileRows{1}, cube);
   for (int i = 0; i < TileGrid<2>::tile_nodes; ++i) EXPECT_EQ(cube[i][0], i < tile_span ? 1.0 : 0.0);
 }
@@ -98,10 +98,10 @@ TEST(Tiles, RunsCostAboutAsMuch) {
 // Block 9 is the last that tile 8 sees and the first that tile 9 sees.
 TEST(Tiles, VelocitiesAreKept) {
   TileGrid<3> grid = row_of_tiles<3>(10, 10);
-  const auto block_9 = [&]() -> NodeLanes& {
+  const auto block_9 = [&]() -> f64x4& {
     return grid.v[static_cast<std::size_t>(grid.tiles.back().block[0])][7];
   };
-  block_9() = NodeLanes{1.0, 2.0, 3.0, 4.0};
+  block_9() = f64x4{1.0, 2.0, 3.0, 4.0};
   lay_tiles<3>(grid, std::vector<Tile<3>>(grid.tiles.begin() + 4, grid.tiles.end()), false, 2);
   EXPECT_EQ(grid.v.size(), 4 * 7);
   EXPECT_EQ(block_9()[2], 3.0);

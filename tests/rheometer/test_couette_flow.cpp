@@ -1,12 +1,11 @@
 // The torque of a fluid of any law between cylinders, by the radial integral: Reiner-Riwlin for Bingham, the closed form
 // of a power law.
 
-#include "rheometer/reference/couette_flow.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "rheometer/reference/couette_flow.hpp"
 #include "rheometer/reference/reiner_riwlin.hpp"
 
 namespace tremie {

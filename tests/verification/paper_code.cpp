@@ -53,7 +53,7 @@ constexpr PaperMix mixes[] = {{54, 35.8, 1.3, 0.35}, {61, 29, 1.8, 0.45}, {130, 
 
 /// A material point; lane 3 of v is 1, so that m v is momentum and mass at once.
 struct Point {
-  NodeLanes x{}, v{0, 0, 0, 1};
+  f64x4 x{}, v{0, 0, 0, 1};
   double mass = 0, V = 0, ln_J = 0, lambda = 0, broken = 0;  ///< broken: lambda without build-up
   double rate = 0;
   bool rigid = false;
@@ -67,7 +67,7 @@ struct Point {
 struct Grid {
   double h;
   std::array<int, D> n, high{};  ///< nodes a side, with one beyond; the highest in use
-  std::vector<NodeLanes> v, f;
+  std::vector<f64x4> v, f;
   std::size_t at(int i, int j, int k) const {
     return (static_cast<std::size_t>(i + 1) * n[1] + static_cast<std::size_t>(j + 1)) * n[2] +
            static_cast<std::size_t>(k + 1);
@@ -100,7 +100,7 @@ template <class Visit>
       const double ww = p.w[0][i] * p.w[1][j], dx = p.dw[0][i] * p.w[1][j], dy = p.w[0][i] * p.dw[1][j];
       for (int k = 0; k < 3; ++k)
         visit(row + static_cast<std::size_t>(k), ww * p.w[2][k],
-              NodeLanes{dx * p.w[2][k], dy * p.w[2][k], ww * p.dw[2][k], 0.0});
+              f64x4{dx * p.w[2][k], dy * p.w[2][k], ww * p.dw[2][k], 0.0});
     }
 }
 
@@ -110,7 +110,7 @@ template <class Visit>
   const double slope = 0.25 / grid.h;
   for (int c = 0; c < 8; ++c)
     visit(grid.at(p.cell[0] + (c & 1), p.cell[1] + (c >> 1 & 1), p.cell[2] + (c >> 2)),
-          NodeLanes{c & 1 ? slope : -slope, c & 2 ? slope : -slope, c & 4 ? slope : -slope, 0.0});
+          f64x4{c & 1 ? slope : -slope, c & 2 ? slope : -slope, c & 4 ? slope : -slope, 0.0});
 }
 
 template <class Visit>
@@ -120,7 +120,7 @@ void for_used(const Grid& grid, Visit visit) {
       for (int k = -1; k <= grid.high[2]; ++k) visit(grid.at(i, j, k), i, j, k);
 }
 
-void hold_at_walls(int i, int j, int k, NodeLanes& v) {
+void hold_at_walls(int i, int j, int k, f64x4& v) {
   if (i <= 0) v[0] = 0.0;
   if (j <= 0) v[1] = 0.0;
   if (k <= 0) v[2] = 0.0;
@@ -131,7 +131,7 @@ struct Deviator {
 };
 
 /// Viscous stress of a point from L[b][a] = dv_a/dx_b; breaks lambda down, or builds it up, over dt.
-Deviator update_state(const PaperMix& mix, const NodeLanes (&L)[D], double dt, Point& p) {
+Deviator update_state(const PaperMix& mix, const f64x4 (&L)[D], double dt, Point& p) {
   const double shear = 0.5 * keys::shear, third = keys::trace > 0 ? 0.0 : 1.0 / 3.0;
   const double div = L[0][0] + L[1][1] + L[2][2];
   Deviator tau{{L[0][0] - third * div, L[1][1] - third * div, L[2][2] - third * div},
@@ -153,31 +153,31 @@ Deviator update_state(const PaperMix& mix, const NodeLanes (&L)[D], double dt, P
 
 /// Deforms a point and gives the nodes its forces.
 void stress(const PaperMix& mix, double dt, Grid& grid, Point& p) {
-  NodeLanes L[D] = {};  // L[b][a] = dv_a/dx_b
-  for_nodes(grid, p, [&](std::size_t n, double, const NodeLanes& dN) {
+  f64x4 L[D] = {};  // L[b][a] = dv_a/dx_b
+  for_nodes(grid, p, [&](std::size_t n, double, const f64x4& dN) {
     for (int b = 0; b < D; ++b) L[b] += dN[b] * grid.v[n];
   });
   const Deviator tau = update_state(mix, L, dt, p);
   double divergence = 0.0;
-  for_corners(grid, p, [&](std::size_t n, const NodeLanes& dN) {
-    const NodeLanes part = dN * grid.v[n];
+  for_corners(grid, p, [&](std::size_t n, const f64x4& dN) {
+    const f64x4 part = dN * grid.v[n];
     divergence += part[0] + part[1] + part[2];
   });
   p.ln_J += divergence * dt;
   if (keys::fixed_volume == 0) p.V *= std::exp(divergence * dt);
   const double pressure = -K * p.ln_J, own = keys::point_force > 0 ? pressure : 0.0;
-  const NodeLanes s[D] = {-p.V * NodeLanes{tau.diagonal[0] - own, tau.xy, tau.xz, 0.0},
-                          -p.V * NodeLanes{tau.xy, tau.diagonal[1] - own, tau.yz, 0.0},
-                          -p.V * NodeLanes{tau.xz, tau.yz, tau.diagonal[2] - own, 0.0}};
-  for_nodes(grid, p, [&](std::size_t n, double, const NodeLanes& dN) {
+  const f64x4 s[D] = {-p.V * f64x4{tau.diagonal[0] - own, tau.xy, tau.xz, 0.0},
+                      -p.V * f64x4{tau.xy, tau.diagonal[1] - own, tau.yz, 0.0},
+                      -p.V * f64x4{tau.xz, tau.yz, tau.diagonal[2] - own, 0.0}};
+  for_nodes(grid, p, [&](std::size_t n, double, const f64x4& dN) {
     grid.f[n] += dN[0] * s[0] + dN[1] * s[1] + dN[2] * s[2];
   });
   if (keys::point_force == 0)
-    for_corners(grid, p, [&](std::size_t n, const NodeLanes& dN) { grid.f[n] += p.V * pressure * dN; });
+    for_corners(grid, p, [&](std::size_t n, const f64x4& dN) { grid.f[n] += p.V * pressure * dN; });
 }
 
 /// Acceleration of a floor node under Coulomb friction, before its normal part is taken away.
-void rub(double friction, double dt, const NodeLanes& v, NodeLanes& a) {
+void rub(double friction, double dt, const f64x4& v, f64x4& a) {
   if (a[2] >= 0.0) return;
   const double least = -friction * a[2] * dt, ux = v[0] + a[0] * dt, uy = v[1] + a[1] * dt;
   const double u = std::hypot(ux, uy);
@@ -196,13 +196,13 @@ void step(const PaperMix& mix, double dt, Grid& grid, std::vector<Point>& points
     weigh(grid, extent, p);
     for (int d = 0; d < D; ++d) grid.high[d] = std::max(grid.high[d], p.base[d] + 2);
   }
-  for_used(grid, [&](std::size_t n, int, int, int) { grid.v[n] = grid.f[n] = NodeLanes{}; });
+  for_used(grid, [&](std::size_t n, int, int, int) { grid.v[n] = grid.f[n] = f64x4{}; });
   for (const Point& p : points) {
-    const NodeLanes momentum = p.mass * p.v;
-    for_nodes(grid, p, [&](std::size_t n, double N, const NodeLanes&) { grid.v[n] += N * momentum; });
+    const f64x4 momentum = p.mass * p.v;
+    for_nodes(grid, p, [&](std::size_t n, double N, const f64x4&) { grid.v[n] += N * momentum; });
   }
   for_used(grid, [&](std::size_t n, int i, int j, int k) {
-    NodeLanes& v = grid.v[n];
+    f64x4& v = grid.v[n];
     const double mass = v[3];
     if (mass > 1e-15) v = v / mass;
     v[3] = mass;
@@ -211,21 +211,21 @@ void step(const PaperMix& mix, double dt, Grid& grid, std::vector<Point>& points
   for (Point& p : points)
     if (!p.rigid) stress(mix, dt, grid, p);
   for_used(grid, [&](std::size_t n, int i, int j, int k) {
-    NodeLanes &v = grid.v[n], &a = grid.f[n];
+    f64x4 &v = grid.v[n], &a = grid.f[n];
     const double mass = v[3];
-    a = mass > 1e-15 ? a / mass + NodeLanes{0, 0, -g, 0} : NodeLanes{};
+    a = mass > 1e-15 ? a / mass + f64x4{0, 0, -g, 0} : f64x4{};
     if (k <= 0) rub(friction, dt, v, a);
     hold_at_walls(i, j, k, a);
     a[3] = 0.0;
     v += dt * a;
   });
   for (Point& p : points) {
-    NodeLanes v = {}, a = {};
+    f64x4 v = {}, a = {};
     for_nodes(grid, p,
-              [&](std::size_t n, double N, const NodeLanes&) { v += N * grid.v[n], a += N * grid.f[n]; });
+              [&](std::size_t n, double N, const f64x4&) { v += N * grid.v[n], a += N * grid.f[n]; });
     v[3] = 0.0;
     if (p.rigid) v = p.v, v[3] = 0.0;
-    if (!p.rigid) p.v = keys::pic > 0 ? v + NodeLanes{0, 0, 0, 1} : p.v + dt * a;
+    if (!p.rigid) p.v = keys::pic > 0 ? v + f64x4{0, 0, 0, 1} : p.v + dt * a;
     p.x += dt * v;
     for (int d = 0; d < D; ++d) p.x[d] = std::max(p.x[d], 1e-6 * grid.h);
   }
@@ -233,7 +233,7 @@ void step(const PaperMix& mix, double dt, Grid& grid, std::vector<Point>& points
 
 Point point_at(const Vec<D>& x, double V, const PaperMix& mix) {
   Point p;
-  p.x = NodeLanes{x[0], x[1], x[2], 0.0}, p.V = V, p.mass = density * V;
+  p.x = f64x4{x[0], x[1], x[2], 0.0}, p.V = V, p.mass = density * V;
   p.lambda = p.broken = mix.A_thix * keys::rest / mix.tau_0;
   return p;
 }
@@ -290,7 +290,7 @@ void run_keys() {
   const double h = keys::cell, dt = keys::dt;
   Grid grid{.h = h, .n = {}, .v = {}, .f = {}};
   grid.n = {static_cast<int>(0.6 / h), static_cast<int>(0.6 / h), static_cast<int>(0.9 / h)};
-  grid.v.assign(static_cast<std::size_t>(grid.n[0] * grid.n[1] * grid.n[2]), NodeLanes{});
+  grid.v.assign(static_cast<std::size_t>(grid.n[0] * grid.n[1] * grid.n[2]), f64x4{});
   grid.f = grid.v;
   std::vector<Point> points = filled(cone, mix, h);
   const Means start = means(points);

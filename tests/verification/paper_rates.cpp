@@ -20,9 +20,9 @@ namespace tremie {
 struct Unhalved : ThreeD {};
 
 template <>
-inline void strain_rate_of<Unhalved, Octet>(const Octet (&L)[3][3], const Octet& v_0, const Octet& x_0,
-                                            Octet (&q)[5], Octet& divergence) {
-  strain_rate_of<ThreeD, Octet>(L, v_0, x_0, q, divergence);
+inline void strain_rate_of<Unhalved, f64x8>(const f64x8 (&L)[3][3], const f64x8& v_0, const f64x8& x_0,
+                                            f64x8 (&q)[5], f64x8& divergence) {
+  strain_rate_of<ThreeD, f64x8>(L, v_0, x_0, q, divergence);
   for (int k = 2; k < 5; ++k) q[k] *= 2.0;
 }
 
@@ -138,7 +138,7 @@ void gradients(ExplicitState<Geometry>& state, std::vector<Mat<D, D>>& L) {
     read_blocks<D>(tile, all_rows<D>, state.grid.v, v);
     for (int g = tile.first_group; g < tile.last_group; ++g) {
       const auto group = static_cast<std::size_t>(g);
-      std::array<Octet, D> x;
+      std::array<f64x8, D> x;
       for (int d = 0; d < D; ++d) x[d] = state.points.x[d][group];
       Weights<D> weights;
       weigh<D>(state.grid.axes, state.shape, tile.at, x, weights);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Sixteen cells side by side: vectors of the nodes to lanes of cells and back.
+// Batch16 cells side by side: vectors of the nodes to lanes of cells and back.
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -27,7 +27,7 @@ namespace detail {
 
 using Four [[gnu::vector_size(16)]] = float;
 using Eight [[gnu::vector_size(32)]] = float;
-using Sixteen [[gnu::vector_size(64)]] = float;
+using Batch16 [[gnu::vector_size(64)]] = float;
 
 inline Four load_four(const float* v, int node) {
   Four f;
@@ -36,7 +36,7 @@ inline Four load_four(const float* v, int node) {
 }
 
 /// Lanes j, 4 + j, 8 + j and 12 + j.
-inline Sixteen four_lanes(const float* v, const int* node, int j) {
+inline Batch16 four_lanes(const float* v, const int* node, int j) {
   const Eight low =
       __builtin_shufflevector(load_four(v, node[j]), load_four(v, node[4 + j]), 0, 1, 2, 3, 4, 5, 6, 7);
   const Eight high =
@@ -44,42 +44,42 @@ inline Sixteen four_lanes(const float* v, const int* node, int j) {
   return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
 }
 
-inline Sixteen lower_pairs(const Sixteen& a, const Sixteen& b) {
+inline Batch16 lower_pairs(const Batch16& a, const Batch16& b) {
   return __builtin_shufflevector(a, b, 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29);
 }
-inline Sixteen upper_pairs(const Sixteen& a, const Sixteen& b) {
+inline Batch16 upper_pairs(const Batch16& a, const Batch16& b) {
   return __builtin_shufflevector(a, b, 2, 18, 3, 19, 6, 22, 7, 23, 10, 26, 11, 27, 14, 30, 15, 31);
 }
-inline Sixteen lower_halves(const Sixteen& a, const Sixteen& b) {
+inline Batch16 lower_halves(const Batch16& a, const Batch16& b) {
   return __builtin_shufflevector(a, b, 0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29);
 }
-inline Sixteen upper_halves(const Sixteen& a, const Sixteen& b) {
+inline Batch16 upper_halves(const Batch16& a, const Batch16& b) {
   return __builtin_shufflevector(a, b, 2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31);
 }
 
-inline Sixteen of_lanes(const Lanes<float>& a) {
-  Sixteen s;
+inline Batch16 of_lanes(const Lanes<float>& a) {
+  Batch16 s;
   std::memcpy(&s, a.data(), sizeof s);
   return s;
 }
-inline void to_lanes(const Sixteen& s, Lanes<float>& a) { std::memcpy(a.data(), &s, sizeof s); }
+inline void to_lanes(const Batch16& s, Lanes<float>& a) { std::memcpy(a.data(), &s, sizeof s); }
 
 /// Lanes j, 4 + j, 8 + j and 12 + j.
-inline void add_four_lanes(const Sixteen& s, const int* node, int j, float* room) {
+inline void add_four_lanes(const Batch16& s, const int* node, int j, float* room) {
   Four value[4];
   std::memcpy(value, &s, sizeof s);
   for (int i = 0; i < 4; ++i) add_to_node(value[i], room + 4 * static_cast<std::ptrdiff_t>(node[4 * i + j]));
 }
 
-using FourD [[gnu::vector_size(32)]] = double;
+using f64x4_column [[gnu::vector_size(32)]] = double;
 using EightD [[gnu::vector_size(64)]] = double;
 
 /// Three numbers and anything.
-inline FourD load_three(const double* from) {
+inline f64x4_column load_three(const double* from) {
 #ifdef __AVX512VL__
   return _mm256_maskz_loadu_pd(7, from);
 #else
-  return FourD{from[0], from[1], from[2], 0.0};
+  return f64x4_column{from[0], from[1], from[2], 0.0};
 #endif
 }
 /// Lanes j and 4 + j.
@@ -108,7 +108,7 @@ inline void load_eight(const double* v, const int* node, double* x, double* y, d
 }
 /// Lanes j and 4 + j.
 inline void add_two_lanes(const EightD& s, const int* node, int j, double* room) {
-  FourD value[2];
+  f64x4_column value[2];
   std::memcpy(value, &s, sizeof s);
   for (int i = 0; i < 2; ++i) add_to_node(value[i], room + 4 * static_cast<std::ptrdiff_t>(node[4 * i + j]));
 }
@@ -129,9 +129,9 @@ inline void add_eight(const double* x, const double* y, const double* z, const i
 /// The vectors of one node a lane.
 inline void load_nodes(const float* v, const int* node, Lanes<float>& x, Lanes<float>& y, Lanes<float>& z) {
   using namespace detail;
-  const Sixteen a = four_lanes(v, node, 0), b = four_lanes(v, node, 1), c = four_lanes(v, node, 2),
+  const Batch16 a = four_lanes(v, node, 0), b = four_lanes(v, node, 1), c = four_lanes(v, node, 2),
                 d = four_lanes(v, node, 3);
-  const Sixteen ab = lower_pairs(a, b), cd = lower_pairs(c, d);
+  const Batch16 ab = lower_pairs(a, b), cd = lower_pairs(c, d);
   to_lanes(lower_halves(ab, cd), x);
   to_lanes(upper_halves(ab, cd), y);
   to_lanes(lower_halves(upper_pairs(a, b), upper_pairs(c, d)), z);
@@ -146,9 +146,9 @@ inline void load_nodes(const double* v, const int* node, Lanes<double>& x, Lanes
 inline void add_lanes(const Lanes<float>& x, const Lanes<float>& y, const Lanes<float>& z, const int* node,
                       float* room) {
   using namespace detail;
-  const Sixteen none = {}, a = of_lanes(x), b = of_lanes(y), c = of_lanes(z);
-  const Sixteen ab = lower_pairs(a, b), cd = lower_pairs(c, none);
-  const Sixteen high_ab = upper_pairs(a, b), high_cd = upper_pairs(c, none);
+  const Batch16 none = {}, a = of_lanes(x), b = of_lanes(y), c = of_lanes(z);
+  const Batch16 ab = lower_pairs(a, b), cd = lower_pairs(c, none);
+  const Batch16 high_ab = upper_pairs(a, b), high_cd = upper_pairs(c, none);
   add_four_lanes(lower_halves(ab, cd), node, 0, room);
   add_four_lanes(upper_halves(ab, cd), node, 1, room);
   add_four_lanes(lower_halves(high_ab, high_cd), node, 2, room);

@@ -129,13 +129,13 @@ inline void Fsai::build(const SchurMatrix& S) {
 
 /// y = F x along a column.
 inline void Fsai::multiply_column(CellColumns& layout, const Column& column) const {
-  using Sixteen = Eigen::Map<const Lanes<float>>;
+  using Batch16 = Eigen::Map<const Lanes<float>>;
   const int size = column.size(), begin = layout.begin_of(column);
   const float* const own = of_column(column);
   for (int i = 0; i < size; i += batch_size) {
     Lanes<float> sum = Lanes<float>::Zero();
     for (int k = 0; k < kept; ++k)
-      sum += Sixteen(own + k * size + i) * Sixteen(&layout.x[begin + layout.place_at(ahead[k]) + i]);
+      sum += Batch16(own + k * size + i) * Batch16(&layout.x[begin + layout.place_at(ahead[k]) + i]);
     detail::store_lanes(&layout.y[begin + i], sum, size - i);
   }
 }
@@ -143,14 +143,14 @@ inline void Fsai::multiply_column(CellColumns& layout, const Column& column) con
 /// x = F' y along a column: what those behind have for it. Before a column's first cell entries of others are
 /// read, finite and times zero; what whole batches have beyond an end is not stored.
 inline void Fsai::transposed_column(CellColumns& layout, const Column& column) const {
-  using Sixteen = Eigen::Map<const Lanes<float>>;
+  using Batch16 = Eigen::Map<const Lanes<float>>;
   const int size = column.size(), begin = layout.begin_of(column);
   const float* const own = of_column(column);
   float* const x = &layout.x[begin];
   const float* const y = &layout.y[begin];
   for (int i = 0; i < size; i += batch_size) {
-    Lanes<float> sum = Sixteen(own + i) * Sixteen(y + i);
-    for (int d = 1; d <= CellColumns::reach; ++d) sum += Sixteen(own + d * size + i - d) * Sixteen(y + i - d);
+    Lanes<float> sum = Batch16(own + i) * Batch16(y + i);
+    for (int d = 1; d <= CellColumns::reach; ++d) sum += Batch16(own + d * size + i - d) * Batch16(y + i - d);
     detail::store_lanes(x + i, sum, size - i);
   }
   for (int k = 1 + CellColumns::reach; k < kept; ++k) {
@@ -161,7 +161,7 @@ inline void Fsai::transposed_column(CellColumns& layout, const Column& column) c
     const float* const its = of_column(behind) + (k * behind.size() + low - behind.low);
     const float* const its_y = &layout.y[layout.begin_of(behind) + low - behind.low];
     for (int i = 0; i < end - low; i += batch_size)
-      detail::add_lanes(x + (low - column.low + i), Sixteen(its + i) * Sixteen(its_y + i), end - low - i);
+      detail::add_lanes(x + (low - column.low + i), Batch16(its + i) * Batch16(its_y + i), end - low - i);
   }
 }
 

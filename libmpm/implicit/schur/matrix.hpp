@@ -102,8 +102,8 @@ void SchurMatrix::for_each(Use use) const {
 /// ahead; `in_chunk`: where the column begins in its chunk. Beyond the ends of a column entries of others are
 /// read, finite and times zero, or for places that have no cell.
 inline void SchurMatrix::multiply_column(const Column& column, float* in_chunk) {
-  using Sixteen = Eigen::Map<const Lanes<float>>;
-  const auto at = [](const float* from) { return Sixteen(from); };
+  using Batch16 = Eigen::Map<const Lanes<float>>;
+  const auto at = [](const float* from) { return Batch16(from); };
   const auto add_to = [](float* y, const Lanes<float>& more) { Eigen::Map<Lanes<float>>{y} += more; };
   const int size = column.size();
   const float* const x = &layout.x[layout.begin_of(column)];

@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <string>
 
-#include "apparatus/common/body_readings.hpp"
 #include "apparatus/common/model.hpp"
+#include "apparatus/run/body_readings.hpp"
 #include "libmpm/implicit/step.hpp"
 #include "libmpm/implicit/step_size.hpp"
 

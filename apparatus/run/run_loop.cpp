@@ -1,4 +1,4 @@
-#include "apparatus/common/run_loop.hpp"
+#include "apparatus/run/run_loop.hpp"
 
 #include <string>
 

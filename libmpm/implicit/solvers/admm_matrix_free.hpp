@@ -3,8 +3,8 @@
 // ADMM in 3D without a matrix: the linear solves by preconditioned conjugate gradients, which go on from the last ones
 // and are no more exact than the iteration needs; stresses and rates packed and updated a batch of cells at a time.
 
-#include "libmpm/implicit/admm.hpp"
-#include "libmpm/implicit/linear_system_3d.hpp"
+#include "libmpm/implicit/solvers/admm.hpp"
+#include "libmpm/implicit/solvers/linear_system_3d.hpp"
 
 namespace tremie {
 

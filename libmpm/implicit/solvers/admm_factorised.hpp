@@ -3,7 +3,7 @@
 // ADMM with a Cholesky factor of the assembled system: one factor a step, kept while no contact changes. Stresses and
 // rates are kept quadrature point by quadrature point.
 
-#include "libmpm/implicit/admm.hpp"
+#include "libmpm/implicit/solvers/admm.hpp"
 
 namespace tremie {
 

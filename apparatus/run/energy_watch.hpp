@@ -7,8 +7,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "apparatus/common/body_readings.hpp"
-#include "apparatus/common/step_settings.hpp"
+#include "apparatus/run/body_readings.hpp"
+#include "apparatus/run/step_settings.hpp"
 
 namespace tremie::test_run {
 

@@ -2,7 +2,7 @@
 // use, and from each other. libgomp reads how its threads wait when it is loaded, before main(), and at no
 // other time: the program sets it and becomes itself again.
 
-#include "apparatus/cli/passive_threads.hpp"
+#include "apparatus/cli/process/passive_threads.hpp"
 
 #include <unistd.h>
 
