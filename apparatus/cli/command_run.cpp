@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "apparatus/cli/commands.hpp"
-#include "apparatus/cli/process/passive_threads.hpp"
+#include "apparatus/cli/process/brief_spin.hpp"
 #include "apparatus/cli/progress.hpp"
 #include "apparatus/cli/set_option.hpp"
 #include "apparatus/registry/error_estimate.hpp"
@@ -147,7 +147,7 @@ int run(const Options& options) {
   auto scene = scene::read(options.scene, options.overrides);
   if (!options.accuracy.empty()) accuracy_of(options.accuracy);
   const int threads = threads_for(scene, options);
-  wait_passively(threads);
+  spin_briefly(threads);
   report::RunFolder folder(options.out.empty() ? "runs/" + scene.name : options.out, options.force);
   stop_on_interrupt();
   if (!options.accuracy.empty()) scene = with_cells_for(scene, options);
