@@ -1,7 +1,7 @@
 #pragma once
 
 // What a rung of the verification ladder measures: plain data, filled by the rungs and written by
-// tests/verification/ladder/document.
+// apparatus/verification/document.
 
 #include <optional>
 #include <string>

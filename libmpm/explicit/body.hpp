@@ -42,7 +42,7 @@ struct ExplicitReport {
   double shear_rate_mean = 0.0;  ///< volume mean [1/s]
 };
 
-/// A cell at a wall that holds the concrete (wall_cells.hpp).
+/// A cell at a wall that holds the concrete (wall_fill.hpp).
 template <int D>
 struct HeldCell {
   float hold;                  ///< what its points stand for, in units of their own volume

@@ -6,7 +6,7 @@
 // floor stays empty, and a sum over points gives the floor that share of the concrete's resistance
 // (tests/verification/floor.md). But a cell inside the body is full, by geometry: its points' viscous and
 // yield stress is integrated over the whole cell. Pressure, mass and volume stay the points' own. The
-// pressure's row moves to where the points are (pressure_cells.hpp), so that the flow fills what is hollow.
+// pressure's row moves to where the points are (cell_pressures.hpp), so that the flow fills what is hollow.
 
 #include "libmpm/explicit/body.hpp"
 

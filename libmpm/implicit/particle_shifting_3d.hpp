@@ -1,7 +1,7 @@
 #pragma once
 
 // particle_shifting.hpp's displacements in space. The mass is diagonal there, so that the preconditioner M + B' C B of
-// pressure_preconditioner.hpp is the matrix itself, but for walls inside the grid and its single precision:
+// preconditioner.hpp is the matrix itself, but for walls inside the grid and its single precision:
 // one or two iterations.
 
 #include "libmpm/implicit/particle_shifting.hpp"

@@ -54,7 +54,7 @@ template <ShapeFunctions kind, class Lanes>
 
 }  // namespace detail
 
-/// Weights of the points at x in a tile, eight and eight: as weigh() of lane_stencils.hpp.
+/// Weights of the points at x in a tile, eight and eight: as weigh() of simd_stencils.hpp.
 template <ShapeFunctions kind, WeighedFor use, int D>
 void weigh_single(const StencilFrame<D>& frame, const std::array<f64x8, D> (&x)[2],
                   SingleWeights<D>& weights) {
@@ -266,7 +266,7 @@ template <int D, class Add, class End>
 
 /// Adds momenta and masses of the first n of sixteen points to their nodes in the tile's cube,
 /// w_i w_j w_k (value + moment[0] a_i + moment[1] a_j + moment[2] a_k). The node behind a stencil's row is
-/// added nothing. noipa: as add_by_runs() of lane_sums.hpp.
+/// added nothing. noipa: as add_by_runs() of simd_sums.hpp.
 template <ShapeFunctions kind, int D>
 [[gnu::noipa]] Reached scatter_momenta(const SingleWeights<D>& p, const SingleMomenta<D>& of, std::size_t n,
                                        f32x4* sums) {

@@ -282,7 +282,7 @@ double ringing_of_one_point(double place, double inertia, double share) {
 // A point that shares its nodes with no other swells and shrinks with its affine velocity C: the pressure
 // gives it dt p/(rho D_d) in direction d, D_d the second moment of its weights, so that it rings at omega^2 =
 // K/rho sum 1/D_d, and the second step bears omega dt < 2. GIMP's moment is h^2/4 in the middle of a cell and
-// half of that at its corner: chi of explicit_limits.hpp is 12 and 24 then in space, more than in any body.
+// half of that at its corner: chi of stability_limits.hpp is 12 and 24 then in space, more than in any body.
 TEST(ExplicitAlone, OnePointRingsFasterThanABody) {
   omp_set_num_threads(1);
   const auto expect_limit = [](auto ringing, double place, double inertia) {

@@ -1,4 +1,4 @@
-// The per-point updates of lambda (libmpm/constitutive/flocculation.hpp, flocculation_along.hpp) against closed forms
+// The per-point updates of lambda (libmpm/constitutive/flocculation.hpp, flocculation_history.hpp) against closed forms
 // and against CVODE.
 
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 // it in the middle too), forward Euler, CVODE and ARKODE.
 //
 //   d lambda/dt = A_thix/tau_0 - alpha lambda gamma_dot(t), and the gated form of it
-//   (libmpm/constitutive/flocculation.hpp, flocculation_along.hpp)
+//   (libmpm/constitutive/flocculation.hpp, flocculation_history.hpp)
 //
 // Reference: CVODE at 1e-13. Error: the largest of |lambda - reference| over the comparison times, over the
 // largest lambda. CPU time: the smallest of nine means, each over as many repetitions as fill 4 ms, in three

@@ -45,7 +45,7 @@ struct YieldProblem {
   const Quadrature<Geometry>& quadrature;
   const NodalState<D>& nodes;  ///< masses, and v* with gravity already in it
   double dt, mu;
-  double K;                 ///< of the systems: the mix's, or as much as they can bear (admm_space.hpp)
+  double K;                 ///< of the systems: the mix's, or as much as they can bear (admm_matrix_free.hpp)
   std::vector<char> fixed;  ///< a flag a component: prescribed by a wall
   std::vector<ContactPoint<D>> contact;   ///< moving rigid walls
   std::vector<FrictionNode<D>> friction;  ///< Coulomb friction on flat walls, yield drag of side walls

@@ -1,6 +1,6 @@
 #pragma once
 
-// The divergence rows B of the cells and the node blocks G^-1 that pressure_preconditioner.hpp is made of, in
+// The divergence rows B of the cells and the node blocks G^-1 that preconditioner.hpp is made of, in
 // single precision: what pressures do to the nodes, what velocities do to the cells.
 
 #include <algorithm>

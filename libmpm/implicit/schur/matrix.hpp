@@ -5,7 +5,7 @@
 // A cell is coupled with those within two of it in every direction, 125 with itself. S is symmetric: the 63
 // entries with itself and the cells ahead are kept, and a product uses each twice, for the cell and for the
 // one ahead; 252 bytes a cell are read, in the order in which they lie, where the rows of B would be 864.
-// They lie by columns of cells (cell_columns.hpp), sixteen cells of which go side by side. A chunk of columns
+// They lie by columns of cells (cell_chunks.hpp), sixteen cells of which go side by side. A chunk of columns
 // gives what its entries make of x to room of its own; where chunks meet, it is added up in their order: the
 // bits do not depend on the threads.
 

@@ -11,7 +11,7 @@
 //
 // with one unknown a cell in S, the pressures, coupled over two cells each way. For bodies of up to some
 // thousand cells S is factorised as a band. The band's n b^2 operations grow like n^(7/3); beyond, S is
-// solved by conjugate gradients of its own (pressure_iteration.hpp).
+// solved by conjugate gradients of its own (two_level_pcg.hpp).
 
 #include <algorithm>
 #include <cstdint>
