@@ -13,6 +13,7 @@
 #include <cmath>
 
 #include "libmpm/grid/active_grid.hpp"
+#include "libmpm/particles/particles.hpp"
 
 namespace tremie {
 
