@@ -6,6 +6,8 @@ target_compile_options(tremie_flags INTERFACE
   -fno-math-errno
   # Eight doubles are passed between inlined functions alone, never over a binary interface.
   -Wno-psabi
+  # As g++ has it: in C++ its -Wconversion leaves signs out.
+  $<$<CXX_COMPILER_ID:Clang>:-Wno-sign-conversion -Wno-unknown-attributes>
   # g++ 12 reports these inside Eigen's and the standard library's inlined code.
   $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized -Wno-array-bounds
                              -Wno-aggressive-loop-optimizations>)

@@ -223,7 +223,7 @@ inline f64x8 exp(const f64x8& x) {
 /// e^-x for x >= 0, to 2e-16 relative; without e^x's range reduction where no lane is above 1/500, as in
 /// steps that resolve what decays.
 inline f64x8 decay(const f64x8& x) {
-  if (any(~(x < 0.002))) return exp(-x);
+  if (any(~i64x8(x < 0.002))) return exp(-x);
   return 1.0 - x * (1.0 - x * (0.5 - x * (1.0 / 6.0 - x * (1.0 / 24.0 - x * (1.0 / 120.0)))));
 }
 

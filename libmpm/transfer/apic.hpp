@@ -154,8 +154,9 @@ void add_momenta(const ActiveGrid<D>& grid, const Points<D>& points, NodalState<
   constexpr int n_local = power(3, D), at_a_time = 4096;
   nodes.mass.assign(grid.node_index.size(), 0.0);
   nodes.v.assign(grid.node_index.size(), Vec<D>::Zero());
-  const auto local = std::make_unique_for_overwrite<std::array<Vec<D + 1>, n_local>[]>(
-      static_cast<std::size_t>(std::min(grid.n_cells(), at_a_time)));
+  using Momenta = std::array<Vec<D + 1>, n_local>;
+  const std::unique_ptr<Momenta[]> local(
+      new Momenta[static_cast<std::size_t>(std::min(grid.n_cells(), at_a_time))]);
   for (int first = 0; first < grid.n_cells(); first += at_a_time) {
     const int last = std::min(first + at_a_time, grid.n_cells());
 #pragma omp parallel for schedule(static)

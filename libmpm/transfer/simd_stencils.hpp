@@ -179,7 +179,7 @@ void weigh(const StencilFrame<D>& frame, const std::array<f64x8, D>& x, Weights<
       weights.inertia[d] += weights.wa[d][k] * arm[k];
     }
   }
-  weights.together = !any(base != all_lanes(base[0]));
+  weights.together = !any(i64x8(base != all_lanes(base[0])));
   to_whole(base, weights.base);
 }
 template <int D>

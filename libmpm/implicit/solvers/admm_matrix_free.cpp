@@ -95,7 +95,7 @@ AdmmResiduals pass_over_cells(YieldProblem<ThreeD>& problem, const Law& law, con
                               bool update, MatrixFreeSystem& system, PackedAdmmState& admm_state,
                               Eigen::VectorXd& R) {
   const double mu = problem.mu, rho = settings.over_relaxation, bulk = problem.K * problem.dt;
-  const auto [r, opposing] = viscosities;
+  const double r = viscosities.r, opposing = viscosities.opposing;
   const auto& quad = problem.quadrature;
   const int last = problem.grid.n_cells() - 1;
   std::vector<AdmmResiduals> part(admm_state.batch.size());
