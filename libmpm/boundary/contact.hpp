@@ -61,7 +61,7 @@ double normal_velocity(const ContactPoint<D>& c, const std::vector<std::array<in
   return c.normal.dot(u);
 }
 
-/// The same in space, one direction at a time.
+/// The same in 3D, one direction at a time.
 inline double normal_velocity(const ContactPoint<3>& c, const std::vector<std::array<int, 27>>& cell_nodes,
                               const std::vector<Vec<3>>& v) {
   const std::array<int, 27>& nodes = cell_nodes[c.cell];

@@ -3,9 +3,9 @@
 // Adds up at the nodes what cells give them, without locks and with bits that do not depend on the threads.
 //
 // The cells are cut into chunks, as many as the body asks for. Each chunk adds what its cells give, in their
-// order, to room of its own for the nodes that it sees; then each node adds up its chunks, two or three of
+// order, to a buffer of its own for the nodes that it sees; then each node adds up its chunks, two or three of
 // them. Cells are in lexicographic order, so that a chunk sees a range of nodes; where the first axis is
-// periodic the last chunk's begins with the first node, and the room of all of them is larger.
+// periodic the last chunk's begins with the first node, and the buffer of all of them is larger.
 
 #include <algorithm>
 #include <cstddef>
@@ -41,7 +41,7 @@ class ReductionBuffer {
   std::vector<Line> room_;
 };
 
-/// Adds a vector of four numbers to a node's in such a room.
+/// Adds a vector of four numbers to a node's in such a buffer.
 template <class Four, class Scalar>
 void add_to_node(const Four& value, Scalar* at) {
   static_assert(sizeof(Four) == 4 * sizeof(Scalar));
@@ -59,21 +59,21 @@ class NodeReduction {
   int size() const { return static_cast<int>(reduction_.size()); }
   int first_cell(int chunk) const { return reduction_[static_cast<std::size_t>(chunk)].first_cell; }
   int last_cell(int chunk) const { return reduction_[static_cast<std::size_t>(chunk)].last_cell; }
-  void resize_for_overwrite(ReductionBuffer& room) const { room.resize_for_overwrite(room_nodes_); }
+  void resize_for_overwrite(ReductionBuffer& buffer) const { buffer.resize_for_overwrite(buffer_nodes_); }
 
   /// Where a chunk's nodes are added to: node i at 4 i. Cleared before.
   template <class Scalar>
-  Scalar* clear(int chunk, ReductionBuffer& room) const {
+  Scalar* clear(int chunk, ReductionBuffer& buffer) const {
     const Chunk& s = reduction_[static_cast<std::size_t>(chunk)];
-    Scalar* to = room.values<Scalar>() + 4 * s.place;
+    Scalar* to = buffer.values<Scalar>() + 4 * s.place;
     std::fill(to + 4 * std::ptrdiff_t{s.first_node}, to + 4 * std::ptrdiff_t{s.last_node}, Scalar(0));
     return to;
   }
   /// The first n numbers of what node i was given.
   template <class Scalar, int n>
-  Eigen::Matrix<Scalar, n, 1> sum_at(int i, const ReductionBuffer& room) const {
+  Eigen::Matrix<Scalar, n, 1> sum_at(int i, const ReductionBuffer& buffer) const {
     using Value = Eigen::Matrix<Scalar, n, 1>;
-    const Scalar* from = room.values<Scalar>();
+    const Scalar* from = buffer.values<Scalar>();
     Value sum = Value::Zero();
     for (auto s = static_cast<std::size_t>(first_chunk_[i]);
          s < reduction_.size() && reduction_[s].first_node <= i; ++s)
@@ -83,10 +83,10 @@ class NodeReduction {
   /// Calls give(chunk, to) for every chunk, which adds what its cells give, and take(node) for every node
   /// when all of them have. To be called by all threads of a parallel region.
   template <class Scalar, class Give, class Take>
-  void sweep_in_region(ReductionBuffer& room, Give give, Take take) const {
+  void sweep_in_region(ReductionBuffer& buffer, Give give, Take take) const {
     const int n_nodes = static_cast<int>(first_chunk_.size());
 #pragma omp for schedule(static)
-    for (int s = 0; s < size(); ++s) give(s, clear<Scalar>(s, room));
+    for (int s = 0; s < size(); ++s) give(s, clear<Scalar>(s, buffer));
 #pragma omp for schedule(static)
     for (int i = 0; i < n_nodes; ++i) take(i);
   }
@@ -96,11 +96,11 @@ class NodeReduction {
   /// Cells [first_cell, last_cell), and the nodes [first_node, last_node) around them.
   struct Chunk {
     int first_cell, last_cell, first_node, last_node;
-    std::ptrdiff_t place;  ///< of node 0 in the room, if it were among them
+    std::ptrdiff_t place;  ///< of node 0 in the buffer, if it were among them
   };
   std::vector<Chunk> reduction_;
   std::vector<int> first_chunk_;  ///< that sees each node
-  std::size_t room_nodes_ = 0;    ///< of all chunks
+  std::size_t buffer_nodes_ = 0;  ///< of all chunks
 };
 
 /// A power of two chunks, so that two, four or eight threads share them evenly.
@@ -138,7 +138,7 @@ inline void NodeReduction::lay_out(const ActiveGrid<3>& grid, int unit) {
     place += chunk.last_node - chunk.first_node;
     for (; next < chunk.last_node; ++next) first_chunk_[static_cast<std::size_t>(next)] = s;
   }
-  room_nodes_ = static_cast<std::size_t>(place);
+  buffer_nodes_ = static_cast<std::size_t>(place);
 }
 
 }  // namespace tremie

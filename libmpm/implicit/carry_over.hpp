@@ -6,7 +6,7 @@
 
 namespace tremie::detail {
 
-/// Whether the linear systems of a step are solved by iteration: a body in space that is not tiny.
+/// Whether the linear systems of a step are solved by iteration: a body in 3D that is not tiny.
 template <class Geometry>
 bool by_iteration(const ImplicitBody<Geometry>& body, const StepSettings& settings) {
   return Geometry::dim == 3 && settings.method != YieldMethod::newton &&

@@ -65,7 +65,7 @@ std::vector<Vec<3>> shifting_displacement_3d(const YieldProblem<ThreeD>& problem
                                              MatrixFreeSystem& system) {
   const auto& grid = problem.grid;
   SchurComplementPreconditioner& preconditioner =
-      system.preconditioner;  // its room: the step's solve is done
+      system.preconditioner;  // its memory: the step's solve is done
   const std::vector<char> fixed = held_by_walls<3>(grid);
   detail::EveningMatrix matrix{problem, cells.stiffness, fixed, system.batches, preconditioner.rows(), {},
                                {},      problem.bound};

@@ -1,6 +1,6 @@
 #pragma once
 
-// particle_shifting.hpp's displacements in space. The mass is diagonal there, so that the preconditioner M + B' C B of
+// particle_shifting.hpp's displacements in 3D. The mass is diagonal there, so that the preconditioner M + B' C B of
 // preconditioner.hpp is the matrix itself, but for walls inside the grid and its single precision:
 // one or two iterations.
 

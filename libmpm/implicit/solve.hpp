@@ -7,7 +7,7 @@
 
 namespace tremie::detail {
 
-/// Stress of the yield part at place k of cell c.
+/// Stress of the yield part at quadrature point k of cell c.
 template <class Geometry>
 Vec<Geometry::n_strain> stress_of(const YieldLaw& law, const AdmmState<Geometry>& admm_state, int c, int k) {
   if constexpr (Geometry::dim == 3)
@@ -109,7 +109,7 @@ bool starts_to_fall(const ImplicitBody<Geometry>& body, const StepSettings& sett
 }
 
 /// The ADMM state that another try at a step over dt starts from: those that the step began with; in a large body,
-/// where no room is spent on them, what the last try found, or none if that ran away.
+/// where no memory is spent on them, what the last try found, or none if that ran away.
 template <class Geometry>
 void guess_again(const std::optional<AdmmState<Geometry>>& first, const StepSettings& settings, double dt,
                  ImplicitBody<Geometry>& body) {

@@ -51,7 +51,7 @@ void update_flocculation(const ImplicitBody<Geometry>& body, double dt, Points<G
   points.gamma_dot.swap(gamma_dot);
 }
 
-/// Mean shear rate of every cell over its Gauss places, and the volume mean of all [1/s].
+/// Mean shear rate of every cell over its quadrature points, and the volume mean of all [1/s].
 template <class Geometry>
 double shear_rates(const YieldProblem<Geometry>& problem, const StepSettings& settings,
                    const ImplicitBody<Geometry>& body, std::vector<double>& of_cell) {

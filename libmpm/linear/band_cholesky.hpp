@@ -20,7 +20,7 @@ class BandCholesky {
   using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
   static constexpr int block = 32;
 
-  /// Makes room for n unknowns coupled over at most `bandwidth` rows below the diagonal; all entries zero.
+  /// Allocates n unknowns coupled over at most `bandwidth` rows below the diagonal; all entries zero.
   void reset(int n, int bandwidth) {
     n_ = n;
     below_ = (bandwidth + block - 1) / block * block;

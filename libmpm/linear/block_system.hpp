@@ -109,7 +109,7 @@ class BlockSystem {
       }
   }
   /// Numbers the unknowns with the grid's shortest way running fastest and decides between band and sparse:
-  /// in a plane the band's n b^2 operations win, by measurement, up to about 800 n^1.5; in space sparse wins.
+  /// in a plane the band's n b^2 operations win, by measurement, up to about 800 n^1.5; in 3D sparse wins.
   void number_across_the_thin_way(const ActiveGrid<D>& grid) {
     Index<D> way;
     for (int d = 0; d < D; ++d) way[d] = d;

@@ -23,7 +23,7 @@ class TwistedCholesky {
   using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
   static constexpr int block = 32;
 
-  /// Makes room for a row an entry of `first`, the first column that it is coupled with; all entries zero.
+  /// Allocates a row an entry of `first`, the first column that it is coupled with; all entries zero.
   void reset(const std::vector<int>& first) {
     n_ = static_cast<int>(first.size());
     int bandwidth = 0;
@@ -117,7 +117,7 @@ class TwistedCholesky {
     std::vector<int> height;      ///< of each: the rows below its diagonal block that are not all zero
     Matrix rest;                  ///< what the elimination leaves to the middle's nearest unknowns
     Vector y;
-    int below = 0;  ///< room for rows below a diagonal block
+    int below = 0;  ///< rows below a diagonal block
 
     int size() const { return static_cast<int>(columns.size()) * block; }
     bool empty() const { return columns.empty(); }

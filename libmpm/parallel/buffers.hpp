@@ -13,13 +13,13 @@
 
 namespace tremie {
 
-/// Gives back what a vector holds; `v = {}` would keep its room.
+/// Gives back what a vector holds; `v = {}` would keep its memory.
 template <class T>
 void release(std::vector<T>& v) {
   std::vector<T>().swap(v);
 }
 
-/// Gives the system back what lies free within the heap, some twentieth of a large body's room.
+/// Gives the system back what lies free within the heap, some twentieth of a large body's memory.
 inline void release_free_heap() {
 #ifdef __GLIBC__
   malloc_trim(0);

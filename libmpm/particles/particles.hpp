@@ -39,7 +39,7 @@ void reserve(Points<D>& points, std::size_t n) {
   for (std::vector<double>* array : {&points.mass, &points.V0, &points.ln_J}) array->reserve(n);
 }
 
-/// Gives back the room to grow.
+/// Gives back the spare capacity.
 template <int D>
 void shrink(Points<D>& points) {
   points.x.shrink_to_fit(), points.v.shrink_to_fit(), points.C.shrink_to_fit();

@@ -169,14 +169,14 @@ void add_momenta(const ActiveGrid<D>& grid, const Points<D>& points, NodalState<
       }
   }
 }
-/// In space in chunks of cells.
+/// In 3D in chunks of cells.
 inline void add_momenta(const ActiveGrid<3>& grid, const Points<3>& points, NodalState<3>& nodes) {
   resize_for_overwrite(nodes.mass, grid.node_index.size());
   resize_for_overwrite(nodes.v, grid.node_index.size());
   NodeReduction reduction;
   reduction.lay_out(grid);
-  ReductionBuffer room;
-  reduction.resize_for_overwrite(room);
+  ReductionBuffer buffer;
+  reduction.resize_for_overwrite(buffer);
   const auto give = [&](int chunk, double* to) {
     for (int c = reduction.first_cell(chunk); c < reduction.last_cell(chunk); ++c) {
       const CellQuads momenta = cell_momenta(grid, points, c);
@@ -185,8 +185,8 @@ inline void add_momenta(const ActiveGrid<3>& grid, const Points<3>& points, Noda
     }
   };
 #pragma omp parallel
-  reduction.sweep_in_region<double>(room, give, [&](int i) {
-    const Vec<4> sum = reduction.sum_at<double, 4>(i, room);
+  reduction.sweep_in_region<double>(buffer, give, [&](int i) {
+    const Vec<4> sum = reduction.sum_at<double, 4>(i, buffer);
     nodes.v[i] = sum.head<3>();
     nodes.mass[i] = sum[3];
   });

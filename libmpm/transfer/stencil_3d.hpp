@@ -1,6 +1,6 @@
 #pragma once
 
-// What a point in space has to do with the 27 nodes of its cell, one direction at a time: a third of the
+// What a point in 3D has to do with the 27 nodes of its cell, one direction at a time: a third of the
 // operations of 27 products, and four components side by side.
 
 #include <array>

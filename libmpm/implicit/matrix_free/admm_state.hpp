@@ -1,6 +1,6 @@
 #pragma once
 
-// The ADMM state of ADMM in space, in the room of one of them.
+// The ADMM state of 3D, in the memory of one of them.
 //
 // Stress s and rate d of a place come out of one vector, a = s + r (rho q + (1 - rho) d) before them:
 //
@@ -90,7 +90,7 @@ inline PackedAdmmState carried(const IndexMap<3>& old_map, const ActiveGrid<3>& 
   return now;
 }
 
-/// The stress at place k of cell c.
+/// The stress at quadrature point k of cell c.
 inline Vec<5> stress_of(const YieldLaw& law, const PackedAdmmState& admm_state, int c, int k) {
   const PackedAdmmState::Batch& b = admm_state.batch[c / batch_size];
   const int l = c % batch_size;

@@ -1,9 +1,9 @@
 #pragma once
 
-// Velocity gradients and their adjoint at the Gauss places of all cells in space, without a matrix.
+// Velocity gradients and their adjoint at the quadrature points of all cells in 3D, without a matrix.
 //
 // Quadratic splines are products of one spline a direction, so the 27 nodes of a cell are contracted one
-// direction at a time: about 1,000 operations for the nine gradient components at eight places where the rows
+// direction at a time: about 1,000 operations for the nine gradient components at eight quadrature points where the rows
 // of the strain matrix would cost 3,200. Cells are taken sixteen at a time, one a vector lane, in double
 // precision or, for the products of a linear solve, in single.
 
@@ -20,7 +20,7 @@
 
 namespace tremie {
 
-/// Gradients g[d][e][k] = d v_d / d x_e at Gauss place k of a batch of cells, or the stresses that work on
+/// Gradients g[d][e][k] = d v_d / d x_e at quadrature point k of a batch of cells, or the stresses that work on
 /// them.
 template <class Scalar>
 struct QuadratureTensors {

@@ -65,10 +65,11 @@ inline Batch16 of_lanes(const Lanes<float>& a) {
 inline void to_lanes(const Batch16& s, Lanes<float>& a) { std::memcpy(a.data(), &s, sizeof s); }
 
 /// Lanes j, 4 + j, 8 + j and 12 + j.
-inline void add_four_lanes(const Batch16& s, const int* node, int j, float* room) {
+inline void add_four_lanes(const Batch16& s, const int* node, int j, float* buffer) {
   Four value[4];
   std::memcpy(value, &s, sizeof s);
-  for (int i = 0; i < 4; ++i) add_to_node(value[i], room + 4 * static_cast<std::ptrdiff_t>(node[4 * i + j]));
+  for (int i = 0; i < 4; ++i)
+    add_to_node(value[i], buffer + 4 * static_cast<std::ptrdiff_t>(node[4 * i + j]));
 }
 
 using f64x4_column [[gnu::vector_size(32)]] = double;
@@ -107,21 +108,22 @@ inline void load_eight(const double* v, const int* node, double* x, double* y, d
   to_lanes(__builtin_shufflevector(xz_ab, xz_cd, 2, 3, 10, 11, 6, 7, 14, 15), z);
 }
 /// Lanes j and 4 + j.
-inline void add_two_lanes(const EightD& s, const int* node, int j, double* room) {
+inline void add_two_lanes(const EightD& s, const int* node, int j, double* buffer) {
   f64x4_column value[2];
   std::memcpy(value, &s, sizeof s);
-  for (int i = 0; i < 2; ++i) add_to_node(value[i], room + 4 * static_cast<std::ptrdiff_t>(node[4 * i + j]));
+  for (int i = 0; i < 2; ++i)
+    add_to_node(value[i], buffer + 4 * static_cast<std::ptrdiff_t>(node[4 * i + j]));
 }
-inline void add_eight(const double* x, const double* y, const double* z, const int* node, double* room) {
+inline void add_eight(const double* x, const double* y, const double* z, const int* node, double* buffer) {
   const EightD none = {}, a = of_lanes(x), b = of_lanes(y), c = of_lanes(z);
   const EightD even = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14),
                odd = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15),
                even_z = __builtin_shufflevector(c, none, 0, 8, 2, 10, 4, 12, 6, 14),
                odd_z = __builtin_shufflevector(c, none, 1, 9, 3, 11, 5, 13, 7, 15);
-  add_two_lanes(__builtin_shufflevector(even, even_z, 0, 1, 8, 9, 4, 5, 12, 13), node, 0, room);
-  add_two_lanes(__builtin_shufflevector(odd, odd_z, 0, 1, 8, 9, 4, 5, 12, 13), node, 1, room);
-  add_two_lanes(__builtin_shufflevector(even, even_z, 2, 3, 10, 11, 6, 7, 14, 15), node, 2, room);
-  add_two_lanes(__builtin_shufflevector(odd, odd_z, 2, 3, 10, 11, 6, 7, 14, 15), node, 3, room);
+  add_two_lanes(__builtin_shufflevector(even, even_z, 0, 1, 8, 9, 4, 5, 12, 13), node, 0, buffer);
+  add_two_lanes(__builtin_shufflevector(odd, odd_z, 0, 1, 8, 9, 4, 5, 12, 13), node, 1, buffer);
+  add_two_lanes(__builtin_shufflevector(even, even_z, 2, 3, 10, 11, 6, 7, 14, 15), node, 2, buffer);
+  add_two_lanes(__builtin_shufflevector(odd, odd_z, 2, 3, 10, 11, 6, 7, 14, 15), node, 3, buffer);
 }
 
 }  // namespace detail
@@ -142,22 +144,22 @@ inline void load_nodes(const double* v, const int* node, Lanes<double>& x, Lanes
     detail::load_eight(v, node + l, x.data() + l, y.data() + l, z.data() + l);
 }
 
-/// Adds a vector a lane to the nodes, which have room for four numbers each.
+/// Adds a vector a lane to the nodes, which have four numbers each.
 inline void add_lanes(const Lanes<float>& x, const Lanes<float>& y, const Lanes<float>& z, const int* node,
-                      float* room) {
+                      float* buffer) {
   using namespace detail;
   const Batch16 none = {}, a = of_lanes(x), b = of_lanes(y), c = of_lanes(z);
   const Batch16 ab = lower_pairs(a, b), cd = lower_pairs(c, none);
   const Batch16 high_ab = upper_pairs(a, b), high_cd = upper_pairs(c, none);
-  add_four_lanes(lower_halves(ab, cd), node, 0, room);
-  add_four_lanes(upper_halves(ab, cd), node, 1, room);
-  add_four_lanes(lower_halves(high_ab, high_cd), node, 2, room);
-  add_four_lanes(upper_halves(high_ab, high_cd), node, 3, room);
+  add_four_lanes(lower_halves(ab, cd), node, 0, buffer);
+  add_four_lanes(upper_halves(ab, cd), node, 1, buffer);
+  add_four_lanes(lower_halves(high_ab, high_cd), node, 2, buffer);
+  add_four_lanes(upper_halves(high_ab, high_cd), node, 3, buffer);
 }
 inline void add_lanes(const Lanes<double>& x, const Lanes<double>& y, const Lanes<double>& z, const int* node,
-                      double* room) {
+                      double* buffer) {
   for (int l = 0; l < batch_size; l += 8)
-    detail::add_eight(x.data() + l, y.data() + l, z.data() + l, node + l, room);
+    detail::add_eight(x.data() + l, y.data() + l, z.data() + l, node + l, buffer);
 }
 
 }  // namespace tremie

@@ -3,7 +3,7 @@
 // Where the stresses of a partly filled cell are integrated: at the two-point Gauss rule of what its points
 // fill, mean and standard deviation of their places each way.
 //
-// With the places of a full cell, a film on a wall that is thinner than a cell has all its volume at the
+// With the quadrature points of a full cell, a film on a wall that is thinner than a cell has all its volume at the
 // places next to the wall. They leave the film a motion that does not strain there, so it slides off without
 // friction. The fitted rule has the volume, the centre and the spread of the concrete: a thin film holds and
 // drains as the quadratic splines of its cell let it.
@@ -17,7 +17,7 @@
 
 namespace tremie {
 
-/// Local coordinates of the fitted places of cell c; bit d of k set means the upper place in direction d.
+/// Local coordinates of the fitted quadrature points of cell c; bit d of k set means the upper one in direction d.
 template <class Geometry>
 std::array<Vec<Geometry::dim>, power(2, Geometry::dim)> cut_cell_rule(const ActiveGrid<Geometry::dim>& grid,
                                                                       const Points<Geometry::dim>& points,

@@ -3,7 +3,7 @@
 // Where the stresses of an implicit step are integrated.
 //
 // A yield stress fluid has no memory of strain: its deviatoric stress follows from the velocity gradient of
-// the moment and from lambda. So the stresses are integrated at 2^D Gauss places a cell instead of at the
+// the moment and from lambda. So the stresses are integrated at 2^D quadrature points a cell instead of at the
 // points, each weighted with the volume of the points around it. The cost of a solve then does not depend on
 // the number of points, and more points a cell make the weights smoother without making the solver slower.
 
@@ -69,9 +69,8 @@ struct Quadrature {
 
   CellRows<std::array<StrainRows, n_places>, D == 3> B;  ///< strain rows, [1/m]
   std::vector<DivergenceRows> b;  ///< rows of the cell's mean divergence in a section [1/m]
-  CellRows<std::array<DivergenceRows, n_places>, D == 3>
-      slopes;              ///< in space: gradients of the splines [1/m]
-  std::vector<char> full;  ///< in space: whether the cell lies inside the body and counts as full
+  CellRows<std::array<DivergenceRows, n_places>, D == 3> slopes;  ///< in 3D: gradients of the splines [1/m]
+  std::vector<char> full;  ///< in 3D: whether the cell lies inside the body and counts as full
   std::vector<std::array<double, n_places>> V;      ///< concrete volume of each place [m^3]
   std::vector<std::array<double, n_places>> tau_y;  ///< yield stress there [Pa]
   std::vector<double> V_cell;                       ///< sum of V [m^3]
@@ -87,7 +86,7 @@ struct Quadrature {
       slopes.resize(n), resize_for_overwrite(full, n);
   }
 
-  /// Rows of the mean divergence of cell c [1/m]. In space they are made when they are asked for: 648 bytes a
+  /// Rows of the mean divergence of cell c [1/m]. In 3D they are made when they are asked for: 648 bytes a
   /// cell from its eight volumes.
   std::conditional_t<D == 3, DivergenceRows, const DivergenceRows&> divergence_rows(int c) const {
     if constexpr (D < 3) {
@@ -104,7 +103,7 @@ struct Quadrature {
   }
 };
 
-/// Local coordinates of Gauss place k of a full cell; bit d of k set means the upper place in direction d.
+/// Local coordinates of quadrature point k of a full cell; bit d of k set means the upper one in direction d.
 template <int D>
 Vec<D> quadrature_point(int k) {
   constexpr double offset = 0.28867513459481288;  // 1 / (2 sqrt 3)
@@ -115,7 +114,7 @@ Vec<D> quadrature_point(int k) {
 
 namespace detail {
 
-/// Shares of a point at the local coordinates s in the Gauss places of its cell: linear between them, so that
+/// Shares of a point at the local coordinates s in the quadrature points of its cell: linear between them, so that
 /// the weights change continuously while points move, sum to one and keep the point's place wherever they
 /// can.
 template <int D>
@@ -130,7 +129,7 @@ std::array<double, power(2, D)> place_shares(const Vec<D>& s) {
   return share;
 }
 
-/// Volumes of the Gauss places of cell c, and 1 + lambda times volume where the points have lambda. A place
+/// Volumes of the quadrature points of cell c, and 1 + lambda times volume where the points have lambda. A place
 /// weighs what the Gauss rule gives it in a full cell, or a uniform pressure would push: in a ring that is
 /// the points' sections times the place's own measure, not theirs.
 template <class Geometry>
@@ -157,7 +156,7 @@ void add_up_points(const ActiveGrid<Geometry::dim>& grid, const Points<Geometry:
   }
 }
 
-/// Volumes of the Gauss places of a full cell.
+/// Volumes of the quadrature points of a full cell.
 template <class Geometry>
 std::array<double, power(2, Geometry::dim)> full_volumes(
     const std::array<Axis, Geometry::dim>& axes,
@@ -175,7 +174,7 @@ inline double sum_of_volumes(const auto& V) {
   return sum;
 }
 
-/// In a section: strain rows at every place and the rows of the cell's mean divergence.
+/// In a section: strain rows at every quadrature point and the rows of the cell's mean divergence.
 template <class Geometry>
 void lay_out_rows(const std::array<Stencil<Geometry::dim>, power(2, Geometry::dim)>& st,
                   const std::array<Vec<Geometry::dim>, power(2, Geometry::dim)>& x, int c,
@@ -203,7 +202,7 @@ double mean_pressure(const ActiveGrid<D>& grid, const Points<D>& points, double 
   return sum / volume;
 }
 
-/// Strain rows in space, one set for each kind of cell that there is.
+/// Strain rows in 3D, one set for each kind of cell that there is.
 inline void lay_out_kinds(const ActiveGrid<3>& grid, Quadrature<ThreeD>& quadrature) {
   std::array<bool, 64> done{};
   for (int c = 0; c < grid.n_cells(); ++c) {

@@ -5,7 +5,7 @@
 //   1/2 (v - v*)' M (v - v*) / dt  +  sum_q V_q [mu/2 gamma_dot^2 + Phi(gamma_dot)]
 //     +  sum_c V_c [K dt/2 (div v)^2 - p div v]  +  sum_q V_q zeta/2 (div_q v - div v)^2  +  contact,
 //
-// Phi the potential of the yield law, gamma_dot = |q| at Gauss place q, one divergence a cell. A velocity
+// Phi the potential of the yield law, gamma_dot = |q| at quadrature point q, one divergence a cell. A velocity
 // that alternates from node to node has none in any cell: nothing but the shear stress resists it, and in a
 // fluid with little yield stress it gathers the points on every second face. zeta, a bulk viscosity of what
 // differs from the cell's mean, does; of a resolved flow it sees next to nothing. Its stationarity is the
@@ -26,7 +26,7 @@ namespace tremie {
 
 struct Nothing {};
 
-/// Stress of the yield part and, for ADMM, the split strain rate, at every Gauss place of every cell. Kept
+/// Stress of the yield part and, for ADMM, the split strain rate, at every quadrature point of every cell. Kept
 /// between steps by cell as a first guess. A body whose systems are solved by iteration keeps them in `packed`
 /// instead.
 template <class Geometry>
@@ -66,7 +66,7 @@ struct SolveReport {
   int iterations = 0;
 };
 
-/// Strain-rate vector at Gauss place k of cell c.
+/// Strain-rate vector at quadrature point k of cell c.
 template <class Geometry>
 Vec<Geometry::n_strain> strain_rate(const YieldProblem<Geometry>& problem,
                                     const std::vector<Vec<Geometry::dim>>& v, int c, int k) {

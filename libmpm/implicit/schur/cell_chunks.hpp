@@ -50,7 +50,7 @@ struct CellColumns {
       column_at;  ///< by place across, -1 where none; beside the ends of a periodic axis, the one repeated
   std::vector<int> place_of, column_of;  ///< of each cell
   std::vector<Ghost> ghosts;             ///< places in the margin that repeat a cell on a periodic axis
-  std::vector<float> x, y;  ///< room for two vectors by place; zero where neither cell nor ghost is
+  std::vector<float> x, y;               ///< two vectors by place; zero where neither cell nor ghost is
 
  private:
   void find_columns(const std::vector<Index<3>>& at);

@@ -6,7 +6,7 @@
 // entries with itself and the cells ahead are kept, and a product uses each twice, for the cell and for the
 // one ahead; 252 bytes a cell are read, in the order in which they lie, where the rows of B would be 864.
 // They lie by columns of cells (cell_chunks.hpp), sixteen cells of which go side by side. A chunk of columns
-// gives what its entries make of x to room of its own; where chunks meet, it is added up in their order: the
+// gives what its entries make of x to a buffer of its own; where chunks meet, it is added up in their order: the
 // bits do not depend on the threads.
 
 #include <algorithm>
@@ -22,7 +22,7 @@ class SchurMatrix {
   using Column = CellColumns::Column;
   static constexpr int reach = CellColumns::reach;
 
-  /// Makes room for the cells of a grid that is not periodic in all directions; all entries zero.
+  /// Allocates the cells of a grid that is not periodic in all directions; all entries zero.
   void reset(const ActiveGrid<3>& grid);
   /// Adds to S(c, other) and S(other, c). Threads may add to different entries.
   void add(const ActiveGrid<3>& grid, int c, int other, float value);
@@ -48,7 +48,7 @@ class SchurMatrix {
   std::size_t chunk_size() const {
     return static_cast<std::size_t>(layout.extent[0]) * chunk_span * layout.extent[2];
   }
-  /// Where the column at `across` begins in the room of a chunk.
+  /// Where the column at `across` begins in the buffer of a chunk.
   std::size_t position_in_chunk(int which, const Index<2>& across) const {
     const int beside = across[1] - chunk * which + reach;
     return chunk_size() * which +

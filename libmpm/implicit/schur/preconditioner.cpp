@@ -187,7 +187,7 @@ bool SchurComplementPreconditioner::build(const ActiveGrid<3>& grid, const CellB
 }
 
 void SchurComplementPreconditioner::apply(const CellBatches& batches, const ActiveGrid<3>& grid,
-                                          const Eigen::VectorXf& r, ReductionBuffer& room,
+                                          const Eigen::VectorXf& r, ReductionBuffer& buffer,
                                           Eigen::VectorXf& z) {
   const int n_cells = grid.n_cells(), n_nodes = grid.n_nodes();
   z.resize(r.size());
@@ -212,10 +212,10 @@ void SchurComplementPreconditioner::apply(const CellBatches& batches, const Acti
           grid, reduction.first_cell(chunk), reduction.last_cell(chunk),
           [&](int c) { return number_[c] < 0 ? 0.0f : p_[number_[c]]; }, to);
     };
-    reduction.sweep_in_region<float>(room, give, [&](int i) {
+    reduction.sweep_in_region<float>(buffer, give, [&](int i) {
       z.segment<4>(4 * i) =
           y_.segment<4>(4 * i) -
-          DivergenceOperator::times(rows_.G_inverse[i], reduction.sum_at<float, 4>(i, room));
+          DivergenceOperator::times(rows_.G_inverse[i], reduction.sum_at<float, 4>(i, buffer));
     });
   }
   for (const MirrorNode<3>& m : grid.mirrors)

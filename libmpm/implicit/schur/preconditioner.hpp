@@ -33,7 +33,7 @@ class SchurComplementPreconditioner {
   /// Decides whether S is to be factorised: up to so many operations. Before build().
   void lay_out(const ActiveGrid<3>& grid, double most_band_operations);
   bool factorised() const { return by_band_; }
-  /// Gives back the room of a large body until the next build(); false if it is none.
+  /// Gives back the memory of a large body until the next build(); false if it is none.
   bool release() {
     if (by_band_) return false;
     rows_ = {};
@@ -43,9 +43,9 @@ class SchurComplementPreconditioner {
     return true;
   }
   const DivergenceOperator& rows() const { return rows_; }
-  /// z = P^-1 r, four numbers a node; `room`: of the batches' chunks.
+  /// z = P^-1 r, four numbers a node; `buffer`: of the batches' chunks.
   void apply(const CellBatches& batches, const ActiveGrid<3>& grid, const Eigen::VectorXf& r,
-             ReductionBuffer& room, Eigen::VectorXf& z);
+             ReductionBuffer& buffer, Eigen::VectorXf& z);
 
  private:
   void order_across_the_thin_way(const ActiveGrid<3>& grid);

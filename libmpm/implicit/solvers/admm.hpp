@@ -26,7 +26,7 @@ struct AdmmSettings {
   int max_iterations = 1000;
   double over_relaxation = 1.6;  ///< rho
   double penalty = 3.0;          ///< r / mu
-  // Where the linear systems are solved by iteration, in space:
+  // Where the linear systems are solved by iteration, in 3D:
   double penalty_by_iteration = 1.5;  ///< r / mu: softer, for the systems are then better conditioned
   double solve_reduction = 0.5;       ///< of the residual in one solve, in the energy norm
   double solve_share = 1.0;           ///< of the tolerated residuals (squared) that a solve may leave

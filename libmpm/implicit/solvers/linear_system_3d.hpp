@@ -1,6 +1,6 @@
 #pragma once
 
-// The linear system of a step in space, by preconditioned conjugate gradients without a matrix.
+// The linear system of a step in 3D, by preconditioned conjugate gradients without a matrix.
 
 #include <vector>
 
@@ -73,7 +73,7 @@ void add_penalty_blocks(const std::vector<PenaltyPoint<3>>& bound,
 /// Inverts node blocks in place; what a wall prescribes becomes zero.
 void invert_blocks(const std::vector<char>& fixed, std::vector<Mat<3, 3>>& G);
 
-/// Strain rate q at place k as ThreeD has it, and the divergence.
+/// Strain rate q at quadrature point k as ThreeD has it, and the divergence.
 template <class Scalar>
 void strain_at(const QuadratureTensors<Scalar>& G, int k, Lanes<Scalar> (&q)[5], Lanes<Scalar>& div) {
   const Lanes<Scalar>&xx = G.g[0][0][k], &yy = G.g[1][1][k], &zz = G.g[2][2][k];
@@ -129,11 +129,11 @@ class MatrixFreeSystem {
   /// Adds A^-1 R to v as conjugate_gradients() does it, (r, P^-1 r) in watts.
   double solve(const YieldProblem<ThreeD>& problem, const Eigen::VectorXd& R, const PcgTolerances& goal,
                std::vector<Vec<3>>& v);
-  /// Mean shear rate of every cell over its places, and the volume mean of all [1/s].
+  /// Mean shear rate of every cell over its quadrature points, and the volume mean of all [1/s].
   void shear_rates(const YieldProblem<ThreeD>& problem, const std::vector<Vec<3>>& v,
                    std::vector<double>& of_cell, double& mean) const;
 
-  /// Gives back the room of a large body until the next set_up(); false if it is none.
+  /// Gives back the memory of a large body until the next set_up(); false if it is none.
   bool release() {
     if (!preconditioner.release()) return false;
     batches = {};
@@ -144,7 +144,7 @@ class MatrixFreeSystem {
   }
 
   CellBatches batches;
-  ReductionBuffer forces;                        ///< room for what chunks of cells give their nodes
+  ReductionBuffer forces;                        ///< buffers for what chunks of cells give their nodes
   SchurComplementPreconditioner preconditioner;  ///< of the last prepare(); free for others between solves
   long long products = 0;
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Primal-dual Newton for the yield problem. With the dual stress s of each Gauss place, |s| <= f, the tangent
+// Primal-dual Newton for the yield problem. With the dual stress s of each quadrature point, |s| <= f, the tangent
 //
 //   T = (mu + secant) I + slope/secant sym(s q')          (s = secant q at the solution: the exact tangent)
 //
