@@ -1,9 +1,11 @@
 // Herschel-Bulkley, exact and regularised: its functions against their definitions and against each other over the
-// whole range of the flow index, Bingham at n = 1, and the film down a plane against its closed form.
+// whole range of the flow index, Bingham at n = 1, and the film down a plane and plane Poiseuille flow
+// against their closed forms.
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
 #include <vector>
 
 #include "libmpm/constitutive/stress.hpp"
@@ -82,19 +84,24 @@ TEST(HerschelBulkley, IsBinghamAtFlowIndexOne) {
   }
 }
 
-/// Largest error of the velocity of a steady film, relative to that of its plug. A film of height H down a plane with
-/// tau = rho g_x (H - y): v = n/(n+1) (rho g_x/k)^(1/n) [b^(1+1/n) - (b - y)^(1+1/n)] up to the plug at b.
-double film_error(double n, int cells, bool& converged) {
-  const double H = 0.1, rho = 2400.0, g_x = 0.6, tau_0 = 54.0, k = 35.8;
-  const double b = H - tau_0 / (rho * g_x);
+enum class Flow { film, poiseuille };
+
+/// The largest error of the velocity of a steady plane flow, relative to that of its plug. Down a plane, or between two
+/// walls 2 H apart, tau = rho g_x (H - y) up to the free surface or the middle: with b where the plug begins,
+/// v = n/(n+1) (rho g_x/k)^(1/n) [b^(1+1/n) - (b - y)^(1+1/n)].
+double plane_flow_error(Flow flow, double n, int cells, bool& converged) {
+  const bool film = flow == Flow::film;
+  const double H = 0.1, rho = 2400.0, g_x = 0.6, g_y = film ? -9.79 : 0.0, tau_0 = 54.0, k = 35.8;
+  const double b = H - tau_0 / (rho * g_x), top = film ? H : 2.0 * H;
   ImplicitBody<PlaneStrain> body;
   body.mix.tau_0 = tau_0, body.mix.mu = 0.0, body.mix.K = 1e6, body.mix.density = rho;
-  body.gravity = {g_x, -9.79};
+  body.gravity = {g_x, g_y};
   body.grid.axes[0] = {.h = 0.02, .periodic = true, .n_cells = 2};
-  body.grid.axes[1] = {.h = H / cells, .low = FaceKind::no_slip};
+  body.grid.axes[1] = {.h = top / cells, .low = FaceKind::no_slip};
+  if (!film) body.grid.axes[1].high = FaceKind::no_slip, body.grid.axes[1].n_cells = cells;
   seed_box<PlaneStrain>(
-      {0.0, 0.0}, {0.04, H}, {4, 2 * cells}, rho, body.mix.K, [](const auto&) { return true; },
-      [&](const auto& x) { return 9.79 * rho * (H - x[1]); }, body.points);
+      {0.0, 0.0}, {0.04, top}, {4, 2 * cells}, rho, body.mix.K, [](const auto&) { return true; },
+      [&](const auto& x) { return -g_y * rho * (H - x[1]); }, body.points);
   StepSettings settings;
   settings.fixed_dt = 0.2;
   settings.method = YieldMethod::admm;
@@ -104,14 +111,15 @@ double film_error(double n, int cells, bool& converged) {
   for (int i = 0; i < 150; ++i) last = implicit_step(body, HerschelBulkley{k, n}, settings);
   converged = last.converged;
   const auto exact = [&](double y) {
-    const double e = 1.0 + 1.0 / n, z = std::min(y, b);
+    const double e = 1.0 + 1.0 / n, from_wall = std::min(y, top - (film ? 0.0 : y)),
+                 z = std::min(from_wall, b);
     return std::pow(rho * g_x / k, 1.0 / n) / e * (std::pow(b, e) - std::pow(b - z, e));
   };
   double worst = 0.0;
   for (int c = 0; c < body.grid.n_cells(); ++c) {
     const Vec<2> s(0.5, 0.5);
     const double y = position_in_cell<2>(body.grid.axes, body.grid.cell_index[c], s)[1];
-    if (y > H) continue;
+    if (y > top) continue;
     const Stencil<2> st = stencil<2>(body.grid.axes, body.grid.cell_index[c], s);
     double v = 0.0;
     for (int i = 0; i < 9; ++i) v += st.N[i] * body.v[body.grid.cell_nodes[c][i]][0];
@@ -120,22 +128,26 @@ double film_error(double n, int cells, bool& converged) {
   return worst / exact(H);
 }
 
-class HerschelBulkleyFilm : public testing::TestWithParam<double> {};
+class HerschelBulkleyPlaneFlow : public testing::TestWithParam<std::tuple<Flow, double>> {};
 
 // The error falls with the cells at order 1.3 or better: the profile's curvature jumps, or for n = 1.5 is infinite, at
 // the plug's edge inside a cell.
-TEST_P(HerschelBulkleyFilm, ConvergesToTheClosedForm) {
+TEST_P(HerschelBulkleyPlaneFlow, ConvergesToTheClosedForm) {
+  const auto [flow, n] = GetParam();
+  const int coarsest = flow == Flow::film ? 8 : 16;
   bool converged = false;
-  const double coarse = film_error(GetParam(), 8, converged);
+  const double coarse = plane_flow_error(flow, n, coarsest, converged);
   EXPECT_TRUE(converged);
-  const double fine = film_error(GetParam(), 32, converged);
+  const double fine = plane_flow_error(flow, n, 4 * coarsest, converged);
   EXPECT_TRUE(converged);
-  std::printf("n = %.1f: error %.2e on 8 cells, %.2e on 32: order %.2f\n", GetParam(), coarse, fine,
-              0.5 * std::log2(coarse / fine));
+  std::printf("n = %.1f: error %.2e on %d cells, %.2e on %d: order %.2f\n", n, coarse, coarsest, fine,
+              4 * coarsest, 0.5 * std::log2(coarse / fine));
   EXPECT_LE(fine, 2e-3);
   EXPECT_GE(0.5 * std::log2(coarse / fine), 1.3);
 }
-INSTANTIATE_TEST_SUITE_P(Plane, HerschelBulkleyFilm, testing::Values(0.5, 1.5));
+INSTANTIATE_TEST_SUITE_P(Plane, HerschelBulkleyPlaneFlow,
+                         testing::Combine(testing::Values(Flow::film, Flow::poiseuille),
+                                          testing::Values(0.5, 1.5)));
 
 }  // namespace
 }  // namespace tremie
