@@ -8,12 +8,8 @@
 #include <stdexcept>
 #include <thread>
 
-#include "apparatus/cell/apparatus.hpp"
-#include "apparatus/icar_vane/apparatus.hpp"
-#include "apparatus/l_box/apparatus.hpp"
 #include "apparatus/run/threads.hpp"
 #include "apparatus/scene/resolved.hpp"
-#include "apparatus/slump_flow/apparatus.hpp"
 
 namespace tremie::scene {
 namespace {
@@ -75,12 +71,6 @@ auto as_input_error(const Scene& scene, Call call) {
 }
 
 }  // namespace
-
-const std::vector<Apparatus>& all_apparatus() {
-  static const std::vector<Apparatus> all = {slump_flow::apparatus(), l_box::apparatus(),
-                                             icar_vane::apparatus(), cell::apparatus()};
-  return all;
-}
 
 Scene read(const std::filesystem::path& path, const std::vector<std::string>& overrides,
            const std::string& command) {

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
@@ -38,6 +40,23 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
+/// Reads the number that leads a text; the count of its characters, 0 where there is none that can be held.
+std::size_t read_number(std::string_view text, double& number) {
+#ifdef __cpp_lib_to_chars
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc{} ? static_cast<std::size_t>(end - text.data()) : 0;
+#else  // libc++ before version 20 reads whole numbers alone
+  const std::string_view digits = text.substr(text.starts_with('-') ? 1 : 0);
+  if (digits.empty() || digits.starts_with("0x") || digits.starts_with("0X")) return 0;
+  if (std::string_view(" \t+-").find(digits.front()) != std::string_view::npos) return 0;
+  const std::string copy(text);
+  char* end = nullptr;
+  errno = 0;
+  number = std::strtod(copy.c_str(), &end);
+  return errno == ERANGE ? 0 : static_cast<std::size_t>(end - copy.c_str());
+#endif
+}
+
 struct Split {
   double number;
   std::string_view unit;
@@ -48,9 +67,9 @@ std::optional<Split> split(std::string_view text) {
   text = trimmed(text);
   if (text.starts_with('+')) text.remove_prefix(1);
   double number = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc{}) return std::nullopt;
-  return Split{number, trimmed(text.substr(static_cast<std::size_t>(end - text.data())))};
+  const std::size_t length = read_number(text, number);
+  if (length == 0) return std::nullopt;
+  return Split{number, trimmed(text.substr(length))};
 }
 
 }  // namespace
@@ -127,12 +146,16 @@ double parse_quantity(std::string_view text, Dimension dimension) {
 }
 
 std::string write_number(double value) {
+#ifndef __cpp_lib_to_chars
+  return fmt::format("{}", value);  // as few digits as read back to the same number
+#else
   const double size = std::abs(value);
   const bool plain = size == 0.0 || (size >= 1e-4 && size < 1e12);
   std::array<char, 64> buffer{};
   const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
                                           plain ? std::chars_format::fixed : std::chars_format::scientific);
   return error == std::errc{} ? std::string(buffer.data(), end) : fmt::format("{}", value);
+#endif
 }
 
 std::string write_quantity(double value, Dimension dimension) {

@@ -1,0 +1,91 @@
+// Spread over time, with the circle of 500 mm, the range of tremie concrete and what was measured.
+
+const tremieRange = [450, 650];
+
+function drawChart(canvas, runs, time, measured) {
+  const { context, width, height } = prepare(canvas, canvas.clientWidth < 500 ? 0.75 : 0.5);
+  const box = { left: 46, right: width - 12, top: 12, bottom: height - 40 };
+  const last = Math.max(1, ...runs.map((run) => run.time.at(-1) ?? 0));
+  const most = 100 * Math.ceil((Math.max(680, ...runs.map((run) => run.spread.at(-1) ?? 0)) + 20) / 100);
+  const x = (t) => box.left + ((box.right - box.left) * t) / last;
+  const y = (mm) => box.bottom - ((box.bottom - box.top) * (mm - 200)) / (most - 200);
+  band(context, box, y(tremieRange[0]), y(tremieRange[1]), theme("--band"), "tremie concrete, 450 to 650 mm");
+  axes(context, box, x, y, last, most);
+  line(context, [[box.left, y(500)], [box.right, y(500)]], theme("--text"), 1, [6, 4]);
+  if (measured) drawMeasured(context, box, y, measured);
+  for (const run of runs) {
+    line(context, run.time.map((t, i) => [x(t), y(run.spread[i])]), run.colour, 2.5, run.dash);
+    const t500 = run.summary?.results.t500_s;
+    if (t500 != null) dot(context, x(t500), y(500), run.colour);
+    if (run.time.length && time <= last) dot(context, x(Math.min(time, run.time.at(-1))), y(spreadAt(run, time)), run.colour, true);
+  }
+  if (runs.length === 2) legend(context, runs, box);
+}
+
+function band(context, box, low, high, colour, text) {
+  context.fillStyle = colour;
+  context.fillRect(box.left, high, box.right - box.left, low - high);
+  context.fillStyle = theme("--muted");
+  context.textAlign = "right";
+  context.fillText(text, box.right - 6, high + 14);
+}
+
+function axes(context, box, x, y, last, most) {
+  context.fillStyle = theme("--muted");
+  context.textAlign = "right";
+  for (let mm = 200; mm <= most; mm += 100) {
+    line(context, [[box.left, y(mm)], [box.right, y(mm)]], theme("--grid"), 1);
+    context.fillText(String(mm), box.left - 6, y(mm) + 4);
+  }
+  context.textAlign = "center";
+  const step = [0.2, 0.5, 1, 2, 5, 10, 20].find((s) => last / s <= 8) ?? 50;
+  for (let t = 0; t <= last; t += step) context.fillText(written(t, 2), x(t), box.bottom + 16);
+  context.fillText("time since the start of the lift / s", (box.left + box.right) / 2, box.bottom + 33);
+  context.save();
+  context.translate(12, (box.top + box.bottom) / 2);
+  context.rotate(-Math.PI / 2);
+  context.fillText("spread / mm", 0, 0);
+  context.restore();
+}
+
+function line(context, points, colour, width, dash = []) {
+  context.strokeStyle = colour;
+  context.lineWidth = width;
+  context.setLineDash(dash);
+  context.beginPath();
+  points.forEach(([x, y], i) => (i ? context.lineTo(x, y) : context.moveTo(x, y)));
+  context.stroke();
+  context.setLineDash([]);
+}
+
+function dot(context, x, y, colour, open = false) {
+  context.fillStyle = open ? theme("--panel") : colour;
+  context.strokeStyle = colour;
+  context.lineWidth = 2;
+  context.beginPath();
+  context.arc(x, y, 4.5, 0, 2 * Math.PI);
+  context.fill();
+  context.stroke();
+}
+
+/// The measured spread and its tolerance as a bar at the end of the time.
+function drawMeasured(context, box, y, { value, tolerance }) {
+  const x = box.right - 10;
+  line(context, [[x, y(value - tolerance)], [x, y(value + tolerance)]], theme("--measured"), 2);
+  for (const mm of [value - tolerance, value + tolerance])
+    line(context, [[x - 5, y(mm)], [x + 5, y(mm)]], theme("--measured"), 2);
+  dot(context, x, y(value), theme("--measured"));
+  context.fillStyle = theme("--measured");
+  context.textAlign = "right";
+  context.fillText("measured", x - 10, y(value) + 4);
+}
+
+function legend(context, runs, box) {
+  context.textAlign = "left";
+  runs.forEach((run, i) => {
+    const y = box.bottom - 28 + 16 * i, x = box.right - 190;
+    line(context, [[x, y - 4], [x + 26, y - 4]], run.colour, 2.5, run.dash);
+    context.fillStyle = theme("--text");
+    context.fillText(run.label, x + 32, y);
+  });
+}

@@ -1,0 +1,195 @@
+// The page's state, and what happens on it.
+
+const state = { concretes: [], active: 0, runs: [], by: "rate", errorState: "", turn: 0 };
+const still = matchMedia("(prefers-reduced-motion: reduce)");
+
+function view() {
+  const frames = state.runs.flatMap((run) => run.frames), quantity = quantities[state.by];
+  const widest = Math.max(560, ...state.runs.map((run) => run.spread.at(-1) ?? 0)) / 2000;
+  const range = (state.range ??= quantity.range(frames));
+  return { shade: shadeBy(quantity, range), at: quantity.at, reach: widest + 0.04, ratio: 0.66, range };
+}
+
+function draw() {
+  const seen = view(), { time } = player;
+  drawSection(byId("section"), state.runs, time, seen);
+  drawPlate(byId("plate"), state.runs, time, seen);
+  drawChart(byId("chart"), state.runs, time, state.runs.length === 1 ? measuredOn(state.runs[0].concrete) : null);
+  byId("low").textContent = written(seen.range[0], 2);
+  byId("high").textContent = written(seen.range[1], 2);
+  const now = state.runs.map((run) => `${run.label}: ${millimetres(spreadAt(run, time))}`).join(", ");
+  byId("reading").textContent = state.runs.some((run) => run.time.length) ? now : "";
+}
+
+function showAnswers() {
+  document.querySelectorAll(".outcome").forEach((block, i) => {
+    block.hidden = !state.runs[i];
+    if (state.runs[i]) showAnswer(block, state.runs[i], state.errorState);
+  });
+  const ready = state.runs.length > 0 && state.runs.every((run) => run.summary);
+  ["save-png", "save-csv"].forEach((id) => (byId(id).disabled = !ready));
+}
+
+function showProgress({ time, duration, run }, which) {
+  const name = state.runs.length === 2 ? `${state.runs[which].label}: ` : "";
+  byId("progress").value = Math.min(1, time / duration);
+  byId("stage").textContent = run ? `${name}error bar, coarser run at ${time.toFixed(1)} s` : `${name}${time.toFixed(1)} s of at most ${duration.toFixed(0)} s of flow`;
+}
+
+function busy(on) {
+  document.body.classList.toggle("busy", on);
+  byId("cancel").disabled = !on;
+  if (!on) byId("stage").textContent = "", (byId("progress").value = 0);
+}
+
+function complain(message) {
+  byId("trouble").textContent = message;
+}
+
+/// Runs one scene into one run of the page; `turn` tells whether it is still wanted. Settles with the result.
+async function runInto(run, which, scene, turn) {
+  const wanted = () => turn === state.turn;
+  let done;
+  const over = new Promise((resolve) => (done = resolve));
+  const result = await solve(scene, {
+    withError: true,
+    onProgress: (progress) => wanted() && showProgress(progress, which),
+    onFrame: (frame) => wanted() && (addFrame(run, frame), (player.end = Math.max(0.5, frame.time)), showAt(frame.time)),
+    onErrorBar: (whole) => wanted() && ((run.summary = whole.summary), showAnswers()),
+    onDone: () => done(),
+  });
+  if (wanted()) addResult(run, result), showAnswers();
+  return { result, over };
+}
+
+function start(concretes) {
+  cancelAll();
+  state.turn += 1;
+  state.range = null;
+  state.runs = concretes.map(emptyRun);
+  state.errorState = "computing the error …";
+  complain("");
+  busy(true);
+  showAnswers();
+  showAt(0);
+  return state.turn;
+}
+
+function finish(turn) {
+  if (turn !== state.turn) return;
+  state.range = null;
+  player.end = Math.max(...state.runs.map((run) => run.time.at(-1) ?? 0), 0.5);
+  still.matches ? showAt(player.end) : play(0);
+}
+
+/// Runs the page's concretes, one after the other.
+async function runAll() {
+  const turn = start(state.concretes);
+  history.replaceState(null, "", `#${fragmentOf(state.concretes)}`);
+  try {
+    for (const [i, run] of state.runs.entries()) {
+      const { over } = await runInto(run, i, tomlOf(run.concrete), turn);
+      if (i === state.runs.length - 1) finish(turn);
+      await over;
+    }
+    if (turn === state.turn) (state.errorState = ""), busy(false), showAnswers();
+  } catch (error) {
+    if (turn !== state.turn) return;
+    busy(false), (state.errorState = "");
+    showAnswers();
+    if (error.message !== "cancelled") complain(error.message);
+  }
+}
+
+/// Ends what runs; what has come so far stays.
+function cancel() {
+  state.turn += 1;
+  state.errorState = "";
+  cancelAll();
+  busy(false);
+  showAnswers();
+}
+
+let apiRuns = Promise.resolve();
+
+/// window.tremie.run: a scene, as TOML text or an object of its keys, to its summary.json. Calls wait for each other.
+function runScene(scene) {
+  const answer = apiRuns.then(() => runForApi(scene));
+  apiRuns = answer.catch(() => {});
+  return answer;
+}
+
+async function runForApi(scene) {
+  const turn = start([state.concretes[0]]);
+  state.runs[0].label = "your scene";
+  try {
+    const { result, over } = await runInto(state.runs[0], 0, scene, turn);
+    if (turn === state.turn) {
+      const concrete = concreteFrom(result.scene);
+      Object.assign(state.runs[0], { concrete, label: nameOf(concrete), lift: concrete.lift / 100 });
+      state.concretes = [concrete], (state.active = 0);
+      showChoice(), showAnswers(), finish(turn);
+      over.then(() => turn === state.turn && ((state.errorState = ""), busy(false), showAnswers()));
+    }
+    return result.summary;
+  } catch (error) {
+    if (turn === state.turn) busy(false), complain(error.message);
+    throw error;
+  }
+}
+
+function showChoice() {
+  const two = state.concretes.length === 2;
+  byId("second").checked = two;
+  byId("which").hidden = !two;
+  document.querySelectorAll('input[name="which"]').forEach((radio) => (radio.checked = Number(radio.value) === state.active));
+  showConcrete(state.concretes[state.active]);
+}
+
+function change(concrete) {
+  state.concretes[state.active] = concrete;
+  showChoice();
+  runAll();
+}
+
+function chooseSecond(on) {
+  const other = mixOf(state.concretes[0]) === "mix_c" ? "mix_a" : "mix_c";
+  state.concretes = on ? [state.concretes[0], { ...concreteOf(other), rest: state.concretes[0].rest }] : [state.concretes[0]];
+  state.active = on ? 1 : 0;
+  showChoice();
+  runAll();
+}
+
+function listen() {
+  byId("run").addEventListener("click", runAll);
+  byId("cancel").addEventListener("click", cancel);
+  byId("second").addEventListener("change", (event) => chooseSecond(event.target.checked));
+  document.querySelectorAll('input[name="which"]').forEach((radio) => radio.addEventListener("change", () => ((state.active = Number(radio.value)), showChoice())));
+  document.querySelectorAll('input[name="by"]').forEach((radio) => radio.addEventListener("change", () => ((state.by = radio.value), (state.range = null), draw())));
+  byId("save-toml").addEventListener("click", () => state.concretes.forEach((c) => saveToml({ concrete: c, label: nameOf(c) })));
+  byId("save-csv").addEventListener("click", () => state.runs.forEach(saveCsv));
+  byId("save-png").addEventListener("click", () => savePng(state.runs));
+  byId("copy-link").addEventListener("click", () => copyLink(byId("said")));
+  window.addEventListener("resize", draw);
+  window.addEventListener("hashchange", () => load(concretesOf(location.hash.slice(1))));
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+    state.runs.forEach((run, i) => (run.colour = theme(i ? "--second" : "--first")));
+    draw();
+  });
+}
+
+function load(concretes) {
+  state.concretes = concretes.length ? concretes : [concreteOf("mix_a")];
+  state.active = 0;
+  showChoice();
+  runAll();
+}
+
+buildMixes((name) => change({ ...concreteOf(name), rest: state.concretes[state.active].rest, lift: state.concretes[state.active].lift }));
+buildFields(byId("fields"), (key, value) => change({ ...state.concretes[state.active], [key]: value }));
+buildPlayer();
+player.draw = draw;
+byId("scale").style.background = `linear-gradient(to right, ${shades.join(", ")})`;
+listen();
+window.tremie = { run: runScene, version: byId("version").textContent };
+load(concretesOf(location.hash.slice(1)));

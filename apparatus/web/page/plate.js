@@ -1,0 +1,67 @@
+// The concrete on the plate, seen from above, with the cone's foot and the circle of 500 mm.
+
+/// Of rings of 4 mm: the number of the highest point in each, which the eye sees from above.
+function surface(points, at) {
+  const rings = [], heights = [];
+  for (let i = 0; i < points.length; i += 4) {
+    const k = Math.floor(points[i] / 0.004);
+    if (heights[k] === undefined || points[i + 1] > heights[k]) (heights[k] = points[i + 1]), (rings[k] = points[i + at]);
+  }
+  return rings;
+}
+
+function drawPlate(canvas, runs, time, view) {
+  const { context, width, height } = prepare(canvas, 1);
+  const scale = width / (2 * view.reach), x = width / 2, y = height / 2;
+  context.fillStyle = theme("--plate");
+  context.fillRect(0, 0, width, height);
+  runs.forEach((run, i) => {
+    if (!run.frames.length) return;
+    context.save();
+    if (runs.length === 2) {
+      context.beginPath();
+      context.rect(i ? x : 0, 0, x, height);
+      context.clip();
+    }
+    const radius = spreadAt(run, time) / 2000;
+    fillDisc(context, surface(frameAt(run.frames, time).points, view.at), radius, view, x, y, scale);
+    context.restore();
+  });
+  if (runs.length === 2) runs.forEach((run) => circle(context, x, y, (spreadAt(run, time) / 2000) * scale, run.colour, [], 2));
+  circle(context, x, y, 0.1 * scale, theme("--cone"), [2, 3], 1.5);
+  circle(context, x, y, 0.25 * scale, theme("--text"), [7, 5], 1.5);
+  label(context, "500 mm", x, y - 0.25 * scale - 6);
+}
+
+/// Rings from the outside in, each in the colour of its surface.
+function fillDisc(context, rings, radius, view, x, y, scale) {
+  const n = Math.ceil(radius / 0.004);
+  let last = 0;
+  for (let k = n - 1; k >= 0; k--) {
+    last = rings[Math.min(k, rings.length - 1)] ?? last;
+    context.fillStyle = shades[view.shade(last)];
+    context.beginPath();
+    context.arc(x, y, Math.min((k + 1) * 0.004, radius) * scale, 0, 2 * Math.PI);
+    context.fill();
+  }
+}
+
+function circle(context, x, y, radius, colour, dash, width) {
+  context.strokeStyle = colour;
+  context.lineWidth = width;
+  context.setLineDash(dash);
+  context.beginPath();
+  context.arc(x, y, radius, 0, 2 * Math.PI);
+  context.stroke();
+  context.setLineDash([]);
+}
+
+/// Text on a ground of its own, to be read on any colour.
+function label(context, text, x, y) {
+  const half = context.measureText(text).width / 2 + 4;
+  context.fillStyle = theme("--plate");
+  context.fillRect(x - half, y - 11, 2 * half, 15);
+  context.fillStyle = theme("--text");
+  context.textAlign = "center";
+  context.fillText(text, x, y);
+}

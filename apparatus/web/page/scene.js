@@ -1,0 +1,98 @@
+// A concrete as the fields hold it, and as a scene: TOML, and the fragment of a link.
+
+const mixes = JSON.parse(byId("mixes").textContent);
+
+/// The fields: key, symbol, unit, limits of the slider, and how it goes into the scene.
+const fields = [
+  { key: "yield_stress", word: "yield stress", symbol: "τ₀", unit: "Pa", low: 5, high: 500, log: true, above: 0 },
+  { key: "plastic_viscosity", word: "plastic viscosity", symbol: "μ", unit: "Pa.s", low: 5, high: 200, log: true, above: 0 },
+  { key: "density", word: "density", symbol: "ρ", unit: "kg/m3", low: 1800, high: 2800, above: 0 },
+  { key: "rest", word: "rest before the lift", symbol: "t", unit: "s", low: 0, high: 1200, least: 0 },
+  { key: "structuration_rate", word: "structuration rate", symbol: "A_thix", unit: "Pa/s", low: 0, high: 5, least: 0 },
+  { key: "destructuration", word: "destructuration", symbol: "α", unit: "", low: 0.001, high: 1, log: true, least: 0 },
+  { key: "lift", word: "lift of the cone", symbol: "v", unit: "cm/s", low: 2, high: 50, log: true, above: 0 },
+];
+const unitShown = { "Pa.s": "Pa·s", "kg/m3": "kg/m³" };
+
+/// The concrete of a bundled mix.
+function concreteOf(name) {
+  const mix = mixes[name];
+  return { mix: name, yield_stress: mix.yield_stress, plastic_viscosity: mix.plastic_viscosity, density: mix.density ?? 2400,
+           rest: 0, structuration_rate: mix.structuration_rate, destructuration: mix.destructuration, lift: 15 };
+}
+
+/// Why a value cannot be run; "" where it can.
+function wrong(field, value) {
+  if (!Number.isFinite(value)) return `${field.word}: write a number, like ${written(field.low)}`;
+  if (field.above !== undefined && value <= field.above) return `${field.word}: must be above ${field.above}`;
+  if (field.least !== undefined && value < field.least) return `${field.word}: must be at least ${field.least}`;
+  return "";
+}
+
+/// The bundled mix whose values the concrete has, whatever its rest and lift; "" for one of its own.
+function mixOf(concrete) {
+  const own = ["yield_stress", "plastic_viscosity", "density", "structuration_rate", "destructuration"];
+  return Object.keys(mixes).find((name) => own.every((key) => concreteOf(name)[key] === concrete[key])) ?? "";
+}
+
+function nameOf(concrete) {
+  const name = mixOf(concrete);
+  return name ? mixes[name].name : "your mix";
+}
+
+/// The scene that `tremie run` takes.
+function tomlOf(c) {
+  const lines = [`# ${nameOf(c)}: slump flow after ${c.rest} s of rest.`, 'apparatus = "slump_flow"', ""];
+  lines.push("[mix]", `density           = "${c.density} kg/m3"`, `yield_stress      = "${c.yield_stress} Pa"`);
+  lines.push(`plastic_viscosity = "${c.plastic_viscosity} Pa.s"`);
+  if (c.structuration_rate > 0) {
+    lines.push("", "[mix.thixotropy]", `structuration_rate = "${c.structuration_rate} Pa/s"`);
+    lines.push(`destructuration    = ${c.destructuration}`);
+  }
+  lines.push("", "[test]", `rest       = "${c.rest} s"`, `lift_speed = "${c.lift} cm/s"`);
+  return lines.join("\n") + "\n";
+}
+
+/// "yield_stress=54&…" for each concrete, the second one's keys with a 2.
+function fragmentOf(concretes) {
+  const parts = new URLSearchParams();
+  concretes.forEach((c, i) => fields.forEach((f) => parts.set(f.key + (i ? "2" : ""), c[f.key])));
+  return parts.toString();
+}
+
+/// The concretes of a fragment; empty where it holds none. A value that cannot be run falls back to Mix A's.
+function concretesOf(fragment) {
+  const parts = new URLSearchParams(fragment);
+  const read = (suffix) => {
+    if (!fields.some((f) => parts.has(f.key + suffix))) return [];
+    const concrete = concreteOf("mix_a");
+    for (const f of fields) {
+      const value = Number(parts.get(f.key + suffix) ?? NaN);
+      if (!wrong(f, value)) concrete[f.key] = value;
+    }
+    return [concrete];
+  };
+  return [...read(""), ...read("2")];
+}
+
+const tomlValue = (value) => Array.isArray(value) ? `[${value.map(tomlValue).join(", ")}]` : JSON.stringify(value);
+
+/// An object of a scene's keys as TOML and overrides: {mix: "mix_a", test: {rest: "240 s"}, "mix.density": "2350 kg/m3"}.
+function sceneText(scene) {
+  if (typeof scene === "string") return { toml: scene, overrides: "" };
+  if (scene === null || typeof scene !== "object") throw new TypeError("a scene is TOML text or an object of its keys");
+  const overrides = [];
+  const table = (object, place) => {
+    const own = [], below = [];
+    for (const [key, value] of Object.entries(object)) {
+      if (value === undefined || value === null) continue;
+      const path = place ? `${place}.${key}` : key;
+      if (key.includes(".")) overrides.push(`${path}=${typeof value === "string" ? value : tomlValue(value)}`);
+      else if (typeof value === "object" && !Array.isArray(value)) below.push(`[${path}]`, ...table(value, path));
+      else own.push(`${key} = ${tomlValue(value)}`);
+    }
+    return [...own, ...below];
+  };
+  const toml = table({ apparatus: "slump_flow", ...scene }, "").join("\n") + "\n";
+  return { toml, overrides: overrides.join("\n") };
+}

@@ -1,0 +1,64 @@
+// The concrete in the section through its axis, with the cone as it is lifted. One concrete fills both sides; of
+// two the first stands on the left, the second on the right.
+
+const coneShape = { top: 0.05, bottom: 0.1, height: 0.3 };
+
+/// runs: [{frames, lift [m/s]}], at the time shown; shade(point's numbers, index).
+function drawSection(canvas, runs, time, view) {
+  const { context, width, height } = prepare(canvas, view.ratio);
+  const scale = width / (2 * view.reach), floor = height - 22, middle = width / 2;
+  const size = Math.max(1.5, 0.0032 * scale);
+  const sides = runs.length === 1 ? [[runs[0], 1], [runs[0], -1]] : [[runs[0], -1], [runs[1], 1]];
+  for (const [run, side] of sides) {
+    if (!run.frames.length) continue;
+    drawPoints(context, frameAt(run.frames, time), view, (r) => middle + side * r * scale, (z) => floor - z * scale, size);
+    drawCone(context, run.lift * time, side, middle, floor, scale);
+  }
+  drawFloor(context, width, floor, middle, scale, view.reach);
+  if (runs.length === 2) {
+    context.fillStyle = theme("--text");
+    context.textAlign = "left", context.fillText(runs[0].label, 6, 14);
+    context.textAlign = "right", context.fillText(runs[1].label, width - 6, 14);
+  }
+}
+
+/// The last frame that is not after the time.
+function frameAt(frames, time) {
+  let found = frames[0];
+  for (const frame of frames) if (frame.time <= time + 1e-9) found = frame;
+  return found;
+}
+
+function drawPoints(context, { points }, view, across, up, size) {
+  const buckets = Array.from({ length: 64 }, () => []);
+  for (let i = 0; i < points.length; i += 4) buckets[view.shade(points[i + view.at])].push(i);
+  buckets.forEach((bucket, k) => {
+    context.fillStyle = shades[k];
+    for (const i of bucket) context.fillRect(across(points[i]) - size / 2, up(points[i + 1]) - size / 2, size, size);
+  });
+}
+
+function drawCone(context, rim, side, middle, floor, scale) {
+  const { top, bottom, height } = coneShape;
+  context.strokeStyle = theme("--cone");
+  context.lineWidth = 3;
+  context.beginPath();
+  context.moveTo(middle + side * bottom * scale, floor - rim * scale);
+  context.lineTo(middle + side * top * scale, floor - (rim + height) * scale);
+  context.stroke();
+}
+
+function drawFloor(context, width, floor, middle, scale, reach) {
+  context.strokeStyle = context.fillStyle = theme("--text");
+  context.lineWidth = 1.5;
+  context.beginPath();
+  context.moveTo(0, floor + 1), context.lineTo(width, floor + 1);
+  context.textAlign = "center";
+  for (let mm = -400; mm <= 400; mm += 100) {
+    if (Math.abs(mm) / 1000 > reach * 0.97) continue;
+    const x = middle + (mm / 1000) * scale;
+    context.moveTo(x, floor + 1), context.lineTo(x, floor + 5);
+    context.fillText(String(Math.abs(mm)), x, floor + 17);
+  }
+  context.stroke();
+}

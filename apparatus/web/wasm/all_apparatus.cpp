@@ -1,0 +1,21 @@
+// The apparatus that the web page has, and what it leaves out of them.
+
+#include <stdexcept>
+
+#include "apparatus/registry/registry.hpp"
+#include "apparatus/slump_flow/apparatus.hpp"
+#include "apparatus/slump_flow/set_up.hpp"
+
+namespace tremie {
+
+const std::vector<scene::Apparatus>& scene::all_apparatus() {
+  static const std::vector<Apparatus> all = {slump_flow::apparatus()};
+  return all;
+}
+
+slump_flow::Outcome slump_flow::run_explicit(const Scene&, const Observer&) {
+  throw std::invalid_argument(
+      "model.scheme: the page has implicit steps alone; give \"implicit\", or run the scene by `tremie run`");
+}
+
+}  // namespace tremie
