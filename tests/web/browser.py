@@ -26,7 +26,7 @@ class Browser:
 
     def _port(self):
         for line in self.driver.stdout:
-            found = re.search(r"on port (\d+)", line)
+            found = re.search(r"successfully on port (\d+)", line)
             if found:
                 return int(found[1])
         raise RuntimeError("chromedriver did not start")

@@ -41,10 +41,15 @@ def difference(a, b, place=""):
     return (0.0 if a == b else float("inf")), place
 
 
+def run_in_page(browser, scene, **options):
+    """As text, which keeps the order of the keys."""
+    return json.loads(browser.wait_for("return JSON.stringify(await window.tremie.run(args[0], args[1]))", scene, options))
+
+
 def compare_with_native(browser, program):
     ratio = []
     for name, toml in SCENES.items():
-        here, there = native(program, toml), browser.wait_for("return window.tremie.run(args[0])", toml)
+        here, there = native(program, toml), run_in_page(browser, toml)
         check(list(here) == list(there), f"{name}: the keys of summary.json")
         worst, where = difference(here["results"], there["results"])
         check(worst < 1e-9, f"{name}: results within {worst:.1e} of the native program's ({where})")
@@ -58,12 +63,16 @@ def compare_with_native(browser, program):
 
 def ask_in_other_ways(browser, program):
     keys = {"apparatus": "slump_flow", "mix": "mix_c", "mix.density": "2350 kg/m3", "test": {"duration": "2 s"}}
-    there = browser.wait_for("return window.tremie.run(args[0])", keys)
+    there = run_in_page(browser, keys)
     here = native(program, SCENES["Mix C"], "--set", "mix.density=2350 kg/m3", "--set", "test.duration=2 s")
     worst, where = difference(here["results"], there["results"])
     check(worst < 1e-9, f"an object of keys: results within {worst:.1e} ({where})")
+    there = run_in_page(browser, SCENES["Mix C"], withError=True)
+    here = native(program, SCENES["Mix C"], "--with-error")
+    worst, where = difference(here["error"]["spread_mm"], there["error"]["spread_mm"])
+    check(worst < 1e-6, f"the error bar, {there['error']['spread_mm']:.2f} mm, within {worst:.1e}")
     try:
-        browser.wait_for("return window.tremie.run(args[0])", 'apparatus = "slump_flow"\n[mix]\nyield_stres = "5 Pa"\n')
+        run_in_page(browser, 'apparatus = "slump_flow"\n[mix]\nyield_stres = "5 Pa"\n')
         check(False, "a wrong key is an error")
     except RuntimeError as error:
         check("yield_stress" in str(error) and "scene.toml:3" in str(error), f"a wrong key is an error: {error}")
@@ -81,6 +90,9 @@ def use_the_page(page, out, width, dark):
         browser.until("document.querySelector('#result-error').textContent && !document.body.classList.contains('busy')", 120)
         check("tau" not in browser.run("return location.hash") and "yield_stress=54" in browser.run("return location.hash"), "the link holds the scene")
         browser.screenshot(out / f"one_{width}_{'dark' if dark else 'light'}.png")
+        browser.run("const at = document.getElementById('scrubber'); at.value = 30; at.dispatchEvent(new Event('input'))")
+        check("0.3" in browser.run("return document.getElementById('time').textContent"), "the time can be chosen")
+        browser.screenshot(out / f"moving_{width}_{'dark' if dark else 'light'}.png")
         check(browser.console_errors() == [], f"{width} px, {'dark' if dark else 'light'}: no console error")
     finally:
         browser.close()

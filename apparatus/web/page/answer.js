@@ -53,8 +53,7 @@ function measuredText(spread, { value, tolerance }) {
   const by = spread - value, sign = by < 0 ? "less" : "more";
   const stands = `Measured on this mix: ${value} ± ${tolerance} mm`;
   if (Math.abs(by) <= tolerance) return [`${stands}; the computed spread agrees`, "good"];
-  const why = "The spread follows from the values above: yield stress and viscosity from a rheometer, α from the literature, a floor that holds.";
-  return [`${stands}; computed ${Math.abs(by).toFixed(0)} mm ${sign}, beyond that tolerance. ${why}`, "bad"];
+  return [`${stands}; computed ${Math.abs(by).toFixed(0)} mm ${sign}, beyond that. It follows from a rheometer's values and an α from the literature.`, "bad"];
 }
 
 /// Lines of [text, class].

@@ -12,7 +12,8 @@ const shades = Array.from({ length: 64 }, (_, i) => {
 
 const theme = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
-/// What the concrete may be coloured by: place of the number in a point, its share of the scale, ends of the legend.
+/// What the concrete may be coloured by: place of the number in a point and ends of the scale. Concrete that is sheared
+/// less than the scale's low end is as good as at rest, and grey.
 const quantities = {
   rate: { at: 2, word: "shear rate / (1/s)", range: () => [0.01, 10], log: true },
   lambda: { at: 3, word: "flocculation λ", range: (frames) => [0, Math.max(0.01, highest(frames, 3))], log: false },
@@ -24,11 +25,13 @@ function highest(frames, at) {
   return most;
 }
 
-/// A function from a point's number to its shade, 0 to 63.
+/// A function from a point's number to its shade, 0 to 63; -1 for grey.
 function shadeBy(quantity, [low, high]) {
   const scale = quantity.log ? (x) => Math.log(Math.max(x, low) / low) / Math.log(high / low) : (x) => (x - low) / (high - low);
-  return (x) => Math.max(0, Math.min(63, Math.floor(64 * scale(x))));
+  return (x) => (quantity.log && x < low ? -1 : Math.max(0, Math.min(63, Math.floor(64 * scale(x)))));
 }
+
+const colourOf = (shade) => (shade < 0 ? theme("--concrete") : shades[shade]);
 
 /// A canvas made sharp for the screen and as wide as its box; returns its context in CSS pixels, width and height.
 function prepare(canvas, ratio) {

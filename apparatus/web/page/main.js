@@ -7,7 +7,7 @@ function view() {
   const frames = state.runs.flatMap((run) => run.frames), quantity = quantities[state.by];
   const widest = Math.max(560, ...state.runs.map((run) => run.spread.at(-1) ?? 0)) / 2000;
   const range = (state.range ??= quantity.range(frames));
-  return { shade: shadeBy(quantity, range), at: quantity.at, reach: widest + 0.04, ratio: 0.66, range };
+  return { shade: shadeBy(quantity, range), at: quantity.at, reach: widest + 0.04, ratio: 0.36 / (2 * widest + 0.08), range };
 }
 
 function draw() {
@@ -15,6 +15,7 @@ function draw() {
   drawSection(byId("section"), state.runs, time, seen);
   drawPlate(byId("plate"), state.runs, time, seen);
   drawChart(byId("chart"), state.runs, time, state.runs.length === 1 ? measuredOn(state.runs[0].concrete) : null);
+  document.querySelector(".at-rest").hidden = !quantities[state.by].log;
   byId("low").textContent = written(seen.range[0], 2);
   byId("high").textContent = written(seen.range[1], 2);
   const now = state.runs.map((run) => `${run.label}: ${millimetres(spreadAt(run, time))}`).join(", ");
@@ -46,17 +47,18 @@ function complain(message) {
   byId("trouble").textContent = message;
 }
 
-/// Runs one scene into one run of the page; `turn` tells whether it is still wanted. Settles with the result.
+/// Runs one scene into one run of the page; `turn` tells whether it is still wanted. Settles with the result, and with
+/// `over`: a promise of the result with its error bar, null where that was given up.
 async function runInto(run, which, scene, turn) {
   const wanted = () => turn === state.turn;
-  let done;
+  let done, last = null;
   const over = new Promise((resolve) => (done = resolve));
   const result = await solve(scene, {
     withError: true,
     onProgress: (progress) => wanted() && showProgress(progress, which),
     onFrame: (frame) => wanted() && (addFrame(run, frame), (player.end = Math.max(0.5, frame.time)), showAt(frame.time)),
-    onErrorBar: (whole) => wanted() && ((run.summary = whole.summary), showAnswers()),
-    onDone: () => done(),
+    onErrorBar: (whole) => ((last = whole), wanted() && ((run.summary = whole.summary), showAnswers())),
+    onDone: () => done(last),
   });
   if (wanted()) addResult(run, result), showAnswers();
   return { result, over };
@@ -112,14 +114,15 @@ function cancel() {
 
 let apiRuns = Promise.resolve();
 
-/// window.tremie.run: a scene, as TOML text or an object of its keys, to its summary.json. Calls wait for each other.
-function runScene(scene) {
-  const answer = apiRuns.then(() => runForApi(scene));
+/// window.tremie.run: a scene, as TOML text or an object of its keys, to its summary.json; {withError: true}: to that
+/// with its error bar. Calls wait for each other.
+function runScene(scene, { withError = false } = {}) {
+  const answer = apiRuns.then(() => runForApi(scene, withError));
   apiRuns = answer.catch(() => {});
   return answer;
 }
 
-async function runForApi(scene) {
+async function runForApi(scene, withError) {
   const turn = start([state.concretes[0]]);
   state.runs[0].label = "your scene";
   try {
@@ -131,7 +134,7 @@ async function runForApi(scene) {
       showChoice(), showAnswers(), finish(turn);
       over.then(() => turn === state.turn && ((state.errorState = ""), busy(false), showAnswers()));
     }
-    return result.summary;
+    return ((withError && (await over)) || result).summary;
   } catch (error) {
     if (turn === state.turn) busy(false), complain(error.message);
     throw error;

@@ -1,12 +1,16 @@
 // The concrete on the plate, seen from above, with the cone's foot and the circle of 500 mm.
 
-/// Of rings of 4 mm: the number of the highest point in each, which the eye sees from above.
+const ring = 0.004;  // width of the rings that the surface is read in [m]
+
+/// Ring by ring: the number of the highest point, which the eye sees from above. A ring without points has the one
+/// before it.
 function surface(points, at) {
   const rings = [], heights = [];
   for (let i = 0; i < points.length; i += 4) {
-    const k = Math.floor(points[i] / 0.004);
+    const k = Math.floor(points[i] / ring);
     if (heights[k] === undefined || points[i + 1] > heights[k]) (heights[k] = points[i + 1]), (rings[k] = points[i + at]);
   }
+  for (let k = 0; k < rings.length; k++) rings[k] ??= rings[k - 1] ?? rings.find((x) => x !== undefined);
   return rings;
 }
 
@@ -28,20 +32,18 @@ function drawPlate(canvas, runs, time, view) {
     context.restore();
   });
   if (runs.length === 2) runs.forEach((run) => circle(context, x, y, (spreadAt(run, time) / 2000) * scale, run.colour, [], 2));
-  circle(context, x, y, 0.1 * scale, theme("--cone"), [2, 3], 1.5);
+  circle(context, x, y, 0.1 * scale, theme("--text"), [2, 3], 1.5);
+  circle(context, x, y, 0.25 * scale, theme("--plate"), [], 4);
   circle(context, x, y, 0.25 * scale, theme("--text"), [7, 5], 1.5);
   label(context, "500 mm", x, y - 0.25 * scale - 6);
 }
 
 /// Rings from the outside in, each in the colour of its surface.
 function fillDisc(context, rings, radius, view, x, y, scale) {
-  const n = Math.ceil(radius / 0.004);
-  let last = 0;
-  for (let k = n - 1; k >= 0; k--) {
-    last = rings[Math.min(k, rings.length - 1)] ?? last;
-    context.fillStyle = shades[view.shade(last)];
+  for (let k = Math.ceil(radius / ring) - 1; k >= 0; k--) {
+    context.fillStyle = colourOf(view.shade(rings[Math.min(k, rings.length - 1)]));
     context.beginPath();
-    context.arc(x, y, Math.min((k + 1) * 0.004, radius) * scale, 0, 2 * Math.PI);
+    context.arc(x, y, Math.min((k + 1) * ring, radius) * scale, 0, 2 * Math.PI);
     context.fill();
   }
 }

@@ -1,17 +1,20 @@
 // The concrete in the section through its axis, with the cone as it is lifted. One concrete fills both sides; of
 // two the first stands on the left, the second on the right.
 
+// surface() and ring: plate.js.
 const coneShape = { top: 0.05, bottom: 0.1, height: 0.3 };
 
 /// runs: [{frames, lift [m/s]}], at the time shown; shade(point's numbers, index).
 function drawSection(canvas, runs, time, view) {
   const { context, width, height } = prepare(canvas, view.ratio);
   const scale = width / (2 * view.reach), floor = height - 22, middle = width / 2;
-  const size = Math.max(1.5, 0.0032 * scale);
+  const size = Math.max(1.5, 0.004 * scale);
   const sides = runs.length === 1 ? [[runs[0], 1], [runs[0], -1]] : [[runs[0], -1], [runs[1], 1]];
   for (const [run, side] of sides) {
     if (!run.frames.length) continue;
-    drawPoints(context, frameAt(run.frames, time), view, (r) => middle + side * r * scale, (z) => floor - z * scale, size);
+    const across = (r) => middle + side * r * scale, up = (z) => floor - z * scale, frame = frameAt(run.frames, time);
+    drawBody(context, frame, across, up);
+    drawPoints(context, frame, view, across, up, size);
     drawCone(context, run.lift * time, side, middle, floor, scale);
   }
   drawFloor(context, width, floor, middle, scale, view.reach);
@@ -29,11 +32,22 @@ function frameAt(frames, time) {
   return found;
 }
 
+/// The room that the concrete fills, between its points.
+function drawBody(context, { points }, across, up) {
+  const tops = surface(points, 1);
+  context.fillStyle = theme("--concrete");
+  context.beginPath();
+  context.moveTo(across(0), up(0));
+  tops.forEach((z, k) => context.lineTo(across((k + 0.5) * ring), up(z)));
+  context.lineTo(across((tops.length - 0.5) * ring), up(0));
+  context.fill();
+}
+
 function drawPoints(context, { points }, view, across, up, size) {
-  const buckets = Array.from({ length: 64 }, () => []);
-  for (let i = 0; i < points.length; i += 4) buckets[view.shade(points[i + view.at])].push(i);
+  const buckets = Array.from({ length: 65 }, () => []);
+  for (let i = 0; i < points.length; i += 4) buckets[view.shade(points[i + view.at]) + 1].push(i);
   buckets.forEach((bucket, k) => {
-    context.fillStyle = shades[k];
+    context.fillStyle = colourOf(k - 1);
     for (const i of bucket) context.fillRect(across(points[i]) - size / 2, up(points[i + 1]) - size / 2, size, size);
   });
 }
