@@ -2,12 +2,23 @@
 
 /// A run as the page shows it; `concrete` as the fields hold it.
 function emptyRun(concrete, index) {
-  return { concrete, label: nameOf(concrete), lift: concrete.lift / 100, frames: [], time: [], spread: [], summary: null,
-           result: null, colour: theme(index ? "--second" : "--first"), dash: index ? [8, 4] : [] };
+  return {
+    concrete,
+    name: nameOf(concrete),
+    label: nameOf(concrete),
+    lift: concrete.lift / 100,
+    frames: [],
+    time: [],
+    spread: [],
+    summary: null,
+    result: null,
+    colour: theme(index ? "--second" : "--first"),
+    dash: index ? [8, 4] : []
+  };
 }
 
 /// The spread at a time [mm], by interpolation.
-function spreadAt({ time, spread }, at) {
+function spreadAt({time, spread}, at) {
   const i = time.findIndex((t) => t >= at);
   if (i < 0) return spread.at(-1) ?? 200;
   if (i === 0) return spread[0];
@@ -24,72 +35,91 @@ function addFrame(run, frame) {
 /// Takes the result of a run: summary, series, and the concrete that the scene says.
 function addResult(run, result) {
   const rows = result.timeseries.trim().split("\n").slice(1).map((row) => row.split(",").map(Number));
-  Object.assign(run, { result, summary: result.summary, frames: result.frames,
-                       time: rows.map((row) => row[0]), spread: rows.map((row) => row[1]) });
+  Object.assign(run, {
+    result,
+    summary: result.summary,
+    frames: result.frames,
+    time: rows.map((row) => row[0]),
+    spread: rows.map((row) => row[1])
+  });
 }
 
 /// The concrete of a resolved scene, in the units of the fields.
 function concreteFrom(scene) {
-  const number = (key, otherwise) => Number(scene.match(new RegExp(`^${key} = "?([-+.\\deE]+)`, "m"))?.[1] ?? otherwise);
-  const concrete = { lift: Number((100 * number("lift_speed", 1e4)).toPrecision(9)) };
-  for (const { key } of fields) concrete[key] ??= number(key, 0);
+  const number = (key, otherwise) =>
+      Number(scene.match(new RegExp(`^${key} = "?([-+.\\deE]+)`, "m"))?.[1] ?? otherwise);
+  const concrete = {lift: Number((100 * number("lift_speed", 1e4)).toPrecision(9))};
+  for (const {key} of fields) concrete[key] ??= number(key, 0);
   return concrete;
 }
 
 /// What was measured on this mix after this rest; null where nothing was.
 function measuredOn(concrete) {
   const mix = mixes[mixOf(concrete)];
-  const value = mix && { 0: mix.slump_flow_0, 240: mix.slump_flow_240 }[concrete.rest];
-  return value ? { value, tolerance: mix.slump_flow_tolerance } : null;
+  const value = mix && {0: mix.slump_flow_0, 240: mix.slump_flow_240}[concrete.rest];
+  return value ? {value, tolerance: mix.slump_flow_tolerance} : null;
 }
 
-function classText({ class_en12350_8: name, spread_mm: spread }) {
-  const limits = { SF1: "550 to 650 mm", SF2: "660 to 750 mm", SF3: "760 to 850 mm" };
+function classText({class_en12350_8: name, spread_mm: spread}) {
+  const limits = {SF1: "550 to 650 mm", SF2: "660 to 750 mm", SF3: "760 to 850 mm"};
   if (name) return `Class ${name} of EN 206 (${limits[name]})`;
   return spread < 600 ? "Below class SF1 of EN 206 (550 to 650 mm)" : "Above class SF3 of EN 206 (760 to 850 mm)";
 }
 
-function measuredText(spread, { value, tolerance }) {
+function measuredText(spread, {value, tolerance}) {
   const by = spread - value, sign = by < 0 ? "less" : "more";
   const stands = `Measured on this mix: ${value} ± ${tolerance} mm`;
   if (Math.abs(by) <= tolerance) return [`${stands}; the computed spread agrees`, "good"];
-  return [`${stands}; computed ${Math.abs(by).toFixed(0)} mm ${sign}, beyond that. It follows from a rheometer's values and an α from the literature.`, "bad"];
+  return [
+    `${stands}; computed ${Math.abs(by).toFixed(0)} mm ${
+        sign}, beyond that. It follows from a rheometer's values and an α from the literature.`,
+    "bad"
+  ];
 }
 
 /// Lines of [text, class].
 function verdicts(run) {
-  const { results, checks } = run.summary, lines = [];
-  const { spread_mm: spread, stopped_at_s: stopped, t500_s: t500 } = results;
+  const {results, checks} = run.summary, lines = [];
+  const {spread_mm: spread, stopped_at_s: stopped, t500_s: t500} = results;
   checks.reasons.forEach((reason) => lines.push([`Not to be trusted: ${reason}`, "bad"]));
-  if (stopped == null) lines.push(["Still moving at the end of the run: no class and no verdict", "bad"]);
+  if (stopped == null)
+    lines.push(["Still moving at the end of the run: no class and no verdict", "bad"]);
   else {
-    lines.push([`${results.within_tremie_range ? "Within" : "Outside"} the range of tremie concrete (450 to 650 mm)`, results.within_tremie_range ? "good" : "note"]);
+    lines.push([
+      `${results.within_tremie_range ? "Within" : "Outside"} the range of tremie concrete (450 to 650 mm)`,
+      results.within_tremie_range ? "good" : "note"
+    ]);
     lines.push([classText(results), ""]);
   }
   lines.push([t500 == null ? "t500: never reached" : `t500 ${seconds(t500)}, from the start of the lift`, ""]);
-  if (stopped != null) lines.push([`At rest after ${seconds(stopped)}; ${millimetres(results.height_mm)} high in the middle`, ""]);
+  if (stopped != null)
+    lines.push([`At rest after ${seconds(stopped)}; ${millimetres(results.height_mm)} high in the middle`, ""]);
   const measured = measuredOn(run.concrete);
   if (measured) lines.push(measuredText(spread, measured));
   if (!checks.reasons.length) lines.push([trustText(run.summary), "note"]);
   return lines;
 }
 
-function trustText({ checks, cost, error }) {
+function trustText({checks, cost, error}) {
   const volume = `volume kept to ${written(100 * Math.abs(checks.volume_change), 1)} %`;
-  const steps = checks.unconverged_steps ? `${checks.unconverged_steps} of ${cost.steps} steps did not converge` : `all ${cost.steps} steps converged`;
-  const bar = error?.spread_mm ? "The error is what finer cells and steps may still change; it does not cover the mix's values. " : "";
+  const steps = checks.unconverged_steps ? `${checks.unconverged_steps} of ${cost.steps} steps did not converge` :
+                                           `all ${cost.steps} steps converged`;
+  const bar = error?.spread_mm ?
+      "The error is what finer cells and steps may still change; it does not cover the mix's values. " :
+      "";
   return `${bar}Checks: ${steps}, ${volume}. Computed in ${seconds(cost.wall_s)}.`;
 }
 
 /// Fills the answer of a run into its block.
 function showAnswer(block, run, errorState) {
-  const { summary, concrete } = run, part = (name) => block.querySelector(`.${name}`);
+  const {summary, concrete} = run, part = (name) => block.querySelector(`.${name}`);
   const rest = concrete.rest > 0 ? `after ${written(concrete.rest)} s of rest` : "without rest";
-  part("asked").textContent = `${run.label}, slump flow ${rest}`;
+  part("asked").textContent = `${run.name}, slump flow ${rest}`;
   part("spread").textContent = summary ? summary.results.spread_mm.toFixed(0) : "–";
   if (summary) part("spread").dataset.value = summary.results.spread_mm;
   const error = summary?.error?.spread_mm;
   part("error").textContent = error ? `± ${Math.max(1, Math.ceil(error))}` : "";
   part("later").textContent = summary && !error ? errorState : "";
-  part("verdicts").replaceChildren(...(summary ? verdicts(run).map(([text, kind]) => element("li", { class: kind }, text)) : []));
+  part("verdicts")
+      .replaceChildren(...(summary ? verdicts(run).map(([text, kind]) => element("li", {class: kind}, text)) : []));
 }

@@ -3,8 +3,8 @@
 const tremieRange = [450, 650];
 
 function drawChart(canvas, runs, time, measured) {
-  const { context, width, height } = prepare(canvas, canvas.clientWidth < 500 ? 0.75 : 0.5);
-  const box = { left: 46, right: width - 12, top: 12, bottom: height - 40 };
+  const {context, width, height} = prepare(canvas, canvas.clientWidth < 500 ? 0.75 : 0.5);
+  const box = {left: 46, right: width - 12, top: 12, bottom: height - 40};
   const last = Math.max(1, ...runs.map((run) => run.time.at(-1) ?? 0));
   const most = 100 * Math.ceil((Math.max(680, ...runs.map((run) => run.spread.at(-1) ?? 0)) + 20) / 100);
   const x = (t) => box.left + ((box.right - box.left) * t) / last;
@@ -17,7 +17,8 @@ function drawChart(canvas, runs, time, measured) {
     line(context, run.time.map((t, i) => [x(t), y(run.spread[i])]), run.colour, 2.5, run.dash);
     const t500 = run.summary?.results.t500_s;
     if (t500 != null) dot(context, x(t500), y(500), run.colour);
-    if (run.time.length && time <= last) dot(context, x(Math.min(time, run.time.at(-1))), y(spreadAt(run, time)), run.colour, true);
+    if (run.time.length && time <= last)
+      dot(context, x(Math.min(time, run.time.at(-1))), y(spreadAt(run, time)), run.colour, true);
   }
   if (runs.length === 2) legend(context, runs, box);
 }
@@ -27,7 +28,7 @@ function band(context, box, low, high, colour, text) {
   context.fillRect(box.left, high, box.right - box.left, low - high);
   context.fillStyle = theme("--muted");
   context.textAlign = "right";
-  context.fillText(text, box.right - 6, high + 14);
+  context.fillText(text, box.right - 6, low - 6);
 }
 
 function axes(context, box, x, y, last, most) {
@@ -69,7 +70,7 @@ function dot(context, x, y, colour, open = false) {
 }
 
 /// The measured spread and its tolerance as a bar at the end of the time.
-function drawMeasured(context, box, y, { value, tolerance }) {
+function drawMeasured(context, box, y, {value, tolerance}) {
   const x = box.right - 10;
   line(context, [[x, y(value - tolerance)], [x, y(value + tolerance)]], theme("--measured"), 2);
   for (const mm of [value - tolerance, value + tolerance])

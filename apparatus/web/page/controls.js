@@ -1,7 +1,8 @@
 // Sliders and fields of the concrete that is being changed.
 
 const slider = {
-  from: (f, value) => f.log ? (1000 * Math.log(Math.max(value, f.low) / f.low)) / Math.log(f.high / f.low) : (1000 * (value - f.low)) / (f.high - f.low),
+  from: (f, value) => f.log ? (1000 * Math.log(Math.max(value, f.low) / f.low)) / Math.log(f.high / f.low) :
+                              (1000 * (value - f.low)) / (f.high - f.low),
   value: (f, at) => {
     const raw = f.log ? f.low * (f.high / f.low) ** (at / 1000) : f.low + ((f.high - f.low) * at) / 1000;
     return Number(raw.toPrecision(f.log ? 2 : 3));
@@ -11,11 +12,19 @@ const slider = {
 /// Builds the fields; change(key, value) is called when a value is settled, never for one that cannot be run.
 function buildFields(place, change) {
   for (const f of fields) {
-    const label = element("label", { for: `field-${f.key}` }, f.word, " ", element("i", {}, f.symbol));
-    const range = element("input", { type: "range", id: `slider-${f.key}`, min: 0, max: 1000, step: 1, "aria-label": `${f.word}, slider` });
-    const text = element("input", { type: "text", id: `field-${f.key}`, inputmode: "decimal", autocomplete: "off", "aria-describedby": `wrong-${f.key}` });
-    const unit = element("span", { class: "unit" }, unitShown[f.unit] ?? f.unit);
-    const trouble = element("p", { class: "wrong", id: `wrong-${f.key}`, role: "alert" });
+    const label = element("label", { for: `field-${f.key}`
+    }, f.word, " ", element("i", {}, f.symbol));
+    const range = element(
+        "input", {type: "range", id: `slider-${f.key}`, min: 0, max: 1000, step: 1, "aria-label": `${f.word}, slider`});
+    const text = element("input", {
+      type: "text",
+      id: `field-${f.key}`,
+      inputmode: "decimal",
+      autocomplete: "off",
+      "aria-describedby": `wrong-${f.key}`
+    });
+    const unit = element("span", {class: "unit"}, unitShown[f.unit] ?? f.unit);
+    const trouble = element("p", {class: "wrong", id: `wrong-${f.key}`, role: "alert"});
     const settle = (value) => {
       trouble.textContent = wrong(f, value);
       text.toggleAttribute("aria-invalid", Boolean(trouble.textContent));
@@ -24,7 +33,7 @@ function buildFields(place, change) {
     range.addEventListener("input", () => (text.value = slider.value(f, range.value)));
     range.addEventListener("change", () => settle(slider.value(f, range.value)));
     text.addEventListener("change", () => settle(readNumber(text.value)));
-    place.append(element("div", { class: "field" }, label, element("div", { class: "value" }, text, unit), range, trouble));
+    place.append(element("div", {class: "field"}, label, element("div", {class: "value"}, text, unit), range, trouble));
   }
 }
 
@@ -38,7 +47,7 @@ function showConcrete(concrete) {
 }
 
 function buildMixes(choose) {
-  for (const [name, mix] of Object.entries(mixes)) byId("mix").append(element("option", { value: name }, mix.name));
-  byId("mix").append(element("option", { value: "" }, "your mix"));
+  for (const [name, mix] of Object.entries(mixes)) byId("mix").append(element("option", {value: name}, mix.name));
+  byId("mix").append(element("option", {value: ""}, "your mix"));
   byId("mix").addEventListener("change", () => byId("mix").value && choose(byId("mix").value));
 }

@@ -1,17 +1,30 @@
 // The page's state, and what happens on it.
 
-const state = { concretes: [], active: 0, runs: [], by: "rate", errorState: "", turn: 0 };
+const state = {
+  concretes: [],
+  active: 0,
+  runs: [],
+  by: "rate",
+  errorState: "",
+  turn: 0
+};
 const still = matchMedia("(prefers-reduced-motion: reduce)");
 
 function view() {
   const frames = state.runs.flatMap((run) => run.frames), quantity = quantities[state.by];
   const widest = Math.max(560, ...state.runs.map((run) => run.spread.at(-1) ?? 0)) / 2000;
   const range = (state.range ??= quantity.range(frames));
-  return { shade: shadeBy(quantity, range), at: quantity.at, reach: widest + 0.04, ratio: 0.36 / (2 * widest + 0.08), range };
+  return {
+    shade: shadeBy(quantity, range),
+    at: quantity.at,
+    reach: widest + 0.04,
+    ratio: 0.36 / (2 * widest + 0.08),
+    range
+  };
 }
 
 function draw() {
-  const seen = view(), { time } = player;
+  const seen = view(), {time} = player;
   drawSection(byId("section"), state.runs, time, seen);
   drawPlate(byId("plate"), state.runs, time, seen);
   drawChart(byId("chart"), state.runs, time, state.runs.length === 1 ? measuredOn(state.runs[0].concrete) : null);
@@ -31,10 +44,11 @@ function showAnswers() {
   ["save-png", "save-csv"].forEach((id) => (byId(id).disabled = !ready));
 }
 
-function showProgress({ time, duration, run }, which) {
+function showProgress({time, duration, run}, which) {
   const name = state.runs.length === 2 ? `${state.runs[which].label}: ` : "";
   byId("progress").value = Math.min(1, time / duration);
-  byId("stage").textContent = run ? `${name}error bar, coarser run at ${time.toFixed(1)} s` : `${name}${time.toFixed(1)} s of at most ${duration.toFixed(0)} s of flow`;
+  byId("stage").textContent = run ? `${name}error bar, coarser run at ${time.toFixed(1)} s` :
+                                    `${name}${time.toFixed(1)} s of at most ${duration.toFixed(0)} s of flow`;
 }
 
 function busy(on) {
@@ -56,12 +70,13 @@ async function runInto(run, which, scene, turn) {
   const result = await solve(scene, {
     withError: true,
     onProgress: (progress) => wanted() && showProgress(progress, which),
-    onFrame: (frame) => wanted() && (addFrame(run, frame), (player.end = Math.max(0.5, frame.time)), showAt(frame.time)),
+    onFrame: (frame) => wanted() &&
+        (addFrame(run, frame), (state.range = null), (player.end = Math.max(0.5, frame.time)), showAt(frame.time)),
     onErrorBar: (whole) => ((last = whole), wanted() && ((run.summary = whole.summary), showAnswers())),
     onDone: () => done(last),
   });
   if (wanted()) addResult(run, result), showAnswers();
-  return { result, over };
+  return {result, over};
 }
 
 function start(concretes) {
@@ -69,6 +84,7 @@ function start(concretes) {
   state.turn += 1;
   state.range = null;
   state.runs = concretes.map(emptyRun);
+  labelsOf(concretes).forEach((label, i) => (state.runs[i].label = label));
   state.errorState = "computing the error …";
   complain("");
   busy(true);
@@ -90,7 +106,7 @@ async function runAll() {
   history.replaceState(null, "", `#${fragmentOf(state.concretes)}`);
   try {
     for (const [i, run] of state.runs.entries()) {
-      const { over } = await runInto(run, i, tomlOf(run.concrete), turn);
+      const {over} = await runInto(run, i, tomlOf(run.concrete), turn);
       if (i === state.runs.length - 1) finish(turn);
       await over;
     }
@@ -116,7 +132,7 @@ let apiRuns = Promise.resolve();
 
 /// window.tremie.run: a scene, as TOML text or an object of its keys, to its summary.json; {withError: true}: to that
 /// with its error bar. Calls wait for each other.
-function runScene(scene, { withError = false } = {}) {
+function runScene(scene, {withError = false} = {}) {
   const answer = apiRuns.then(() => runForApi(scene, withError));
   apiRuns = answer.catch(() => {});
   return answer;
@@ -124,12 +140,13 @@ function runScene(scene, { withError = false } = {}) {
 
 async function runForApi(scene, withError) {
   const turn = start([state.concretes[0]]);
-  state.runs[0].label = "your scene";
+  state.runs[0].name = state.runs[0].label = "your scene";
   try {
-    const { result, over } = await runInto(state.runs[0], 0, scene, turn);
+    const {result, over} = await runInto(state.runs[0], 0, scene, turn);
     if (turn === state.turn) {
       const concrete = concreteFrom(result.scene);
-      Object.assign(state.runs[0], { concrete, label: nameOf(concrete), lift: concrete.lift / 100 });
+      Object.assign(
+          state.runs[0], {concrete, name: nameOf(concrete), label: labelsOf([concrete])[0], lift: concrete.lift / 100});
       state.concretes = [concrete], (state.active = 0);
       showChoice(), showAnswers(), finish(turn);
       over.then(() => turn === state.turn && ((state.errorState = ""), busy(false), showAnswers()));
@@ -145,7 +162,8 @@ function showChoice() {
   const two = state.concretes.length === 2;
   byId("second").checked = two;
   byId("which").hidden = !two;
-  document.querySelectorAll('input[name="which"]').forEach((radio) => (radio.checked = Number(radio.value) === state.active));
+  document.querySelectorAll('input[name="which"]')
+      .forEach((radio) => (radio.checked = Number(radio.value) === state.active));
   showConcrete(state.concretes[state.active]);
 }
 
@@ -157,7 +175,8 @@ function change(concrete) {
 
 function chooseSecond(on) {
   const other = mixOf(state.concretes[0]) === "mix_c" ? "mix_a" : "mix_c";
-  state.concretes = on ? [state.concretes[0], { ...concreteOf(other), rest: state.concretes[0].rest }] : [state.concretes[0]];
+  state.concretes =
+      on ? [state.concretes[0], {...concreteOf(other), rest: state.concretes[0].rest}] : [state.concretes[0]];
   state.active = on ? 1 : 0;
   showChoice();
   runAll();
@@ -167,9 +186,15 @@ function listen() {
   byId("run").addEventListener("click", runAll);
   byId("cancel").addEventListener("click", cancel);
   byId("second").addEventListener("change", (event) => chooseSecond(event.target.checked));
-  document.querySelectorAll('input[name="which"]').forEach((radio) => radio.addEventListener("change", () => ((state.active = Number(radio.value)), showChoice())));
-  document.querySelectorAll('input[name="by"]').forEach((radio) => radio.addEventListener("change", () => ((state.by = radio.value), (state.range = null), draw())));
-  byId("save-toml").addEventListener("click", () => state.concretes.forEach((c) => saveToml({ concrete: c, label: nameOf(c) })));
+  document.querySelectorAll('input[name="which"]')
+      .forEach((radio) => radio.addEventListener("change", () => ((state.active = Number(radio.value)), showChoice())));
+  document.querySelectorAll('input[name="by"]')
+      .forEach(
+          (radio) => radio.addEventListener("change", () => ((state.by = radio.value), (state.range = null), draw())));
+  byId("save-toml")
+      .addEventListener(
+          "click",
+          () => labelsOf(state.concretes).forEach((label, i) => saveToml({concrete: state.concretes[i], label})));
   byId("save-csv").addEventListener("click", () => state.runs.forEach(saveCsv));
   byId("save-png").addEventListener("click", () => savePng(state.runs));
   byId("copy-link").addEventListener("click", () => copyLink(byId("said")));
@@ -188,11 +213,16 @@ function load(concretes) {
   runAll();
 }
 
-buildMixes((name) => change({ ...concreteOf(name), rest: state.concretes[state.active].rest, lift: state.concretes[state.active].lift }));
-buildFields(byId("fields"), (key, value) => change({ ...state.concretes[state.active], [key]: value }));
+buildMixes(
+    (name) => change(
+        {...concreteOf(name), rest: state.concretes[state.active].rest, lift: state.concretes[state.active].lift}));
+buildFields(byId("fields"), (key, value) => change({...state.concretes[state.active], [key]: value}));
 buildPlayer();
 player.draw = draw;
 byId("scale").style.background = `linear-gradient(to right, ${shades.join(", ")})`;
 listen();
-window.tremie = { run: runScene, version: byId("version").textContent };
+window.tremie = {
+  run: runScene,
+  version: byId("version").textContent
+};
 load(concretesOf(location.hash.slice(1)));

@@ -8,14 +8,15 @@ function surface(points, at) {
   const rings = [], heights = [];
   for (let i = 0; i < points.length; i += 4) {
     const k = Math.floor(points[i] / ring);
-    if (heights[k] === undefined || points[i + 1] > heights[k]) (heights[k] = points[i + 1]), (rings[k] = points[i + at]);
+    if (heights[k] === undefined || points[i + 1] > heights[k])
+      (heights[k] = points[i + 1]), (rings[k] = points[i + at]);
   }
   for (let k = 0; k < rings.length; k++) rings[k] ??= rings[k - 1] ?? rings.find((x) => x !== undefined);
   return rings;
 }
 
 function drawPlate(canvas, runs, time, view) {
-  const { context, width, height } = prepare(canvas, 1);
+  const {context, width, height} = prepare(canvas, 1);
   const scale = width / (2 * view.reach), x = width / 2, y = height / 2;
   context.fillStyle = theme("--plate");
   context.fillRect(0, 0, width, height);
@@ -31,7 +32,8 @@ function drawPlate(canvas, runs, time, view) {
     fillDisc(context, surface(frameAt(run.frames, time).points, view.at), radius, view, x, y, scale);
     context.restore();
   });
-  if (runs.length === 2) runs.forEach((run) => circle(context, x, y, (spreadAt(run, time) / 2000) * scale, run.colour, [], 2));
+  if (runs.length === 2)
+    runs.forEach((run) => circle(context, x, y, (spreadAt(run, time) / 2000) * scale, run.colour, [], 2));
   circle(context, x, y, 0.1 * scale, theme("--text"), [2, 3], 1.5);
   circle(context, x, y, 0.25 * scale, theme("--plate"), [], 4);
   circle(context, x, y, 0.25 * scale, theme("--text"), [7, 5], 1.5);

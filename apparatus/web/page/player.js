@@ -1,6 +1,11 @@
 // The time that is shown: played, paused, drawn along by the slider.
 
-const player = { time: 0, end: 1, playing: false, draw: () => {} };
+const player = {
+  time: 0,
+  end: 1,
+  playing: false,
+  draw: () => {}
+};
 
 function showTime() {
   byId("scrubber").value = Math.round((1000 * player.time) / player.end);

@@ -4,21 +4,41 @@ const mixes = JSON.parse(byId("mixes").textContent);
 
 /// The fields: key, symbol, unit, limits of the slider, and how it goes into the scene.
 const fields = [
-  { key: "yield_stress", word: "yield stress", symbol: "τ₀", unit: "Pa", low: 5, high: 500, log: true, above: 0 },
-  { key: "plastic_viscosity", word: "plastic viscosity", symbol: "μ", unit: "Pa.s", low: 5, high: 200, log: true, above: 0 },
-  { key: "density", word: "density", symbol: "ρ", unit: "kg/m3", low: 1800, high: 2800, above: 0 },
-  { key: "rest", word: "rest before the lift", symbol: "t", unit: "s", low: 0, high: 1200, least: 0 },
-  { key: "structuration_rate", word: "structuration rate", symbol: "A_thix", unit: "Pa/s", low: 0, high: 5, least: 0 },
-  { key: "destructuration", word: "destructuration", symbol: "α", unit: "", low: 0.001, high: 1, log: true, least: 0 },
-  { key: "lift", word: "lift of the cone", symbol: "v", unit: "cm/s", low: 2, high: 50, log: true, above: 0 },
+  {key: "yield_stress", word: "yield stress", symbol: "τ₀", unit: "Pa", low: 5, high: 500, log: true, above: 0},
+  {
+    key: "plastic_viscosity",
+    word: "plastic viscosity",
+    symbol: "μ",
+    unit: "Pa.s",
+    low: 5,
+    high: 200,
+    log: true,
+    above: 0
+  },
+  {key: "density", word: "density", symbol: "ρ", unit: "kg/m3", low: 1800, high: 2800, above: 0},
+  {key: "rest", word: "rest before the lift", symbol: "t", unit: "s", low: 0, high: 1200, least: 0},
+  {key: "structuration_rate", word: "structuration rate", symbol: "A_thix", unit: "Pa/s", low: 0, high: 5, least: 0},
+  {key: "destructuration", word: "destructuration", symbol: "α", unit: "", low: 0.001, high: 1, log: true, least: 0},
+  {key: "lift", word: "lift of the cone", symbol: "v", unit: "cm/s", low: 2, high: 50, log: true, above: 0},
 ];
-const unitShown = { "Pa.s": "Pa·s", "kg/m3": "kg/m³" };
+const unitShown = {
+  "Pa.s": "Pa·s",
+  "kg/m3": "kg/m³"
+};
 
 /// The concrete of a bundled mix.
 function concreteOf(name) {
   const mix = mixes[name];
-  return { mix: name, yield_stress: mix.yield_stress, plastic_viscosity: mix.plastic_viscosity, density: mix.density ?? 2400,
-           rest: 0, structuration_rate: mix.structuration_rate, destructuration: mix.destructuration, lift: 15 };
+  return {
+    mix: name,
+    yield_stress: mix.yield_stress,
+    plastic_viscosity: mix.plastic_viscosity,
+    density: mix.density ?? 2400,
+    rest: 0,
+    structuration_rate: mix.structuration_rate,
+    destructuration: mix.destructuration,
+    lift: 15
+  };
 }
 
 /// Why a value cannot be run; "" where it can.
@@ -38,6 +58,13 @@ function mixOf(concrete) {
 function nameOf(concrete) {
   const name = mixOf(concrete);
   return name ? mixes[name].name : "your mix";
+}
+
+/// What tells the concretes of a picture apart.
+function labelsOf(concretes) {
+  const labels = concretes.map((c) => nameOf(c) + (c.rest > 0 ? `, ${written(c.rest)} s of rest` : ""));
+  return labels.map(
+      (label, i) => (labels.indexOf(label) === labels.lastIndexOf(label) ? label : `${label} (${i + 1})`));
 }
 
 /// The scene that `tremie run` takes.
@@ -79,7 +106,7 @@ const tomlValue = (value) => Array.isArray(value) ? `[${value.map(tomlValue).joi
 
 /// An object of a scene's keys as TOML and overrides: {mix: "mix_a", test: {rest: "240 s"}, "mix.density": "2350 kg/m3"}.
 function sceneText(scene) {
-  if (typeof scene === "string") return { toml: scene, overrides: "" };
+  if (typeof scene === "string") return {toml: scene, overrides: ""};
   if (scene === null || typeof scene !== "object") throw new TypeError("a scene is TOML text or an object of its keys");
   const overrides = [];
   const table = (object, place) => {
@@ -87,12 +114,15 @@ function sceneText(scene) {
     for (const [key, value] of Object.entries(object)) {
       if (value === undefined || value === null) continue;
       const path = place ? `${place}.${key}` : key;
-      if (key.includes(".")) overrides.push(`${path}=${typeof value === "string" ? value : tomlValue(value)}`);
-      else if (typeof value === "object" && !Array.isArray(value)) below.push(`[${path}]`, ...table(value, path));
-      else own.push(`${key} = ${tomlValue(value)}`);
+      if (key.includes("."))
+        overrides.push(`${path}=${typeof value === "string" ? value : tomlValue(value)}`);
+      else if (typeof value === "object" && !Array.isArray(value))
+        below.push(`[${path}]`, ...table(value, path));
+      else
+        own.push(`${key} = ${tomlValue(value)}`);
     }
     return [...own, ...below];
   };
-  const toml = table({ apparatus: "slump_flow", ...scene }, "").join("\n") + "\n";
-  return { toml, overrides: overrides.join("\n") };
+  const toml = table({apparatus: "slump_flow", ...scene}, "").join("\n") + "\n";
+  return {toml, overrides: overrides.join("\n")};
 }

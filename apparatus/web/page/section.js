@@ -2,11 +2,15 @@
 // two the first stands on the left, the second on the right.
 
 // surface() and ring: plate.js.
-const coneShape = { top: 0.05, bottom: 0.1, height: 0.3 };
+const coneShape = {
+  top: 0.05,
+  bottom: 0.1,
+  height: 0.3
+};
 
 /// runs: [{frames, lift [m/s]}], at the time shown; shade(point's numbers, index).
 function drawSection(canvas, runs, time, view) {
-  const { context, width, height } = prepare(canvas, view.ratio);
+  const {context, width, height} = prepare(canvas, view.ratio);
   const scale = width / (2 * view.reach), floor = height - 22, middle = width / 2;
   const size = Math.max(1.5, 0.004 * scale);
   const sides = runs.length === 1 ? [[runs[0], 1], [runs[0], -1]] : [[runs[0], -1], [runs[1], 1]];
@@ -28,12 +32,13 @@ function drawSection(canvas, runs, time, view) {
 /// The last frame that is not after the time.
 function frameAt(frames, time) {
   let found = frames[0];
-  for (const frame of frames) if (frame.time <= time + 1e-9) found = frame;
+  for (const frame of frames)
+    if (frame.time <= time + 1e-9) found = frame;
   return found;
 }
 
 /// The room that the concrete fills, between its points.
-function drawBody(context, { points }, across, up) {
+function drawBody(context, {points}, across, up) {
   const tops = surface(points, 1);
   context.fillStyle = theme("--concrete");
   context.beginPath();
@@ -43,8 +48,8 @@ function drawBody(context, { points }, across, up) {
   context.fill();
 }
 
-function drawPoints(context, { points }, view, across, up, size) {
-  const buckets = Array.from({ length: 65 }, () => []);
+function drawPoints(context, {points}, view, across, up, size) {
+  const buckets = Array.from({length: 65}, () => []);
   for (let i = 0; i < points.length; i += 4) buckets[view.shade(points[i + view.at]) + 1].push(i);
   buckets.forEach((bucket, k) => {
     context.fillStyle = colourOf(k - 1);
@@ -53,7 +58,7 @@ function drawPoints(context, { points }, view, across, up, size) {
 }
 
 function drawCone(context, rim, side, middle, floor, scale) {
-  const { top, bottom, height } = coneShape;
+  const {top, bottom, height} = coneShape;
   context.strokeStyle = theme("--cone");
   context.lineWidth = 3;
   context.beginPath();

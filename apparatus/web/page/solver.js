@@ -4,7 +4,13 @@
 // onErrorBar, onDone}.
 // What a run still owes when the next one is asked for, its error bar, is given up; the result stands.
 
-const solver = { worker: null, live: null, module: null, queue: [], job: null };
+const solver = {
+  worker: null,
+  live: null,
+  module: null,
+  queue: [],
+  job: null
+};
 
 async function compiled() {
   const base64 = byId("wasm").textContent.trim();
@@ -13,26 +19,28 @@ async function compiled() {
 }
 
 async function startWorker() {
-  const source = new Blob([byId("worker").textContent], { type: "text/javascript" });
+  const source = new Blob([byId("worker").textContent], {type: "text/javascript"});
   const url = URL.createObjectURL(source);
   const worker = new Worker(url);
-  worker.postMessage({ module: await compiled() });
+  worker.postMessage({module: await compiled()});
   const told = (data) => worker === solver.live && solver.job && take(solver.job, data);
-  worker.onmessage = ({ data }) => told(data);
-  worker.onerror = (event) => told({ error: event.message, done: true });
+  worker.onmessage = ({data}) => told(data);
+  worker.onerror = (event) => told({error: event.message, done: true});
   solver.live = worker;
   return worker;
 }
 
 /// What the worker says about the running job.
-function take(job, { progress, frame, result, error, done }) {
+function take(job, {progress, frame, result, error, done}) {
   if (progress) job.look.onProgress?.(progress);
   if (frame) job.frames.push(frame), job.look.onFrame?.(frame);
   if (error) job.reject(new Error(error));
   if (result) {
-    const whole = { ...result, frames: job.frames };
-    if (job.answered) job.look.onErrorBar?.(whole);
-    else (job.answered = true), job.resolve(whole);
+    const whole = {...result, frames: job.frames};
+    if (job.answered)
+      job.look.onErrorBar?.(whole);
+    else
+      (job.answered = true), job.resolve(whole);
   }
   if (done) {
     solver.job = null;
@@ -66,8 +74,8 @@ function cancelAll() {
 
 function solve(scene, look = {}) {
   return new Promise((resolve, reject) => {
-    const message = { ...sceneText(scene), withError: look.withError ?? false };
-    solver.queue.push({ message, look, resolve, reject, frames: [], answered: false });
+    const message = {...sceneText(scene), withError: look.withError ?? false};
+    solver.queue.push({message, look, resolve, reject, frames: [], answered: false});
     if (solver.job?.answered) stopJob("cancelled");
     next();
   });

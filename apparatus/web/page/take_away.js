@@ -1,14 +1,14 @@
 // Files and links to take away.
 
 function save(name, blob) {
-  const link = element("a", { href: URL.createObjectURL(blob), download: name });
+  const link = element("a", {href: URL.createObjectURL(blob), download: name});
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
 
 const fileName = (run, ending) => `slump_flow_${run.label.toLowerCase().replace(/\W+/g, "_")}.${ending}`;
-const saveToml = (run) => save(fileName(run, "toml"), new Blob([tomlOf(run.concrete)], { type: "application/toml" }));
-const saveCsv = (run) => save(fileName(run, "csv"), new Blob([run.result.timeseries], { type: "text/csv" }));
+const saveToml = (run) => save(fileName(run, "toml"), new Blob([tomlOf(run.concrete)], {type: "application/toml"}));
+const saveCsv = (run) => save(fileName(run, "csv"), new Blob([run.result.timeseries], {type: "text/csv"}));
 
 /// Answer, section, plate and chart on one sheet.
 function savePng(runs) {
@@ -24,8 +24,8 @@ function savePng(runs) {
   context.font = `${17 * dense}px system-ui, sans-serif`;
   let y = line + margin / 2;
   for (const run of runs) {
-    const { results, error } = run.summary, bar = error?.spread_mm ? ` ± ${Math.max(1, Math.ceil(error.spread_mm))}` : "";
-    context.fillText(`${run.label}, rest ${run.concrete.rest} s: slump flow ${results.spread_mm.toFixed(0)}${bar} mm`, margin, y);
+    const {results, error} = run.summary, bar = error?.spread_mm ? ` ± ${Math.max(1, Math.ceil(error.spread_mm))}` : "";
+    context.fillText(`${run.label}: slump flow ${results.spread_mm.toFixed(0)}${bar} mm`, margin, y);
     y += line;
   }
   for (const part of parts) {

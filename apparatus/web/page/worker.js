@@ -7,14 +7,14 @@ function load(module) {
       WebAssembly.instantiate(module, imports).then((instance) => done(instance, module));
       return {};
     },
-    onProgress: (time, duration, run) => postMessage({ progress: { time, duration, run } }),
-    onFrame: (time, points) => postMessage({ frame: { time, points } }, [points.buffer]),
-    onResult: (json) => postMessage({ result: JSON.parse(json) }),
-    onError: (message) => postMessage({ error: message }),
+    onProgress: (time, duration, run) => postMessage({progress: {time, duration, run}}),
+    onFrame: (time, points) => postMessage({frame: {time, points}}, [points.buffer]),
+    onResult: (json) => postMessage({result: JSON.parse(json)}),
+    onError: (message) => postMessage({error: message}),
   });
 }
 
-onmessage = async ({ data }) => {
+onmessage = async ({data}) => {
   if (data.module) {
     library = load(data.module);
     return;
@@ -23,7 +23,7 @@ onmessage = async ({ data }) => {
   try {
     (await library).ccall("tremie_page_run", null, types, [data.toml, data.overrides, data.withError ? 1 : 0]);
   } catch (fault) {
-    postMessage({ error: `the run broke off: ${fault.message ?? fault}` });
+    postMessage({error: `the run broke off: ${fault.message ?? fault}`});
   }
-  postMessage({ done: true });
+  postMessage({done: true});
 };
