@@ -108,6 +108,14 @@ Schema whole_schema(const ApparatusKeys& apparatus) {
   return schema;
 }
 
+/// The share folder that lies beside the program's own, wherever both were moved to; empty where the system
+/// does not say which program runs.
+fs::path data_beside_program() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  return error ? fs::path{} : program.parent_path().parent_path() / TREMIE_SHARE / "reference_data";
+}
+
 }  // namespace
 
 Section top_section(const ApparatusKeys& apparatus) {
@@ -130,6 +138,7 @@ Section top_section(const ApparatusKeys& apparatus) {
 std::vector<fs::path> data_folders() {
   std::vector<fs::path> folders;
   if (const char* set = std::getenv("TREMIE_DATA")) folders.emplace_back(set);
+  folders.push_back(data_beside_program());
   folders.emplace_back(TREMIE_SOURCE_DATA);
   folders.emplace_back(TREMIE_INSTALLED_DATA);
   return folders;

@@ -36,7 +36,8 @@ Loaded load(const Request& request, std::span<const ApparatusKeys> known, const 
 /// The top of the file: schema, apparatus, preset.
 Section top_section(const ApparatusKeys& apparatus);
 
-/// Where reference_data lies: $TREMIE_DATA, the source tree, or the installed share folder.
+/// Where reference_data lies: $TREMIE_DATA, the share folder beside the program, the source tree, or the share
+/// folder that it was configured to be installed in.
 std::vector<std::filesystem::path> data_folders();
 
 /// The names that `mix = "…"` may have.
