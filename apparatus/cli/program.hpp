@@ -19,6 +19,8 @@ struct StudyCommand {
 };
 inline constexpr StudyCommand fit_command{
     "fit", "Material parameters, with their uncertainty, from a torque record"};
+inline constexpr StudyCommand study_command{
+    "study", "Run a scene many times, its keys changed by a design; what matters, and how much"};
 inline constexpr StudyCommand verify_command{
     "verify", "Measure the error against exact solutions, and what it costs; write VERIFICATION.md"};
 

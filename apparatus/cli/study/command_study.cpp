@@ -1,0 +1,270 @@
+// tremie study STUDY.toml: many runs of a scene, its keys changed by a design.
+
+#include "apparatus/cli/study/command_study.hpp"
+
+#include <fmt/format.h>
+#include <signal.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <atomic>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <thread>
+
+#include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/hand_over.hpp"
+#include "apparatus/cli/program.hpp"
+#include "apparatus/cli/study/study_progress.hpp"
+#include "apparatus/report/process.hpp"
+#include "apparatus/report/rheometer_files.hpp"
+#include "apparatus/scene/input_error.hpp"
+#include "apparatus/study/engines.hpp"
+#include "apparatus/study/files.hpp"
+#include "apparatus/study/pool.hpp"
+#include "apparatus/study/summary.hpp"
+#include "libmpm/io/write_error.hpp"
+
+namespace tremie::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using study::Definition;
+using study::Design;
+using study::Row;
+
+struct Options {
+  std::string file, out, engine;
+  int jobs = 0;
+  std::int64_t row = -1;
+  bool resume = false, collect = false, submit = false, quiet = false, force = false;
+};
+
+std::atomic<bool> stop_requested{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
+
+void stop_on_interrupt() {
+  struct sigaction action = {};
+  action.sa_handler = [](int) { stop_requested = true; };
+  action.sa_flags = SA_RESTART | SA_RESETHAND;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+/// All that a study's parts work on.
+struct Job {
+  Definition definition;
+  Design design;
+  fs::path folder;
+  std::string fingerprint;
+};
+
+// --- folder ---------------------------------------------------------------------------------------------
+
+bool is_study_folder(const fs::path& folder) { return fs::exists(folder / "design.csv"); }
+
+void refuse(const fs::path& folder, const std::string& why) {
+  throw scene::InputError(fmt::format("--out {}: {}", folder.string(), why));
+}
+
+void remove_earlier_study(const fs::path& folder) {
+  for (const char* name : {"design.csv", "study.csv", "study.h5", "report.html", "summary.json",
+                           "journal.jsonl", "study.sbatch", "Snakefile", "study.sh", "parallel.log"})
+    fs::remove(folder / name);
+  fs::remove_all(folder / "rows");
+}
+
+void make_folder(const Job& job, const Options& options) {
+  const bool filled = fs::is_directory(job.folder) && !fs::is_empty(job.folder);
+  if (fs::exists(job.folder) && !fs::is_directory(job.folder)) refuse(job.folder, "is no folder");
+  const bool goes_on = options.resume || options.collect || options.row >= 0;
+  if (filled && !is_study_folder(job.folder)) refuse(job.folder, "holds files that are no study");
+  if (filled && !goes_on && !options.force)
+    refuse(job.folder, "holds a study; --resume goes on with it, --force starts over");
+  if (filled && !goes_on) remove_earlier_study(job.folder);
+  std::error_code error;
+  fs::create_directories(job.folder, error);
+  if (error) refuse(job.folder, "cannot be written: " + error.message());
+}
+
+/// Written once; where it is there it must be this study's. Many rows may start at once.
+void write_design(const Job& job) {
+  const fs::path file = job.folder / "design.csv";
+  const std::string csv = study::design_csv(job.definition, job.design);
+  if (!fs::exists(file)) {
+    const fs::path part = job.folder / fmt::format(".design.{}.part", getpid());
+    io::write_text(part, csv);
+    fs::rename(part, file);
+    return;
+  }
+  std::ifstream stream(file, std::ios::binary);
+  if (std::string(std::istreambuf_iterator<char>(stream), {}) != csv)
+    refuse(job.folder, "its design.csv is another study's; --force starts over");
+}
+
+// --- rows -----------------------------------------------------------------------------------------------
+
+constexpr char mend_mark = '!';  ///< before a message for the user, in place of a row
+
+std::string run_as_text(const Job& job, std::size_t row) try {
+  return study::row_json(
+      study::run_row(job.definition, row, study::overrides_of(job.definition, job.design[row])));
+} catch (const scene::InputError& error) {
+  return mend_mark + std::string(error.what());
+}
+
+Row row_of(const Job& job, const study::Finished& finished) {
+  if (!finished.text) return study::dead_row(job.definition, finished.item, finished.death);
+  if (finished.text->starts_with(mend_mark)) throw scene::InputError(finished.text->substr(1));
+  const auto row = study::row_from_json(*finished.text, job.definition.results.size());
+  return row ? *row : study::dead_row(job.definition, finished.item, "cut off");
+}
+
+std::vector<std::size_t> rows_to_run(const Job& job, const std::vector<Row>& there) {
+  std::vector<bool> known(job.design.size(), false);
+  for (const Row& row : there)
+    if (row.row < known.size()) known[row.row] = true;
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < known.size(); ++i)
+    if (!known[i]) rows.push_back(i);
+  return rows;
+}
+
+int jobs_of(const Options& options) {
+  return options.jobs > 0 ? options.jobs : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+/// False where it was interrupted.
+bool run_rows(const Job& job, const Options& options, study::Journal& journal,
+              const std::vector<Row>& there) {
+  const auto rows = rows_to_run(job, there);
+  StudyProgress progress(job.design.size(), job.design.size() - rows.size(), options.quiet);
+  return study::run_pool(
+      rows, jobs_of(options), [&](std::size_t row) { return run_as_text(job, row); },
+      [&](const study::Finished& finished) {
+        const Row row = row_of(job, finished);
+        journal.append(row);
+        progress.row_done(row.exit_code == 0);
+      },
+      &stop_requested);
+}
+
+// --- the ways to run ------------------------------------------------------------------------------------
+
+int finish(const Job& job, const Options& options, const study::RowFiles& files,
+           const std::vector<Row>& journal, const Stopwatch& watch) {
+  std::vector<Row> rows = journal;
+  rows.insert(rows.end(), files.rows.begin(), files.rows.end());
+  auto collected = study::collect(job.design.size(), std::move(rows));
+  collected.problems.insert(collected.problems.end(), files.problems.begin(), files.problems.end());
+  const auto reasons = study::write_results(job.definition, job.design, collected, job.folder, watch);
+  for (const auto& reason : reasons) fmt::print(stderr, "not to be trusted: {}\n", reason);
+  if (!options.quiet) fmt::print("written to      {}\n", job.folder.string());
+  return reasons.empty() ? done : not_to_be_trusted;
+}
+
+study::RowFiles row_files(const Job& job) {
+  return study::read_row_files(job.folder, job.fingerprint, job.definition.results.size());
+}
+
+int run_here(const Job& job, const Options& options) {
+  const Stopwatch watch;
+  study::Journal journal(job.folder, job.fingerprint, job.definition.results.size());
+  const auto files = row_files(job);
+  std::vector<Row> there = journal.rows();
+  there.insert(there.end(), files.rows.begin(), files.rows.end());
+  stop_on_interrupt();
+  if (!options.collect && !run_rows(job, options, journal, there)) {
+    fmt::print(stderr, "interrupted; tremie study {} --out {} --resume goes on\n", options.file,
+               job.folder.string());
+    return interrupted;
+  }
+  return finish(job, options, files, journal.rows(), watch);
+}
+
+int run_one_row(const Job& job, const Options& options) {
+  const auto index = static_cast<std::size_t>(options.row);
+  if (index >= job.design.size())
+    throw scene::InputError(fmt::format("--row {}: the design has the rows 0 to {}", index, job.design.size() - 1));
+  for (const Row& row : row_files(job).rows)
+    if (row.row == index && !options.force) return done;
+  const Row row =
+      study::run_row(job.definition, index, study::overrides_of(job.definition, job.design[index]));
+  study::write_row_file(job.folder, job.fingerprint, row);
+  for (const auto& reason : row.reasons) fmt::print(stderr, "row {} not to be trusted: {}\n", index, reason);
+  return done;
+}
+
+int hand_to_engine(const Job& job, const Options& options) {
+  const auto engine = options.engine == "slurm"       ? study::Engine::slurm
+                      : options.engine == "snakemake" ? study::Engine::snakemake
+                                                      : study::Engine::parallel;
+  const auto script = study::engine_script(engine, own_file().parent_path() / "tremie", fs::absolute(options.file),
+                                           job.folder, job.design.size(), jobs_of(options));
+  io::write_text(script.file, script.text);
+  const std::string line = fmt::format("{}", fmt::join(script.start, " "));
+  if (!options.submit) {
+    if (!options.quiet) fmt::print("run             {}\n", line);
+    return done;
+  }
+  const auto program = report::find_program(script.start.front());
+  if (program.empty())
+    throw scene::InputError(
+        fmt::format("--submit: {} is not installed here; {} is written", script.start.front(), script.file.string()));
+  const std::vector<std::string> arguments(script.start.begin() + 1, script.start.end());
+  const auto code = report::run_program(program, arguments, job.folder, 1e9);
+  if (code == 0) return done;
+  fmt::print(stderr, "tremie study: {} ended with {}\n", line, code ? fmt::format("{}", *code) : "a signal");
+  return code == not_to_be_trusted ? not_to_be_trusted : fault;
+}
+
+void check_together(const Options& options) {
+  const int ways = (options.row >= 0) + options.collect + options.resume + !options.engine.empty();
+  if (ways > 1)
+    throw scene::InputError("--row, --collect, --resume and --engine: at most one of them at a time");
+  if (options.submit && options.engine.empty()) throw scene::InputError("--submit: goes with --engine");
+}
+
+int run(const Options& options) {
+  check_together(options);
+  Job job;
+  job.definition = study::read_definition(options.file);
+  job.design = study::make_design(job.definition);
+  job.folder = fs::absolute(options.out.empty() ? "runs/" + job.definition.name : options.out).lexically_normal();
+  job.fingerprint = study::fingerprint(job.definition, job.design);
+  if (options.collect && !is_study_folder(job.folder)) refuse(job.folder, "holds no study");
+  if (options.row >= 0 && !options.out.empty() && fs::exists(job.folder) && !fs::is_empty(job.folder) &&
+      !is_study_folder(job.folder) && !fs::exists(job.folder / "rows"))
+    refuse(job.folder, "holds files that are no study");
+  make_folder(job, options);
+  write_design(job);
+  if (options.row >= 0) return run_one_row(job, options);
+  if (!options.engine.empty()) return hand_to_engine(job, options);
+  return run_here(job, options);
+}
+
+}  // namespace
+
+void add_command_study(CLI::App& app, int& exit_code) {
+  auto o = std::make_shared<Options>();
+  auto* command = app.add_subcommand(study_command.name, study_command.description);
+  command->add_option("study", o->file, "Study file (TOML): base, [[factor]], [design], [read]")->required();
+  command->add_option("--out", o->out, "Folder for the result (default: runs/<study's name>)");
+  command->add_option("--jobs", o->jobs, "Runs at a time, one thread each (default: the machine's cores)")
+      ->check(CLI::Range(1, 4096));
+  command->add_flag("--resume", o->resume, "Go on with a study that was stopped or killed");
+  command->add_option("--row", o->row, "Run this row alone (from 0), into DIR/rows")
+      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1000000}));
+  command->add_flag("--collect", o->collect, "Make study.csv of the rows that are there; run none");
+  command->add_option("--engine", o->engine, "Write what runs the rows elsewhere: slurm, snakemake, parallel")
+      ->check(CLI::IsMember({"slurm", "snakemake", "parallel"}));
+  command->add_flag("--submit", o->submit, "Start it, too");
+  command->add_flag("--quiet", o->quiet, "Print nothing but errors");
+  command->add_flag("--force", o->force, "Replace an earlier study in the folder");
+  command->callback([o, &exit_code] { exit_code = run(*o); });
+}
+
+}  // namespace tremie::cli

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "apparatus/report/rheometer_files.hpp"
+#include "apparatus/study/files.hpp"
+
+namespace tremie::study {
+
+/// Writes study.csv, study.h5 and summary.json, each whole or not at all. Returns the reasons why the study
+/// is not to be trusted: rows that are missing or came twice, or more than a tenth of the rows without a
+/// result to be trusted.
+std::vector<std::string> write_results(const Definition& study, const Design& design,
+                                       const Collected& collected, const std::filesystem::path& folder,
+                                       const cli::Stopwatch& watch);
+
+}  // namespace tremie::study
