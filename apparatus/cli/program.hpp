@@ -21,6 +21,8 @@ inline constexpr StudyCommand fit_command{
     "fit", "Material parameters, with their uncertainty, from a torque record"};
 inline constexpr StudyCommand study_command{
     "study", "Run a scene many times, its keys changed by a design; what matters, and how much"};
+inline constexpr StudyCommand calibrate_command{
+    "calibrate", "From measurements to the mix: parameters and forecasts, with intervals"};
 inline constexpr StudyCommand verify_command{
     "verify", "Measure the error against exact solutions, and what it costs; write VERIFICATION.md"};
 

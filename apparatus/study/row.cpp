@@ -37,25 +37,26 @@ Reading reading_from(const Json& json) {
   return std::monostate{};
 }
 
-void fill_from(const scene::Outcome& outcome, const Definition& study, Row& row) {
+void fill_from(const scene::Outcome& outcome, const std::vector<std::string>& results,
+               const std::string& place, Row& row) {
   row.status = report::status_name(outcome.status);
   row.reasons = outcome.checks.reasons;
   row.exit_code = row.reasons.empty() && outcome.status == Status::completed ? 0 : 3;
   row.cpu = outcome.cost.cpu;
-  for (std::size_t i = 0; i < study.results.size(); ++i) {
-    const auto reading = reading_of(outcome, study.results[i]);
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const auto reading = reading_of(outcome, results[i]);
     if (!reading) {
       const auto known = result_names(outcome.results);
-      throw scene::InputError(fmt::format("{}: read.results: a {} has no result \"{}\" (nearest: \"{}\"); it has {}",
-                                          study.file.string(), outcome.apparatus, study.results[i],
-                                          scene::nearest(study.results[i], known), fmt::join(known, ", ")));
+      throw scene::InputError(fmt::format("{}: a {} has no result \"{}\" (nearest: \"{}\"); it has {}", place,
+                                          outcome.apparatus, results[i], scene::nearest(results[i], known),
+                                          fmt::join(known, ", ")));
     }
     row.readings[i] = *reading;
   }
 }
 
-Row empty_row(const Definition& study, std::size_t row) {
-  return {row, std::vector<Reading>(study.results.size()), "failed", 1, {}, 0.0};
+Row empty_row(std::size_t results, std::size_t row) {
+  return {row, std::vector<Reading>(results), "failed", 1, {}, 0.0};
 }
 
 }  // namespace
@@ -94,11 +95,12 @@ std::vector<std::string> result_names(const std::vector<scene::Result>& results,
   return names;
 }
 
-Row run_row(const Definition& study, std::size_t index, const std::vector<std::string>& overrides) {
-  Row row = empty_row(study, index);
+Row run_scene(const std::function<scene::Scene()>& read, const std::vector<std::string>& results,
+              std::size_t index, const std::string& place) {
+  Row row = empty_row(results.size(), index);
   scene::Outcome outcome;
   try {
-    auto scene = scene::read(study.base, overrides);
+    auto scene = read();
     scene::set_threads(scene, 1);
     scene.output.frames = false;
     outcome = scene::run(scene);
@@ -110,12 +112,17 @@ Row run_row(const Definition& study, std::size_t index, const std::vector<std::s
     row.reasons = {error.what()};
     return row;
   }
-  fill_from(outcome, study, row);
+  fill_from(outcome, results, place, row);
   return row;
 }
 
-Row dead_row(const Definition& study, std::size_t index, const std::string& death) {
-  Row row = empty_row(study, index);
+Row run_row(const Definition& study, std::size_t row, const std::vector<std::string>& overrides) {
+  return run_scene([&] { return scene::read(study.base, overrides); }, study.results, row,
+                   study.file.string() + ": read.results");
+}
+
+Row dead_row(std::size_t results, std::size_t index, const std::string& death) {
+  Row row = empty_row(results, index);
   row.reasons = {"its process was " + death};
   return row;
 }

@@ -2,6 +2,7 @@
 
 // One run of a study, and its line in the journal.
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <variant>
@@ -39,8 +40,12 @@ std::vector<std::string> result_names(const std::vector<scene::Result>& results,
 /// the row. Throws scene::InputError where the outcome has no result of a name in `read.results`.
 Row run_row(const Definition& study, std::size_t row, const std::vector<std::string>& overrides);
 
+/// The same of a scene that `read` returns, for the results of these names; `place` stands before messages.
+Row run_scene(const std::function<scene::Scene()>& read, const std::vector<std::string>& results,
+              std::size_t row, const std::string& place);
+
 /// The row of a process that died.
-Row dead_row(const Definition& study, std::size_t row, const std::string& death);
+Row dead_row(std::size_t results, std::size_t row, const std::string& death);
 
 /// One line of JSON, and back. Empty where the text is no whole line of a row.
 std::string row_json(const Row& row);

@@ -4,8 +4,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "apparatus/study/indices.hpp"
 #include "libmpm/io/write_error.hpp"
 
 namespace tremie::study {
@@ -54,6 +56,30 @@ Json results_json(const Design& design, const Collected& collected) {
   return json;
 }
 
+Json json_of(const Definition& study, const ResultIndices& one) {
+  Json json{{"rows", one.rows}, {"variance_explained", one.explained}};
+  for (std::size_t i = 0; i < study.factors.size(); ++i) {
+    const SobolIndex& index = one.indices[i];
+    const MainEffect& effect = one.main_effects[i];
+    Json at = Json::array();
+    for (const double x : effect.at) at.push_back(std::isfinite(x) ? Json(x) : Json(nullptr));
+    json["factors"][study.factors[i].key] = {{"first", index.first},
+                                             {"first_error", index.first_error},
+                                             {"total", index.total},
+                                             {"total_error", index.total_error},
+                                             {"main_effect", {{"unit", unit_of(study.factors[i])}, {"at", at}, {"mean", effect.mean}}}};
+  }
+  return json;
+}
+
+Json sobol_json(const Definition& study, const Design& design, const Collected& collected) {
+  std::string note;
+  Json json = Json::object();
+  for (const auto& one : sobol_indices(study, design, collected, note)) json[one.result] = json_of(study, one);
+  if (!note.empty()) json["note"] = note;
+  return json;
+}
+
 /// A reader never meets half a file.
 void write_whole(const fs::path& file, const std::string& text) {
   const fs::path part = file.parent_path() / fmt::format(".{}.{}.part", file.filename().string(), getpid());
@@ -73,9 +99,11 @@ std::vector<std::string> write_results(const Definition& study, const Design& de
   scene::Outcome outcome;
   outcome.apparatus = "study";
   outcome.checks.reasons = reasons_of(design, collected);
+  Json results = results_json(design, collected);
+  results["sobol"] = sobol_json(study, design, collected);
   watch.stop(outcome.cost);
   Json summary = cli::summary_of(outcome);
-  summary["results"] = results_json(design, collected);
+  summary["results"] = results;
   write_whole(folder / "summary.json", summary.dump(2) + "\n");
   return outcome.checks.reasons;
 }

@@ -117,10 +117,10 @@ std::string run_as_text(const Job& job, std::size_t row) try {
 }
 
 Row row_of(const Job& job, const study::Finished& finished) {
-  if (!finished.text) return study::dead_row(job.definition, finished.item, finished.death);
+  if (!finished.text) return study::dead_row(job.definition.results.size(), finished.item, finished.death);
   if (finished.text->starts_with(mend_mark)) throw scene::InputError(finished.text->substr(1));
   const auto row = study::row_from_json(*finished.text, job.definition.results.size());
-  return row ? *row : study::dead_row(job.definition, finished.item, "cut off");
+  return row ? *row : study::dead_row(job.definition.results.size(), finished.item, "cut off");
 }
 
 std::vector<std::size_t> rows_to_run(const Job& job, const std::vector<Row>& there) {

@@ -4,6 +4,7 @@
 
 #include "apparatus/cli/commands.hpp"
 #include "apparatus/cli/program.hpp"
+#include "apparatus/cli/study/command_calibrate.hpp"
 #include "apparatus/cli/study/command_fit.hpp"
 #include "apparatus/cli/study/command_study.hpp"
 
@@ -11,6 +12,7 @@ int main(int argc, char** argv) {
   return tremie::cli::run_program(argc, argv, [](CLI::App& app, int& exit_code) {
     tremie::cli::add_command_fit(app, exit_code);
     tremie::cli::add_command_study(app, exit_code);
+    tremie::cli::add_command_calibrate(app, exit_code);
     tremie::cli::add_command_verify(app, exit_code);
   });
 }

@@ -1,0 +1,294 @@
+#include "apparatus/calibration/calibrate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "apparatus/study/design.hpp"
+
+namespace tremie::calibration {
+namespace {
+
+constexpr double enough = 1.0 / 3.0;  ///< of the measurement's error: what the emulator's may be
+constexpr double far_off = 3.0;       ///< standard errors at which a measurement contradicts the others
+constexpr double contradiction = 0.01;  ///< chance of a chi square so large that calls for a reason
+
+/// A reading's emulator, and its predictions at the posterior's points.
+struct Emulated {
+  std::size_t test = 0, reading = 0;
+  bool trained = false;
+  Emulator emulator;
+  std::vector<Prediction> predictions;
+  std::vector<std::size_t> trials;  ///< those with a number
+};
+
+struct State {
+  const Lab& lab;
+  const Settings& settings;
+  std::vector<Point> points;  ///< of the posterior
+  std::vector<Emulated> emulated;
+  std::vector<std::vector<double>> discretisation;
+  Calibration result;
+};
+
+const Measurement& reading_of(const State& s, const Emulated& e) {
+  return s.lab.tests[e.test].readings[e.reading];
+}
+
+bool is_measured(const State& s, const Emulated& e) { return e.test < s.lab.measured; }
+
+double numeric(const study::Row& row, std::size_t reading) {
+  const auto* number = std::get_if<double>(&row.readings[reading]);
+  return row.exit_code == 0 && number ? *number : NAN;
+}
+
+void train_one(State& s, Emulated& e) {
+  std::vector<Point> points;
+  std::vector<double> values;
+  e.trials.clear();
+  for (std::size_t i = 0; i < s.result.trials.size(); ++i) {
+    const double value = numeric(s.result.trials[i].rows[e.test], e.reading);
+    if (!std::isfinite(value)) continue;
+    points.push_back(s.result.trials[i].point);
+    values.push_back(value);
+    e.trials.push_back(i);
+  }
+  e.trained = points.size() >= 5 * s.lab.unknowns.size();
+  if (!e.trained) return;
+  e.emulator = train(points, values, reading_of(s, e).logarithmic);
+  e.predictions = predict(e.emulator, s.points);
+}
+
+/// The variance of what a measurement may differ by from an emulated run.
+double variance_of(const State& s, const Emulated& e, const Prediction& p) {
+  const double error = reading_of(s, e).error, cells = s.discretisation[e.test][e.reading];
+  return error * error + p.variance + cells * cells;
+}
+
+void update_posterior(State& s) {
+  std::vector<double> log_likelihood(s.points.size(), 0.0);
+  for (const Emulated& e : s.emulated) {
+    if (!is_measured(s, e) || !e.trained) continue;
+    for (std::size_t i = 0; i < s.points.size(); ++i) {
+      const double variance = variance_of(s, e, e.predictions[i]);
+      const double off = reading_of(s, e).value - e.predictions[i].mean;
+      log_likelihood[i] -= 0.5 * (off * off / variance + std::log(variance));
+    }
+  }
+  s.result.posterior = make_posterior(s.points, log_likelihood);
+}
+
+double distance(const Point& a, const Point& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return std::sqrt(sum);
+}
+
+/// Root mean square of the left-out residuals of the runs nearest to the posterior: of those within a tenth
+/// of the range of a point that carries weight, at least eight.
+double error_near_posterior(const State& s, const Emulated& e) {
+  const auto& posterior = s.result.posterior;
+  const double most = posterior.weights[posterior.best];
+  std::vector<std::pair<double, double>> near;  // distance, residual
+  for (std::size_t k = 0; k < e.trials.size(); ++k) {
+    double least = INFINITY;
+    for (std::size_t i = 0; i < posterior.points.size(); ++i)
+      if (posterior.weights[i] > 0.01 * most)
+        least = std::min(least, distance(posterior.points[i], s.result.trials[e.trials[k]].point));
+    near.emplace_back(least, e.emulator.left_out[k]);
+  }
+  std::sort(near.begin(), near.end());
+  double sum = 0.0;
+  std::size_t n = 0;
+  for (const auto& [d, residual] : near) {
+    if (n >= 8 && d > 0.1) break;
+    sum += residual * residual;
+    ++n;
+  }
+  return std::sqrt(sum / static_cast<double>(n));
+}
+
+bool emulators_suffice(const State& s) {
+  return std::all_of(s.emulated.begin(), s.emulated.end(), [&](const Emulated& e) {
+    return !is_measured(s, e) || !e.trained || error_near_posterior(s, e) < enough * reading_of(s, e).error;
+  });
+}
+
+/// Where the emulators are least sure, among points that the measurements leave likely.
+std::vector<Point> next_points(const State& s, std::size_t count) {
+  const auto& posterior = s.result.posterior;
+  std::vector<std::pair<double, std::size_t>> scored;
+  for (std::size_t i = 0; i < s.points.size(); ++i) {
+    double unsure = 1e-6;
+    for (const Emulated& e : s.emulated)
+      if (is_measured(s, e) && e.trained)
+        unsure += e.predictions[i].variance / (reading_of(s, e).error * reading_of(s, e).error);
+    scored.emplace_back(std::sqrt(posterior.weights[i]) * unsure, i);
+  }
+  std::sort(scored.rbegin(), scored.rend());
+  std::vector<Point> chosen;
+  const auto apart = [&](const Point& p, double gap) {
+    for (const Point& q : chosen)
+      if (distance(p, q) < 2.0 * gap) return false;
+    for (const Trial& trial : s.result.trials)
+      if (distance(p, trial.point) < gap) return false;
+    return true;
+  };
+  for (double gap = 0.04; chosen.size() < count && gap > 1e-4; gap *= 0.5)
+    for (const auto& [score, i] : scored) {
+      if (chosen.size() == count) break;
+      if (posterior.weights[i] > 1e-4 * posterior.weights[posterior.best] && apart(s.points[i], gap))
+        chosen.push_back(s.points[i]);
+    }
+  return chosen;
+}
+
+void learn(State& s) {
+  for (Emulated& e : s.emulated) train_one(s, e);
+  update_posterior(s);
+}
+
+bool run_more(State& s, const std::vector<Point>& points) {
+  if (!run_trials(s.lab, points, s.settings, s.result.trials)) {
+    s.result.interrupted = true;
+    return false;
+  }
+  learn(s);
+  if (s.settings.say)
+    s.settings.say(fmt::format("{} runs of each of {} tests", s.result.trials.size(), s.lab.tests.size()));
+  return true;
+}
+
+// --- what is reported -----------------------------------------------------------------------------------
+
+void report_parameters(State& s) {
+  for (std::size_t i = 0; i < s.lab.unknowns.size(); ++i) {
+    const auto& unknown = s.lab.unknowns[i];
+    const double low = quantile(s.result.posterior, i, 0.025), high = quantile(s.result.posterior, i, 0.975);
+    const auto at = [&](double share) { return study::level_at(unknown, share).number; };
+    s.result.parameters.push_back({unknown.key, study::unit_of(unknown),
+                                   at(quantile(s.result.posterior, i, 0.5)), at(low), at(high),
+                                   told(low, high)});
+  }
+}
+
+void report_readings(State& s) {
+  for (const Emulated& e : s.emulated) {
+    const Measurement& m = reading_of(s, e);
+    if (!is_measured(s, e)) continue;
+    const std::string label = s.lab.tests[e.test].label;
+    if (!e.trained) {
+      s.result.reasons.push_back(
+          fmt::format("{}.{} is left out: only {} of {} runs within the ranges have one", label, m.key,
+                      e.trials.size(), s.result.trials.size()));
+      continue;
+    }
+    const Prediction& best = e.predictions[s.result.posterior.best];
+    const double deviation = (m.value - best.mean) / std::sqrt(variance_of(s, e, best));
+    s.result.chi_square += deviation * deviation;
+    s.result.readings.push_back({label, m.result, m.value, m.error, error_near_posterior(s, e),
+                                 s.discretisation[e.test][e.reading], best.mean, deviation});
+  }
+}
+
+/// The chance of a chi square of n degrees of freedom above x (Wilson and Hilferty).
+double chance_above(double x, double n) {
+  const double z = (std::cbrt(x / n) - (1.0 - 2.0 / (9.0 * n))) / std::sqrt(2.0 / (9.0 * n));
+  return 0.5 * std::erfc(z / std::sqrt(2.0));
+}
+
+void report_contradictions(State& s) {
+  const ReadingReport* worst = nullptr;
+  for (const ReadingReport& r : s.result.readings) {
+    if (!worst || std::abs(r.deviation) > std::abs(worst->deviation)) worst = &r;
+    if (std::abs(r.deviation) > far_off)
+      s.result.reasons.push_back(
+          fmt::format("{} {} = {:.4g} lies {:.1f} standard errors from the best fit, {:.4g}: it contradicts "
+                      "the other measurements or lies outside of what the model can do within the ranges",
+                      r.test, r.result, r.measured, std::abs(r.deviation), r.best_fit));
+  }
+  if (!worst) {
+    s.result.reasons.push_back("no measurement could be emulated");
+    return;
+  }
+  const double free = std::max(1.0, static_cast<double>(s.result.readings.size()) -
+                                        static_cast<double>(s.lab.unknowns.size()));
+  if (s.result.reasons.empty() && chance_above(s.result.chi_square, free) < contradiction)
+    s.result.reasons.push_back(
+        fmt::format("the measurements contradict each other: chi square {:.1f}; the farthest off is {} {}, by "
+                    "{:.1f} standard errors",
+                    s.result.chi_square, worst->test, worst->result, std::abs(worst->deviation)));
+}
+
+void report_emulators(State& s) {
+  for (const ReadingReport& r : s.result.readings)
+    if (r.emulator_error > enough * r.error)
+      s.result.reasons.push_back(fmt::format(
+          "the emulator of {} {} is good to {:.3g}, more than a third of the measurement's error, {:.3g}",
+          r.test, r.result, r.emulator_error, r.error));
+  s.result.effective_points = effective_points(s.result.posterior);
+  if (s.result.effective_points < 12.0)
+    s.result.reasons.push_back(
+        fmt::format("the posterior is narrower than its quadrature resolves ({:.0f} points): narrow the ranges",
+                    s.result.effective_points));
+}
+
+void report_forecasts(State& s) {
+  s.result.forecasts.resize(s.lab.tests.size() - s.lab.measured);
+  for (const Emulated& e : s.emulated) {
+    if (is_measured(s, e)) continue;
+    ForecastReading forecast{reading_of(s, e).result, {}, 0.0, 0.0};
+    if (e.trained) {
+      auto predictions = e.predictions;
+      const double cells = s.discretisation[e.test][e.reading];
+      for (Prediction& p : predictions) p.variance += cells * cells;
+      forecast.value = mixture_quantile(s.result.posterior, predictions, 0.5);
+      forecast.low = mixture_quantile(s.result.posterior, predictions, 0.025);
+      forecast.high = mixture_quantile(s.result.posterior, predictions, 0.975);
+    }
+    s.result.forecasts[e.test - s.lab.measured].push_back(forecast);
+  }
+}
+
+void report(State& s) {
+  s.discretisation = discretisation_errors(s.lab, s.points[s.result.posterior.best], s.settings);
+  update_posterior(s);
+  report_parameters(s);
+  report_readings(s);
+  report_contradictions(s);
+  report_emulators(s);
+  report_forecasts(s);
+}
+
+State start(const Lab& lab, const Settings& settings) {
+  State s{lab, settings, quadrature_points(lab.unknowns.size()), {}, {}, {}};
+  for (std::size_t test = 0; test < lab.tests.size(); ++test) {
+    s.discretisation.emplace_back(lab.tests[test].readings.size(), 0.0);
+    for (std::size_t reading = 0; reading < lab.tests[test].readings.size(); ++reading)
+      s.emulated.push_back({test, reading, false, {}, {}, {}});
+  }
+  return s;
+}
+
+}  // namespace
+
+Calibration calibrate(const Lab& lab, const Settings& settings) {
+  const std::size_t n = lab.unknowns.size();
+  const std::size_t first = settings.first_trials ? settings.first_trials : 6 + 6 * n;
+  const std::size_t most = settings.most_trials ? settings.most_trials : 20 * n;
+  const std::size_t batch = std::max<std::size_t>(4, static_cast<std::size_t>(settings.jobs));
+  State s = start(lab, settings);
+  if (!run_more(s, study::unit_points(study::Method::latin_hypercube, first, n, 1))) return s.result;
+  bool settled = false;
+  while (s.result.trials.size() < most && !settled) {
+    const auto points = next_points(s, std::min(batch, most - s.result.trials.size()));
+    if (points.empty()) break;
+    if (!run_more(s, points)) return s.result;
+    settled = emulators_suffice(s);
+  }
+  report(s);
+  return s.result;
+}
+
+}  // namespace tremie::calibration

@@ -1,0 +1,211 @@
+#include "apparatus/calibration/lab.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "apparatus/registry/registry.hpp"
+#include "apparatus/scene/input_error.hpp"
+
+namespace tremie::calibration {
+namespace {
+
+using scene::Dimension;
+using scene::InputError;
+using scene::Node;
+
+/// A reading that may be measured: its key in LAB.toml and its name in summary.json.
+struct Known {
+  const char *apparatus, *key, *result;
+  std::optional<Dimension> dimension;  ///< none: a plain number
+  double factor;                       ///< from SI to the result's unit
+  bool logarithmic;
+};
+const Known known_readings[] = {
+    {"slump_flow", "spread", "spread_mm", Dimension::length, 1e3, false},
+    {"slump_flow", "t500", "t500_s", Dimension::time, 1.0, true},
+    {"slump_flow", "height", "height_mm", Dimension::length, 1e3, false},
+    {"l_box", "passing_ratio", "passing_ratio", {}, 1.0, false},
+    {"l_box", "h1", "h1_mm", Dimension::length, 1e3, false},
+    {"l_box", "h2", "h2_mm", Dimension::length, 1e3, false},
+    {"l_box", "t200", "t200_s", Dimension::time, 1.0, true},
+    {"l_box", "t400", "t400_s", Dimension::time, 1.0, true},
+    {"icar_vane", "torque_peak", "torque_peak_N_m", Dimension::torque, 1.0, false},
+    {"icar_vane", "torque_end", "torque_end_N_m", Dimension::torque, 1.0, false}};
+
+[[noreturn]] void complain(const Node& node, const std::string& key, const std::string& what) {
+  throw InputError(fmt::format("{}: {}: {}", scene::describe(node.origin), key, what));
+}
+
+const scene::Table& table_of(const Node& node, const std::string& key) {
+  const auto* table = std::get_if<scene::Table>(&node.value);
+  if (!table) complain(node, key, "must be a table");
+  return *table;
+}
+
+std::string text_of(const Node& node, const std::string& key) {
+  if (const auto* text = std::get_if<std::string>(&node.value)) return *text;
+  if (const auto* whole = std::get_if<std::int64_t>(&node.value)) return fmt::format("{}", *whole);
+  if (const auto* number = std::get_if<double>(&node.value)) return scene::write_number(*number);
+  if (const auto* truth = std::get_if<bool>(&node.value)) return *truth ? "true" : "false";
+  complain(node, key, "must be one value");
+}
+
+double quantity(const Node& node, const std::string& key, const Known& known) {
+  const auto text = std::get_if<std::string>(&node.value);
+  double value = 0.0;
+  if (known.dimension) {
+    if (!text) complain(node, key, "needs a unit, as a string: \"590 mm\", \"2.5 s\"");
+    try {
+      value = scene::parse_quantity(*text, *known.dimension) * known.factor;
+    } catch (const std::invalid_argument& error) {
+      complain(node, key, error.what());
+    }
+  } else if (text || std::holds_alternative<bool>(node.value)) {
+    complain(node, key, "must be a plain number");
+  } else {
+    value = std::stod(text_of(node, key));
+  }
+  if (!(value > 0.0)) complain(node, key, "must be greater than 0");
+  return value;
+}
+
+void read_measurement(const Node& table, const Known& known, Test& test) {
+  const std::string key = known.key;
+  const Node* value = scene::find(table, key);
+  const Node* error = scene::find(table, key + "_error");
+  if (!value && error) complain(*error, key + "_error", "there is no " + key);
+  if (!value) return;
+  if (!error)
+    complain(*value, key, fmt::format("needs its standard error: {}_error = \"…\"", key));
+  test.readings.push_back({key, known.result, quantity(*value, key, known),
+                           quantity(*error, key + "_error", known), known.logarithmic});
+}
+
+bool is_reading(const std::string& key, const std::string& apparatus) {
+  return std::any_of(std::begin(known_readings), std::end(known_readings), [&](const Known& k) {
+    return k.apparatus == apparatus && (key == k.key || key == std::string(k.key) + "_error");
+  });
+}
+
+std::string readings_text(const std::string& apparatus) {
+  std::string text;
+  for (const Known& known : known_readings)
+    if (known.apparatus == apparatus) text += (text.empty() ? "" : ", ") + std::string(known.key);
+  return text;
+}
+
+/// [[measured]] or [[forecast]]: readings, and keys of [test] or of another section by their dotted name.
+Test read_test(const Node& node, const std::string& label, bool measured) {
+  Test test{label, {}, {}, {}};
+  const Node* apparatus = scene::find(node, "apparatus");
+  if (!apparatus) complain(node, label, "missing key apparatus");
+  test.apparatus = text_of(*apparatus, "apparatus");
+  if (readings_text(test.apparatus).empty())
+    complain(*apparatus, "apparatus", "must be slump_flow, l_box or icar_vane");
+  for (const auto& [key, value] : table_of(node, label)) {
+    if (key == "apparatus" || is_reading(key, test.apparatus)) continue;
+    const std::string full = key.find('.') == std::string::npos ? "test." + key : key;
+    test.overrides.push_back(full + "=" + text_of(value, key));
+  }
+  for (const Known& known : known_readings) {
+    if (test.apparatus != known.apparatus) continue;
+    if (measured)
+      read_measurement(node, known, test);
+    else
+      test.readings.push_back({known.key, known.result, 0.0, 0.0, known.logarithmic});
+  }
+  if (test.readings.empty())
+    complain(node, label, "nothing is measured; allowed: " + readings_text(test.apparatus));
+  return test;
+}
+
+void read_tests(const Node& document, const char* name, Lab& lab) {
+  const Node* list = scene::find(document, name);
+  if (!list) return;
+  const auto* tests = std::get_if<scene::Array>(&list->value);
+  if (!tests) complain(*list, name, fmt::format("must be [[{}]]", name));
+  for (std::size_t i = 0; i < tests->size(); ++i)
+    lab.tests.push_back(
+        read_test((*tests)[i], fmt::format("{}[{}]", name, i), std::string(name) == "measured"));
+}
+
+/// Log scale where the range spans a factor of five or more.
+study::Scale scale_of(const Node& range) {
+  const auto* ends = std::get_if<scene::Array>(&range.value);
+  if (!ends || ends->size() != 2) return study::Scale::linear;
+  try {
+    const double low = std::stod(text_of((*ends)[0], "")), high = std::stod(text_of((*ends)[1], ""));
+    return low > 0.0 && high >= 5.0 * low ? study::Scale::log : study::Scale::linear;
+  } catch (const std::exception&) {
+    return study::Scale::linear;
+  }
+}
+
+/// The keys that the scene of the first test may have.
+scene::Schema schema_of(const Lab& lab, const scene::Table& unknown) {
+  std::vector<std::string> overrides = lab.known;
+  overrides.insert(overrides.end(), lab.tests.front().overrides.begin(), lab.tests.front().overrides.end());
+  for (const auto& [key, range] : unknown) {
+    const auto* ends = std::get_if<scene::Array>(&range.value);
+    if (!ends || ends->size() != 2) complain(range, key, "must be [low, high]");
+    overrides.push_back(key + "=" + text_of(ends->front(), key));
+  }
+  std::vector<scene::ApparatusKeys> keys;
+  for (const auto& apparatus : scene::all_apparatus()) keys.push_back(apparatus.keys);
+  const std::string text = fmt::format("apparatus = \"{}\"\n", lab.tests.front().apparatus);
+  return scene::load({lab.file, overrides, text}, keys).schema;
+}
+
+void read_known(const Node& document, Lab& lab) {
+  const Node* known = scene::find(document, "known");
+  if (!known) return;
+  for (const auto& [key, value] : table_of(*known, "known"))
+    lab.known.push_back(key + "=" + text_of(value, key));
+}
+
+void read_unknowns(const Node& document, Lab& lab) {
+  const Node* unknown = scene::find(document, "unknown");
+  if (!unknown) complain(document, "unknown", "missing table [unknown], with a range for each key");
+  const auto& table = table_of(*unknown, "unknown");
+  if (table.empty()) complain(*unknown, "unknown", "needs at least one key");
+  const auto schema = schema_of(lab, table);
+  for (const auto& [key, range] : table)
+    lab.unknowns.push_back(study::read_factor(key, range, true, scale_of(range), schema));
+}
+
+}  // namespace
+
+Lab read_lab(const std::filesystem::path& file) {
+  const Node document = scene::parse_file(file);
+  const std::vector<std::string> allowed{"measured", "unknown", "known", "forecast"};
+  for (const auto& [key, node] : table_of(document, file.string()))
+    if (std::find(allowed.begin(), allowed.end(), key) == allowed.end())
+      complain(node, key,
+               fmt::format("unknown key; allowed: {} (nearest: {})", fmt::join(allowed, ", "),
+                           scene::nearest(key, allowed)));
+  Lab lab;
+  lab.name = file.stem().string();
+  lab.file = file;
+  read_tests(document, "measured", lab);
+  lab.measured = lab.tests.size();
+  if (lab.measured == 0) complain(document, "measured", "needs at least one [[measured]]");
+  read_known(document, lab);
+  read_unknowns(document, lab);
+  read_tests(document, "forecast", lab);
+  // Every test's scene is read once, at the middle of the ranges, before anything is run.
+  for (const Test& test : lab.tests)
+    scene::read_text(fmt::format("apparatus = \"{}\"\n", test.apparatus), file.string(),
+                     overrides_at(lab, test, std::vector<double>(lab.unknowns.size(), 0.5)));
+  return lab;
+}
+
+std::vector<std::string> overrides_at(const Lab& lab, const Test& test, const std::vector<double>& shares) {
+  std::vector<std::string> overrides = lab.known;
+  overrides.insert(overrides.end(), test.overrides.begin(), test.overrides.end());
+  for (std::size_t i = 0; i < shares.size(); ++i)
+    overrides.push_back(lab.unknowns[i].key + "=" + study::level_at(lab.unknowns[i], shares[i]).text);
+  return overrides;
+}
+
+}  // namespace tremie::calibration

@@ -1,0 +1,205 @@
+// tremie calibrate LAB.toml: from measurements to the mix, with intervals.
+
+#include "apparatus/cli/study/command_calibrate.hpp"
+
+#include <fmt/format.h>
+#include <signal.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <atomic>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "apparatus/calibration/calibrate.hpp"
+#include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/program.hpp"
+#include "apparatus/report/rheometer_files.hpp"
+#include "apparatus/report/run_folder.hpp"
+#include "apparatus/scene/input_error.hpp"
+#include "libmpm/io/write_error.hpp"
+
+namespace tremie::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using calibration::Calibration;
+using calibration::Lab;
+
+struct Options {
+  std::string file, out;
+  int jobs = 0;
+  std::size_t runs = 0;
+  bool quiet = false, force = false;
+};
+
+std::atomic<bool> stop_requested{false};
+
+void stop_on_interrupt() {
+  struct sigaction action = {};
+  action.sa_handler = [](int) { stop_requested = true; };
+  action.sa_flags = SA_RESTART | SA_RESETHAND;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+Json parameters_json(const Calibration& c) {
+  Json json = Json::object();
+  for (const auto& p : c.parameters)
+    json[p.key] = {{"value", p.value}, {"ci95", {p.low, p.high}}, {"unit", p.unit}, {"told", p.told}};
+  return json;
+}
+
+Json forecasts_json(const Lab& lab, const Calibration& c) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < c.forecasts.size(); ++i) {
+    const auto& test = lab.tests[lab.measured + i];
+    Json json{{"apparatus", test.apparatus}, {"set", test.overrides}};
+    for (const auto& reading : c.forecasts[i])
+      json[reading.result] = reading.value
+                                 ? Json{{"value", *reading.value}, {"ci95", {reading.low, reading.high}}}
+                                 : Json(nullptr);
+    list.push_back(json);
+  }
+  return list;
+}
+
+Json readings_json(const Calibration& c) {
+  Json list = Json::array();
+  for (const auto& r : c.readings)
+    list.push_back({{"test", r.test},
+                    {"result", r.result},
+                    {"measured", r.measured},
+                    {"standard_error", r.error},
+                    {"best_fit", r.best_fit},
+                    {"deviation_standard_errors", r.deviation},
+                    {"emulator_error", r.emulator_error},
+                    {"discretisation_error", r.discretisation_error}});
+  return list;
+}
+
+/// By reading, in the reading's unit; `over_measurement_error` is the largest of their ratios.
+Json emulator_json(const Calibration& c) {
+  Json json = Json::object();
+  double worst = 0.0;
+  for (const auto& r : c.readings) {
+    json[r.test + "." + r.result] = r.emulator_error;
+    worst = std::max(worst, r.emulator_error / r.error);
+  }
+  json["over_measurement_error"] = worst;
+  return json;
+}
+
+std::string trials_csv(const Lab& lab, const Calibration& c) {
+  std::string csv = "trial";
+  for (const auto& unknown : lab.unknowns) csv += fmt::format(",{}", study::column_of(unknown));
+  for (const auto& test : lab.tests)
+    for (const auto& reading : test.readings) csv += fmt::format(",{}.{}", test.label, reading.result);
+  csv += "\n";
+  for (std::size_t i = 0; i < c.trials.size(); ++i) {
+    csv += fmt::format("{}", i);
+    for (std::size_t j = 0; j < lab.unknowns.size(); ++j)
+      csv += fmt::format(",{:.8g}", study::level_at(lab.unknowns[j], c.trials[i].point[j]).number);
+    for (const auto& row : c.trials[i].rows)
+      for (const auto& reading : row.readings) {
+        const auto* number = std::get_if<double>(&reading);
+        csv += number ? fmt::format(",{:.8g}", *number) : ",";
+      }
+    csv += "\n";
+  }
+  return csv;
+}
+
+/// The first test's scene with the calibrated values: to run, and to be named by `mix = "mix.toml"`.
+std::string mix_toml(const Lab& lab, const Calibration& c) {
+  std::vector<double> shares;
+  for (std::size_t i = 0; i < lab.unknowns.size(); ++i)
+    shares.push_back(study::share_of(lab.unknowns[i], c.parameters[i].value));
+  const auto& test = lab.tests.front();
+  return scene::read_text(fmt::format("apparatus = \"{}\"\n", test.apparatus), lab.file.string(),
+                          calibration::overrides_at(lab, test, shares))
+      .resolved;
+}
+
+Json results_json(const Lab& lab, const Calibration& c) {
+  double cpu = 0.0;
+  for (const auto& trial : c.trials)
+    for (const auto& row : trial.rows) cpu += row.cpu;
+  return {{"parameters", parameters_json(c)}, {"forecast", forecasts_json(lab, c)},
+          {"emulator_error", emulator_json(c)}, {"readings", readings_json(c)},
+          {"chi_square", c.chi_square},         {"posterior_points", c.effective_points},
+          {"runs", c.trials.size() * lab.tests.size()}, {"runs_cpu_s", cpu}};
+}
+
+void print_result(const Lab& lab, const Calibration& c) {
+  for (const auto& p : c.parameters)
+    fmt::print("{:<36} {:.4g} {} [{:.4g}, {:.4g}]  {}\n", p.key, p.value, p.unit, p.low, p.high, p.told);
+  for (const auto& r : c.readings)
+    fmt::print("{:<36} measured {:.4g}, best fit {:.4g}, emulator ± {:.2g}\n", r.test + " " + r.result,
+               r.measured, r.best_fit, r.emulator_error);
+  for (std::size_t i = 0; i < c.forecasts.size(); ++i)
+    for (const auto& f : c.forecasts[i])
+      if (f.value)
+        fmt::print("{:<36} {:.4g} [{:.4g}, {:.4g}]\n", lab.tests[lab.measured + i].label + " " + f.result,
+                   *f.value, f.low, f.high);
+}
+
+void write_result(const Lab& lab, const Calibration& c, const Stopwatch& watch,
+                  const std::filesystem::path& folder) {
+  scene::Outcome outcome;
+  outcome.apparatus = "calibrate";
+  outcome.checks.reasons = c.reasons;
+  watch.stop(outcome.cost);
+  Json summary = summary_of(outcome);
+  summary["results"] = results_json(lab, c);
+  io::write_text(folder / "mix.toml", mix_toml(lab, c));
+  io::write_text(folder / "trials.csv", trials_csv(lab, c));
+  io::write_text(folder / "summary.json", summary.dump(2) + "\n");
+}
+
+int run(const Options& options) {
+  const Stopwatch watch;
+  const Lab lab = calibration::read_lab(options.file);
+  report::RunFolder folder(options.out.empty() ? "runs/" + lab.name : options.out, options.force);
+  stop_on_interrupt();
+  calibration::Settings settings;
+  settings.jobs = options.jobs > 0 ? options.jobs : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  settings.most_trials = options.runs;
+  settings.stop = &stop_requested;
+  if (!options.quiet)
+    settings.say = [](const std::string& text) {
+      fmt::print("{}\n", text);
+      std::fflush(stdout);
+    };
+  const Calibration result = calibration::calibrate(lab, settings);
+  if (result.interrupted) return interrupted;
+  write_result(lab, result, watch, folder.staging());
+  folder.publish();
+  for (const auto& reason : result.reasons) fmt::print(stderr, "not to be trusted: {}\n", reason);
+  if (!options.quiet) {
+    print_result(lab, result);
+    fmt::print("{:<36} {}\n", "written to", folder.target().string());
+  }
+  return result.reasons.empty() ? done : not_to_be_trusted;
+}
+
+}  // namespace
+
+void add_command_calibrate(CLI::App& app, int& exit_code) {
+  auto o = std::make_shared<Options>();
+  auto* command = app.add_subcommand(calibrate_command.name, calibrate_command.description);
+  command->add_option("lab", o->file, "Laboratory file (TOML): [[measured]], [unknown], [known], [[forecast]]")
+      ->required();
+  command->add_option("--out", o->out, "Folder for the result (default: runs/<file's name>)");
+  command->add_option("--jobs", o->jobs, "Runs at a time, one thread each (default: the machine's cores)")
+      ->check(CLI::Range(1, 4096));
+  command->add_option("--runs", o->runs, "Runs of each test at most (default: 20 for each unknown)")
+      ->check(CLI::Range(10, 100000));
+  command->add_flag("--quiet", o->quiet, "Print nothing but errors");
+  command->add_flag("--force", o->force, "Replace an earlier result in the folder");
+  command->callback([o, &exit_code] { exit_code = run(*o); });
+}
+
+}  // namespace tremie::cli
