@@ -1,0 +1,161 @@
+#include "apparatus/estimate/estimate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "apparatus/estimate/closed_forms.hpp"
+
+namespace tremie::estimate {
+namespace {
+
+constexpr std::size_t side = 240;     ///< quadrature points in each direction
+constexpr double edge_weight = 0.05;  ///< of the outermost hundredth of the table: the answer lies beyond it
+constexpr double far_off = 3.0;       ///< standard errors of the best fit: the table has no such mix
+constexpr double least_density = 1800.0, most_density = 3000.0;  ///< what the table's scaling was tried for
+
+struct Axis {
+  double low, high;
+  double at(double share) const { return low * std::pow(high / low, share); }
+};
+
+struct Grid {
+  Axis tau_0, mu;
+};
+
+Grid grid_of(const SlumpTable& table, double density) {
+  const double scale = density / table.density;
+  return {{scale * table.tau_0.front(), scale * table.tau_0.back()},
+          {scale * table.mu.front(), scale * table.mu.back()}};
+}
+
+/// Minus twice the logarithm of the likelihood, its constant left out.
+double misfit(const SlumpTable& table, const Measured& m, double tau_0, double mu) {
+  const TableReading reading = interpolate(table, tau_0, mu, m.density);
+  const double spread_error = std::hypot(m.spread_error, table_spread_error);
+  double sum = std::pow((m.spread - reading.spread) / spread_error, 2);
+  if (!m.t500) return sum;
+  if (!reading.t500) return INFINITY;
+  const double t500_error = std::hypot(m.t500_error, table_t500_error * *reading.t500);
+  return sum + std::pow((*m.t500 - *reading.t500) / t500_error, 2) + 2.0 * std::log(t500_error / m.t500_error);
+}
+
+/// Weights over shares of one axis.
+double quantile(const std::vector<double>& weights, double q) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    if (sum + weights[i] >= q)
+      return (static_cast<double>(i) + (q - sum) / weights[i]) / static_cast<double>(weights.size());
+    sum += weights[i];
+  }
+  return 1.0;
+}
+
+struct Marginals {
+  std::vector<double> tau_0 = std::vector<double>(side, 0.0), mu = std::vector<double>(side, 0.0);
+  double least = INFINITY;               ///< misfit of the best point
+  double best_tau_0 = 0.0, best_mu = 0.0;  ///< shares
+};
+
+Marginals marginals_of(const SlumpTable& table, const Measured& m, const Grid& grid) {
+  Marginals out;
+  std::vector<double> misfits(side * side);
+  const auto share = [](std::size_t i) { return (static_cast<double>(i) + 0.5) / side; };
+  for (std::size_t i = 0; i < side; ++i)
+    for (std::size_t j = 0; j < side; ++j) {
+      const double f = misfit(table, m, grid.tau_0.at(share(i)), grid.mu.at(share(j)));
+      misfits[i * side + j] = f;
+      if (f < out.least) {
+        out.least = f;
+        out.best_tau_0 = share(i);
+        out.best_mu = share(j);
+      }
+    }
+  if (!std::isfinite(out.least)) return out;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < side; ++i)
+    for (std::size_t j = 0; j < side; ++j) {
+      const double w = std::exp(-0.5 * (misfits[i * side + j] - out.least));
+      out.tau_0[i] += w;
+      out.mu[j] += w;
+      sum += w;
+    }
+  for (double& w : out.tau_0) w /= sum;
+  for (double& w : out.mu) w /= sum;
+  return out;
+}
+
+/// Ever finer grids about the best point.
+void refine(const SlumpTable& table, const Measured& m, const Grid& grid, Marginals& at) {
+  for (double step = 0.5 / side; step > 1e-6; step *= 0.5)
+    for (int i = -2; i <= 2; ++i)
+      for (int j = -2; j <= 2; ++j) {
+        const double x = std::clamp(at.best_tau_0 + i * step, 0.0, 1.0);
+        const double y = std::clamp(at.best_mu + j * step, 0.0, 1.0);
+        const double f = misfit(table, m, grid.tau_0.at(x), grid.mu.at(y));
+        if (f < at.least) {
+          at.least = f;
+          at.best_tau_0 = x;
+          at.best_mu = y;
+        }
+      }
+}
+
+Interval interval_of(const std::vector<double>& weights, const Axis& axis, std::optional<double> best) {
+  return {axis.at(best ? *best : quantile(weights, 0.5)), axis.at(quantile(weights, 0.025)),
+          axis.at(quantile(weights, 0.975))};
+}
+
+bool beyond(const std::vector<double>& weights) {
+  const std::size_t outermost = std::max<std::size_t>(1, side / 100);
+  double low = 0.0, high = 0.0;
+  for (std::size_t i = 0; i < outermost; ++i) {
+    low += weights[i];
+    high += weights[side - 1 - i];
+  }
+  return std::max(low, high) > edge_weight;
+}
+
+void check(const SlumpTable& table, const Measured& m, const Grid& grid, const Marginals& at, Estimate& e) {
+  const auto [low, high] = std::minmax_element(table.spread.begin(), table.spread.end());
+  if (m.spread < *low || m.spread > *high)
+    e.reasons.push_back(fmt::format("a spread of {:.0f} mm lies outside of the table, {:.0f} to {:.0f} mm",
+                                    1e3 * m.spread, 1e3 * *low, 1e3 * *high));
+  else if (at.least > far_off * far_off)
+    e.reasons.push_back(fmt::format(
+        "no mix of the table, {:.3g} to {:.3g} Pa and {:.3g} to {:.3g} Pa.s, has this spread and this t500: "
+        "the nearest is {:.1f} standard errors off",
+        grid.tau_0.low, grid.tau_0.high, grid.mu.low, grid.mu.high, std::sqrt(at.least)));
+  else if (beyond(at.tau_0))
+    e.reasons.push_back(fmt::format("the yield stress may lie outside of the table, {:.3g} to {:.3g} Pa",
+                                    grid.tau_0.low, grid.tau_0.high));
+  else if (m.t500 && beyond(at.mu))
+    e.reasons.push_back(fmt::format("the viscosity may lie outside of the table, {:.3g} to {:.3g} Pa.s",
+                                    grid.mu.low, grid.mu.high));
+  if (m.density < least_density || m.density > most_density)
+    e.reasons.push_back(fmt::format("a density of {:.0f} kg/m3 lies outside of what the table serves, {:.0f} to "
+                                    "{:.0f} kg/m3",
+                                    m.density, least_density, most_density));
+}
+
+}  // namespace
+
+Estimate estimate(const SlumpTable& table, const Measured& m) {
+  Estimate e;
+  e.tau_0_thin_layer = thin_layer_yield_stress(m.spread, m.density);
+  e.tau_0_plug = plug_yield_stress(m.spread, m.density);
+  const Grid grid = grid_of(table, m.density);
+  Marginals at = marginals_of(table, m, grid);
+  if (m.t500 && std::isfinite(at.least)) refine(table, m, grid, at);
+  check(table, m, grid, at, e);
+  if (!std::isfinite(at.least)) {
+    e.reasons.push_back("no mix of the table reaches 500 mm and has this spread");
+    return e;
+  }
+  e.tau_0 = interval_of(at.tau_0, grid.tau_0, m.t500 ? std::optional(at.best_tau_0) : std::nullopt);
+  if (m.t500) e.mu = interval_of(at.mu, grid.mu, at.best_mu);
+  return e;
+}
+
+}  // namespace tremie::estimate

@@ -1,0 +1,77 @@
+#include "apparatus/estimate/slump_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+namespace tremie::estimate {
+namespace {
+
+double number_or_nan(const std::string& field) {
+  return field.empty() ? std::numeric_limits<double>::quiet_NaN() : std::stod(field);
+}
+
+/// Appends what is larger than all before it; false where `value` goes back to the first.
+void add_node(std::vector<double>& nodes, double value) {
+  if (nodes.empty() || value > nodes.back()) nodes.push_back(value);
+}
+
+struct Place {
+  std::size_t i;
+  double t;
+};
+
+Place place_in(const std::vector<double>& nodes, double value) {
+  const auto above = std::upper_bound(nodes.begin(), nodes.end(), value);
+  const auto last = static_cast<std::ptrdiff_t>(nodes.size()) - 2;
+  const auto i = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(above - nodes.begin() - 1, 0, last));
+  const double t = std::log(value / nodes[i]) / std::log(nodes[i + 1] / nodes[i]);
+  return {i, std::clamp(t, 0.0, 1.0)};
+}
+
+}  // namespace
+
+SlumpTable read_slump_table(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  if (!stream) throw std::runtime_error("cannot read " + file.string());
+  SlumpTable table;
+  std::string line;
+  while (std::getline(stream, line)) {
+    if (line.empty() || line[0] == '#' || line.starts_with("yield_stress")) continue;
+    std::istringstream fields(line + ",");
+    std::string tau_0, mu, spread, t500;
+    std::getline(fields, tau_0, ',');
+    std::getline(fields, mu, ',');
+    std::getline(fields, spread, ',');
+    std::getline(fields, t500, ',');
+    add_node(table.tau_0, std::stod(tau_0));
+    add_node(table.mu, std::stod(mu));
+    table.spread.push_back(1e-3 * number_or_nan(spread));
+    table.t500.push_back(number_or_nan(t500));
+  }
+  if (table.tau_0.size() < 2 || table.mu.size() < 2 ||
+      table.spread.size() != table.tau_0.size() * table.mu.size())
+    throw std::runtime_error(file.string() + " is no full grid");
+  return table;
+}
+
+TableReading interpolate(const SlumpTable& table, double tau_0, double mu, double density) {
+  const double scale = table.density / density;
+  const Place x = place_in(table.tau_0, tau_0 * scale), y = place_in(table.mu, mu * scale);
+  const std::size_t n = table.mu.size(), at = x.i * n + y.i;
+  const double w[] = {(1.0 - x.t) * (1.0 - y.t), (1.0 - x.t) * y.t, x.t * (1.0 - y.t), x.t * y.t};
+  const std::size_t corner[] = {at, at + 1, at + n, at + n + 1};
+  TableReading reading;
+  double log_t500 = 0.0;
+  for (int k = 0; k < 4; ++k) {
+    reading.spread += w[k] * table.spread[corner[k]];
+    log_t500 += w[k] * std::log(table.t500[corner[k]]);
+  }
+  if (std::isfinite(log_t500)) reading.t500 = std::exp(log_t500);
+  return reading;
+}
+
+}  // namespace tremie::estimate
