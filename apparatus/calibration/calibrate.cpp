@@ -10,8 +10,8 @@
 namespace tremie::calibration {
 namespace {
 
-constexpr double enough = 1.0 / 3.0;  ///< of the measurement's error: what the emulator's may be
-constexpr double far_off = 3.0;       ///< standard errors at which a measurement contradicts the others
+constexpr double enough = 1.0 / 3.0;    ///< of the measurement's error: what the emulator's may be
+constexpr double far_off = 3.0;         ///< standard errors at which a measurement contradicts the others
 constexpr double contradiction = 0.01;  ///< chance of a chi square so large that calls for a reason
 
 /// A reading's emulator, and its predictions at the posterior's points.
@@ -212,13 +212,13 @@ void report_contradictions(State& s) {
     s.result.reasons.push_back("no measurement could be emulated");
     return;
   }
-  const double free = std::max(1.0, static_cast<double>(s.result.readings.size()) -
-                                        static_cast<double>(s.lab.unknowns.size()));
+  const double free = std::max(
+      1.0, static_cast<double>(s.result.readings.size()) - static_cast<double>(s.lab.unknowns.size()));
   if (s.result.reasons.empty() && chance_above(s.result.chi_square, free) < contradiction)
-    s.result.reasons.push_back(
-        fmt::format("the measurements contradict each other: chi square {:.1f}; the farthest off is {} {}, by "
-                    "{:.1f} standard errors",
-                    s.result.chi_square, worst->test, worst->result, std::abs(worst->deviation)));
+    s.result.reasons.push_back(fmt::format(
+        "the measurements contradict each other: chi square {:.1f}; the farthest off is {} {}, by "
+        "{:.1f} standard errors",
+        s.result.chi_square, worst->test, worst->result, std::abs(worst->deviation)));
 }
 
 void report_emulators(State& s) {
@@ -229,9 +229,9 @@ void report_emulators(State& s) {
           r.test, r.result, r.emulator_error, r.error));
   s.result.effective_points = effective_points(s.result.posterior);
   if (s.result.effective_points < 12.0)
-    s.result.reasons.push_back(
-        fmt::format("the posterior is narrower than its quadrature resolves ({:.0f} points): narrow the ranges",
-                    s.result.effective_points));
+    s.result.reasons.push_back(fmt::format(
+        "the posterior is narrower than its quadrature resolves ({:.0f} points): narrow the ranges",
+        s.result.effective_points));
 }
 
 void report_forecasts(State& s) {

@@ -57,7 +57,7 @@ struct Calibration {
 
 struct Settings {
   int jobs = 1;
-  std::size_t first_trials = 0, most_trials = 0;  ///< 0: by the number of unknowns
+  std::size_t first_trials = 0, most_trials = 0;     ///< 0: by the number of unknowns
   std::function<void(const std::string&)> say = {};  ///< progress
   const std::atomic<bool>* stop = nullptr;
 };

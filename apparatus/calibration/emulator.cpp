@@ -25,7 +25,8 @@ OT::Sample sample_of(const std::vector<Point>& points) {
 
 /// Dubrule's formula: the residuals of leaving one out from the inverse of [[K, 1], [1', 0]], without training
 /// again.
-std::vector<double> leave_one_out(const OT::CovarianceModel& model, const OT::Sample& x, const OT::Sample& y) {
+std::vector<double> leave_one_out(const OT::CovarianceModel& model, const OT::Sample& x,
+                                  const OT::Sample& y) {
   const auto n = x.getSize();
   const OT::CovarianceMatrix k = model.discretize(x);
   OT::SquareMatrix bordered(n + 1);

@@ -76,8 +76,7 @@ void read_measurement(const Node& table, const Known& known, Test& test) {
   const Node* error = scene::find(table, key + "_error");
   if (!value && error) complain(*error, key + "_error", "there is no " + key);
   if (!value) return;
-  if (!error)
-    complain(*value, key, fmt::format("needs its standard error: {}_error = \"…\"", key));
+  if (!error) complain(*value, key, fmt::format("needs its standard error: {}_error = \"…\"", key));
   test.readings.push_back({key, known.result, quantity(*value, key, known),
                            quantity(*error, key + "_error", known), known.logarithmic});
 }

@@ -12,8 +12,8 @@ namespace tremie::calibration {
 
 /// One number read off a test.
 struct Measurement {
-  std::string key;     ///< "spread"
-  std::string result;  ///< "spread_mm", its name in summary.json
+  std::string key;                  ///< "spread"
+  std::string result;               ///< "spread_mm", its name in summary.json
   double value = 0.0, error = 0.0;  ///< in the unit of `result`; one standard error
   bool logarithmic = false;         ///< emulated by its logarithm: times
 };

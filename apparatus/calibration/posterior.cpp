@@ -77,7 +77,8 @@ double mixture_quantile(const Posterior& posterior, const std::vector<Prediction
     for (std::size_t i = 0; i < predictions.size(); ++i) {
       if (posterior.weights[i] < 1e-9) continue;
       const double deviation = std::sqrt(std::max(predictions[i].variance, 1e-18));
-      sum += posterior.weights[i] * 0.5 * std::erfc((predictions[i].mean - value) / (deviation * std::sqrt(2.0)));
+      sum += posterior.weights[i] * 0.5 *
+             std::erfc((predictions[i].mean - value) / (deviation * std::sqrt(2.0)));
     }
     return sum;
   };

@@ -52,8 +52,7 @@ bool run_trials(const Lab& lab, const std::vector<Point>& points, const Settings
     const Test& test = lab.tests[item % tests];
     try {
       return study::row_json(study::run_scene([&] { return scene_at(lab, test, points[item / tests]); },
-                                              results_of(test), item,
-                                              lab.file.string() + ": " + test.label));
+                                              results_of(test), item, lab.file.string() + ": " + test.label));
     } catch (const scene::InputError& error) {
       return mend_mark + std::string(error.what());
     }

@@ -26,7 +26,8 @@ double volume(double l, double R) {
 }  // namespace
 
 double thin_layer_yield_stress(double spread, double density) {
-  return 225.0 * density * gravity * cone_volume * cone_volume / (128.0 * pi * pi * std::pow(0.5 * spread, 5));
+  return 225.0 * density * gravity * cone_volume * cone_volume /
+         (128.0 * pi * pi * std::pow(0.5 * spread, 5));
 }
 
 double plug_yield_stress(double spread, double density) {

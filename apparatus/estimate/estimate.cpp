@@ -38,7 +38,8 @@ double misfit(const SlumpTable& table, const Measured& m, double tau_0, double m
   if (!m.t500) return sum;
   if (!reading.t500) return INFINITY;
   const double t500_error = std::hypot(m.t500_error, table_t500_error * *reading.t500);
-  return sum + std::pow((*m.t500 - *reading.t500) / t500_error, 2) + 2.0 * std::log(t500_error / m.t500_error);
+  return sum + std::pow((*m.t500 - *reading.t500) / t500_error, 2) +
+         2.0 * std::log(t500_error / m.t500_error);
 }
 
 /// Weights over shares of one axis.
@@ -54,7 +55,7 @@ double quantile(const std::vector<double>& weights, double q) {
 
 struct Marginals {
   std::vector<double> tau_0 = std::vector<double>(side, 0.0), mu = std::vector<double>(side, 0.0);
-  double least = INFINITY;               ///< misfit of the best point
+  double least = INFINITY;                 ///< misfit of the best point
   double best_tau_0 = 0.0, best_mu = 0.0;  ///< shares
 };
 
@@ -134,9 +135,10 @@ void check(const SlumpTable& table, const Measured& m, const Grid& grid, const M
     e.reasons.push_back(fmt::format("the viscosity may lie outside of the table, {:.3g} to {:.3g} Pa.s",
                                     grid.mu.low, grid.mu.high));
   if (m.density < least_density || m.density > most_density)
-    e.reasons.push_back(fmt::format("a density of {:.0f} kg/m3 lies outside of what the table serves, {:.0f} to "
-                                    "{:.0f} kg/m3",
-                                    m.density, least_density, most_density));
+    e.reasons.push_back(
+        fmt::format("a density of {:.0f} kg/m3 lies outside of what the table serves, {:.0f} to "
+                    "{:.0f} kg/m3",
+                    m.density, least_density, most_density));
 }
 
 }  // namespace
@@ -149,6 +151,8 @@ Estimate estimate(const SlumpTable& table, const Measured& m) {
   Marginals at = marginals_of(table, m, grid);
   if (m.t500 && std::isfinite(at.least)) refine(table, m, grid, at);
   check(table, m, grid, at, e);
+  const auto [low, high] = std::minmax_element(table.spread.begin(), table.spread.end());
+  if (m.spread < *low || m.spread > *high) return e;
   if (!std::isfinite(at.least)) {
     e.reasons.push_back("no mix of the table reaches 500 mm and has this spread");
     return e;

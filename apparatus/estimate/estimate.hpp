@@ -13,7 +13,7 @@ namespace tremie::estimate {
 /// SI; errors are one standard error.
 struct Measured {
   double spread = 0.0, spread_error = 0.015;
-  std::optional<double> t500;
+  std::optional<double> t500 = {};
   double t500_error = 0.2;
   double density = 2400.0;
 };

@@ -85,7 +85,8 @@ void read_design(const Node& document, Definition& study) {
   const Node* design = scene::find(document, "design");
   if (!design) complain(document, "design", "missing table [design], with method and runs");
   allow_only(*design, "design", {"method", "runs", "levels", "seed"});
-  const std::string method = choice_at(*design, "method", "latin_hypercube", {"grid", "latin_hypercube", "sobol"});
+  const std::string method =
+      choice_at(*design, "method", "latin_hypercube", {"grid", "latin_hypercube", "sobol"});
   study.method = method == "grid"    ? Method::grid
                  : method == "sobol" ? Method::sobol
                                      : Method::latin_hypercube;

@@ -54,8 +54,7 @@ Design make_design(const Definition& study) {
 
 std::vector<std::string> overrides_of(const Definition& study, const std::vector<Level>& row) {
   std::vector<std::string> overrides;
-  for (std::size_t i = 0; i < row.size(); ++i)
-    overrides.push_back(study.factors[i].key + "=" + row[i].text);
+  for (std::size_t i = 0; i < row.size(); ++i) overrides.push_back(study.factors[i].key + "=" + row[i].text);
   return overrides;
 }
 

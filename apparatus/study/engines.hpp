@@ -12,10 +12,10 @@ namespace tremie::study {
 enum class Engine { slurm, snakemake, parallel };
 
 struct EngineScript {
-  std::filesystem::path file;         ///< in the study's folder
+  std::filesystem::path file;  ///< in the study's folder
   std::string text;
-  std::vector<std::string> start;     ///< program and arguments that run it
-  std::vector<std::string> collect;   ///< program and arguments, where the script does not collect by itself
+  std::vector<std::string> start;    ///< program and arguments that run it
+  std::vector<std::string> collect;  ///< program and arguments, where the script does not collect by itself
 };
 
 /// `program` and `study_file` as absolute paths, which every machine must see, as it must see `folder`.

@@ -60,18 +60,18 @@ double number_of(const scene::Node& node, const std::string& key, const Key& abo
   else
     complain(node, key, "must be a number, or a quantity as a string");
   if (about.kind == Kind::quantity)
-    complain(node, key,
-             fmt::format("{0} is a bare number; write it with a unit: \"{1}\" (units: {2})",
-                         scene::write_number(number), text_of(number, about),
-                         scene::units_text(about.dimension)));
+    complain(
+        node, key,
+        fmt::format("{0} is a bare number; write it with a unit: \"{1}\" (units: {2})",
+                    scene::write_number(number), text_of(number, about), scene::units_text(about.dimension)));
   return number;
 }
 
 void check_range(const scene::Node& node, const std::string& key, const Key& about, double number) {
   if (!std::isfinite(number) || !scene::contains(about.range, number))
-    complain(node, key,
-             fmt::format("{} is out of range; it must be {}", text_of(number, about),
-                         scene::range_text(about)));
+    complain(
+        node, key,
+        fmt::format("{} is out of range; it must be {}", text_of(number, about), scene::range_text(about)));
 }
 
 bool is_word(const Key& about, const scene::Node& node) {

@@ -117,9 +117,8 @@ MainEffect main_effect(const Factor& factor, std::size_t i, const OT::Function& 
   MainEffect effect;
   const std::size_t points = factor.values.empty() ? effect_points : factor.values.size();
   for (std::size_t k = 0; k < points; ++k) {
-    const double at = factor.values.empty()
-                          ? static_cast<double>(k) / static_cast<double>(points - 1)
-                          : (static_cast<double>(k) + 0.5) / static_cast<double>(points);
+    const double at = factor.values.empty() ? static_cast<double>(k) / static_cast<double>(points - 1)
+                                            : (static_cast<double>(k) + 0.5) / static_cast<double>(points);
     OT::Sample moved = x;
     for (std::size_t j = 0; j < moved.getSize(); ++j) moved(j, i) = at;
     effect.at.push_back(level_at(factor, at).number);

@@ -24,10 +24,10 @@ struct MainEffect {
 
 struct ResultIndices {
   std::string result;
-  std::size_t rows = 0;                 ///< trusted rows with a number
-  double explained = 0.0;               ///< share of the variance that the chaos predicts of left-out rows
-  std::vector<SobolIndex> indices;      ///< a factor each
-  std::vector<MainEffect> main_effects; ///< a factor each
+  std::size_t rows = 0;                  ///< trusted rows with a number
+  double explained = 0.0;                ///< share of the variance that the chaos predicts of left-out rows
+  std::vector<SobolIndex> indices;       ///< a factor each
+  std::vector<MainEffect> main_effects;  ///< a factor each
 };
 
 /// For each result with enough rows: at least 10, and 3 a factor. `note` says what is left out, and why.

@@ -72,9 +72,8 @@ void Journal::read(const std::string& fingerprint, std::size_t results) {
         path_.string()));
   while (good < text.size()) {
     const auto end = text.find('\n', good);
-    const auto row = end == std::string::npos
-                         ? std::nullopt
-                         : row_from_json(text.substr(good, end + 1 - good), results);
+    const auto row =
+        end == std::string::npos ? std::nullopt : row_from_json(text.substr(good, end + 1 - good), results);
     if (!row) break;
     rows_.push_back(*row);
     good = end + 1;

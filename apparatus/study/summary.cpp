@@ -19,9 +19,8 @@ using Json = nlohmann::ordered_json;
 constexpr double most_doubtful = 0.1;  ///< share of the rows
 
 std::size_t count(const Collected& collected, int exit_code) {
-  return static_cast<std::size_t>(
-      std::count_if(collected.rows.begin(), collected.rows.end(),
-                    [&](const Row& row) { return row.exit_code == exit_code; }));
+  return static_cast<std::size_t>(std::count_if(collected.rows.begin(), collected.rows.end(),
+                                                [&](const Row& row) { return row.exit_code == exit_code; }));
 }
 
 std::string list_of(const std::vector<std::size_t>& rows) {
@@ -63,11 +62,12 @@ Json json_of(const Definition& study, const ResultIndices& one) {
     const MainEffect& effect = one.main_effects[i];
     Json at = Json::array();
     for (const double x : effect.at) at.push_back(std::isfinite(x) ? Json(x) : Json(nullptr));
-    json["factors"][study.factors[i].key] = {{"first", index.first},
-                                             {"first_error", index.first_error},
-                                             {"total", index.total},
-                                             {"total_error", index.total_error},
-                                             {"main_effect", {{"unit", unit_of(study.factors[i])}, {"at", at}, {"mean", effect.mean}}}};
+    json["factors"][study.factors[i].key] = {
+        {"first", index.first},
+        {"first_error", index.first_error},
+        {"total", index.total},
+        {"total_error", index.total_error},
+        {"main_effect", {{"unit", unit_of(study.factors[i])}, {"at", at}, {"mean", effect.mean}}}};
   }
   return json;
 }
@@ -75,7 +75,8 @@ Json json_of(const Definition& study, const ResultIndices& one) {
 Json sobol_json(const Definition& study, const Design& design, const Collected& collected) {
   std::string note;
   Json json = Json::object();
-  for (const auto& one : sobol_indices(study, design, collected, note)) json[one.result] = json_of(study, one);
+  for (const auto& one : sobol_indices(study, design, collected, note))
+    json[one.result] = json_of(study, one);
   if (!note.empty()) json["note"] = note;
   return json;
 }

@@ -1,10 +1,10 @@
+#include <openturns/ComposedDistribution.hxx>
 #include <openturns/LHSExperiment.hxx>
 #include <openturns/LowDiscrepancyExperiment.hxx>
 #include <openturns/OTBase.hxx>
 #include <openturns/RandomGenerator.hxx>
 #include <openturns/SobolSequence.hxx>
 #include <openturns/Uniform.hxx>
-#include <openturns/ComposedDistribution.hxx>
 
 #include "apparatus/study/design.hpp"
 

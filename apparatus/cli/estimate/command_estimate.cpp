@@ -38,8 +38,7 @@ std::optional<double> quantity(const char* option, const std::string& text, Dime
 estimate::Measured measured_of(const Options& o) {
   estimate::Measured m;
   m.spread = *quantity("--spread", o.spread, Dimension::length);
-  if (m.spread <= 0.2)
-    throw scene::InputError("--spread: must be more than the cone's 200 mm at its bottom");
+  if (m.spread <= 0.2) throw scene::InputError("--spread: must be more than the cone's 200 mm at its bottom");
   m.t500 = quantity("--t500", o.t500, Dimension::time);
   m.density = quantity("--density", o.density, Dimension::density).value_or(m.density);
   m.spread_error = quantity("--spread-error", o.spread_error, Dimension::length).value_or(m.spread_error);
@@ -54,7 +53,8 @@ estimate::SlumpTable table() {
     std::error_code error;
     if (std::filesystem::is_regular_file(file, error)) return estimate::read_slump_table(file);
   }
-  throw std::runtime_error("reference_data/slump_flow_table/table.csv is not there ($TREMIE_DATA names its folder)");
+  throw std::runtime_error(
+      "reference_data/slump_flow_table/table.csv is not there ($TREMIE_DATA names its folder)");
 }
 
 Json json_of(const std::optional<estimate::Interval>& i) {

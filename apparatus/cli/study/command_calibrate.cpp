@@ -127,10 +127,14 @@ Json results_json(const Lab& lab, const Calibration& c) {
   double cpu = 0.0;
   for (const auto& trial : c.trials)
     for (const auto& row : trial.rows) cpu += row.cpu;
-  return {{"parameters", parameters_json(c)}, {"forecast", forecasts_json(lab, c)},
-          {"emulator_error", emulator_json(c)}, {"readings", readings_json(c)},
-          {"chi_square", c.chi_square},         {"posterior_points", c.effective_points},
-          {"runs", c.trials.size() * lab.tests.size()}, {"runs_cpu_s", cpu}};
+  return {{"parameters", parameters_json(c)},
+          {"forecast", forecasts_json(lab, c)},
+          {"emulator_error", emulator_json(c)},
+          {"readings", readings_json(c)},
+          {"chi_square", c.chi_square},
+          {"posterior_points", c.effective_points},
+          {"runs", c.trials.size() * lab.tests.size()},
+          {"runs_cpu_s", cpu}};
 }
 
 void print_result(const Lab& lab, const Calibration& c) {
@@ -165,7 +169,8 @@ int run(const Options& options) {
   report::RunFolder folder(options.out.empty() ? "runs/" + lab.name : options.out, options.force);
   stop_on_interrupt();
   calibration::Settings settings;
-  settings.jobs = options.jobs > 0 ? options.jobs : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  settings.jobs =
+      options.jobs > 0 ? options.jobs : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   settings.most_trials = options.runs;
   settings.stop = &stop_requested;
   if (!options.quiet)
@@ -190,7 +195,8 @@ int run(const Options& options) {
 void add_command_calibrate(CLI::App& app, int& exit_code) {
   auto o = std::make_shared<Options>();
   auto* command = app.add_subcommand(calibrate_command.name, calibrate_command.description);
-  command->add_option("lab", o->file, "Laboratory file (TOML): [[measured]], [unknown], [known], [[forecast]]")
+  command
+      ->add_option("lab", o->file, "Laboratory file (TOML): [[measured]], [unknown], [known], [[forecast]]")
       ->required();
   command->add_option("--out", o->out, "Folder for the result (default: runs/<file's name>)");
   command->add_option("--jobs", o->jobs, "Runs at a time, one thread each (default: the machine's cores)")

@@ -188,7 +188,8 @@ int run_here(const Job& job, const Options& options) {
 int run_one_row(const Job& job, const Options& options) {
   const auto index = static_cast<std::size_t>(options.row);
   if (index >= job.design.size())
-    throw scene::InputError(fmt::format("--row {}: the design has the rows 0 to {}", index, job.design.size() - 1));
+    throw scene::InputError(
+        fmt::format("--row {}: the design has the rows 0 to {}", index, job.design.size() - 1));
   for (const Row& row : row_files(job).rows)
     if (row.row == index && !options.force) return done;
   const Row row =
@@ -202,8 +203,9 @@ int hand_to_engine(const Job& job, const Options& options) {
   const auto engine = options.engine == "slurm"       ? study::Engine::slurm
                       : options.engine == "snakemake" ? study::Engine::snakemake
                                                       : study::Engine::parallel;
-  const auto script = study::engine_script(engine, own_file().parent_path() / "tremie", fs::absolute(options.file),
-                                           job.folder, job.design.size(), jobs_of(options));
+  const auto script =
+      study::engine_script(engine, own_file().parent_path() / "tremie", fs::absolute(options.file),
+                           job.folder, job.design.size(), jobs_of(options));
   io::write_text(script.file, script.text);
   const std::string line = fmt::format("{}", fmt::join(script.start, " "));
   if (!options.submit) {
@@ -212,8 +214,8 @@ int hand_to_engine(const Job& job, const Options& options) {
   }
   const auto program = report::find_program(script.start.front());
   if (program.empty())
-    throw scene::InputError(
-        fmt::format("--submit: {} is not installed here; {} is written", script.start.front(), script.file.string()));
+    throw scene::InputError(fmt::format("--submit: {} is not installed here; {} is written",
+                                        script.start.front(), script.file.string()));
   const std::vector<std::string> arguments(script.start.begin() + 1, script.start.end());
   const auto code = report::run_program(program, arguments, job.folder, 1e9);
   if (code == 0) return done;
@@ -233,7 +235,8 @@ int run(const Options& options) {
   Job job;
   job.definition = study::read_definition(options.file);
   job.design = study::make_design(job.definition);
-  job.folder = fs::absolute(options.out.empty() ? "runs/" + job.definition.name : options.out).lexically_normal();
+  job.folder =
+      fs::absolute(options.out.empty() ? "runs/" + job.definition.name : options.out).lexically_normal();
   job.fingerprint = study::fingerprint(job.definition, job.design);
   if (options.collect && !is_study_folder(job.folder)) refuse(job.folder, "holds no study");
   if (options.row >= 0 && !options.out.empty() && fs::exists(job.folder) && !fs::is_empty(job.folder) &&

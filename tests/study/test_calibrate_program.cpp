@@ -1,0 +1,56 @@
+// Calibration as a person runs it: truth from a direct run, and measurements that cannot both be.
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/apparatus/shell.hpp"
+#include "tests/apparatus/temporary_folder.hpp"
+
+namespace tremie {
+namespace {
+
+const std::string unknown =
+    "[unknown]\n\"mix.yield_stress\" = [\"20 Pa\", \"200 Pa\"]\n\"mix.plastic_viscosity\" = [\"10 Pa.s\", "
+    "\"100 "
+    "Pa.s\"]\n[known]\n\"mix.density\" = \"2400 kg/m3\"\n";
+
+std::string measured(const std::string& spread, const std::string& t500) {
+  return "[[measured]]\napparatus = \"slump_flow\"\nspread = \"" + spread +
+         "\"\nspread_error = \"15 mm\"\nt500 = \"" + t500 + "\"\nt500_error = \"0.3 s\"\n";
+}
+
+// Mix A, 54 Pa and 35.8 Pa.s, spreads 555 mm and reaches 500 mm at 2.56 s in a direct run: both lie within the
+// intervals, and the best value within half of each interval's width.
+TEST(Calibrate, FindsTheMixOfADirectRun) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "LAB.toml", measured("555 mm", "2.56 s") + unknown);
+  const auto result = test::shell("'" TREMIE_PROGRAM "' calibrate LAB.toml --out cal", folder.path());
+  ASSERT_EQ(result.code, 0) << result.text;
+  const auto results = nlohmann::json::parse(test::read_file(folder / "cal/summary.json"))["results"];
+  const double truth[] = {54.0, 35.8};
+  const char* keys[] = {"mix.yield_stress", "mix.plastic_viscosity"};
+  for (int i = 0; i < 2; ++i) {
+    const auto& p = results["parameters"][keys[i]];
+    EXPECT_LT(p["ci95"][0], truth[i]);
+    EXPECT_GT(p["ci95"][1], truth[i]);
+    EXPECT_NEAR(p["value"].get<double>(), truth[i], 0.1 * truth[i]);
+    EXPECT_EQ(p["told"], "identified");
+  }
+  EXPECT_LT(results["emulator_error"]["over_measurement_error"], 1.0 / 3.0);
+  EXPECT_EQ(test::shell("'" TREMIE_PROGRAM "' run cal/mix.toml --set test.duration=\"0.1 s\" --quiet",
+                        folder.path())
+                .code,
+            0);
+}
+
+TEST(Calibrate, MeasurementsThatContradictEachOtherAreNamed) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "LAB.toml", measured("600 mm", "2 s") + measured("480 mm", "2 s") + unknown);
+  const auto result = test::shell("'" TREMIE_PROGRAM "' calibrate LAB.toml --out cal", folder.path());
+  EXPECT_EQ(result.code, 3) << result.text;
+  EXPECT_NE(result.text.find("standard errors"), std::string::npos) << result.text;
+}
+
+}  // namespace
+}  // namespace tremie
