@@ -12,7 +12,8 @@
 namespace tremie::scene {
 namespace {
 
-const Words<Kinetics> kinetics_words{{"gated", Kinetics::gated}, {"roussel", Kinetics::roussel}};
+const Words<Kinetics> kinetics_words{
+    {"gated", Kinetics::gated}, {"roussel", Kinetics::roussel}, {"power", Kinetics::power}};
 const Words<ContactKind> contact_words{{"no_slip", ContactKind::no_slip},
                                        {"friction", ContactKind::friction},
                                        {"free_slip", ContactKind::free_slip}};
@@ -107,8 +108,20 @@ Section thixotropy_section() {
                .dimension = Dimension::rate,
                .range = positive,
                .fallback = "0.1 1/s",
-               .only_with = Condition{"kinetics", {"gated"}},
-               .help = "build-up below it, breakdown above"},
+               .only_with = Condition{"kinetics", {"gated", "power"}},
+               .help = "build-up below it, breakdown above; power: no gate where it is left out"},
+              {.name = "exponent",
+               .kind = Kind::number,
+               .range = between(1.0, 20.0),
+               .required = true,
+               .example = "3.5",
+               .only_with = Condition{"kinetics", {"power"}},
+               .help = "n: breakdown by alpha lambda^n gamma_dot"},
+              {.name = "saturation",
+               .kind = Kind::number,
+               .range = positive,
+               .only_with = Condition{"kinetics", {"power"}},
+               .help = "lambda_max; none where it is left out"},
               {.name = "initial_flocculation",
                .kind = Kind::number,
                .range = not_negative,
@@ -146,6 +159,9 @@ Schema mix_sections(const std::string& bulk_modulus) {
 void settle_mix(Values& values) {
   settle_bulk_modulus(values);
   settle_law(values);
+  const char* gate = "mix.thixotropy.critical_shear_rate";
+  if (values.has(gate) && !values.given(gate) && values.word("mix.thixotropy.kinetics") == "power")
+    values.drop(gate);
   if (values.has_section("mix.thixotropy") && values.number("mix.yield_stress") == 0.0) {
     values.fail("mix.yield_stress",
                 "is 0 with [mix.thixotropy]: the flocculation state grows by A_thix/tau_0 and has no value; "
@@ -168,6 +184,10 @@ Mix read_mix(const Values& values) {
   t.kinetics = values.choice("mix.thixotropy.kinetics", kinetics_words);
   if (values.has("mix.thixotropy.critical_shear_rate"))
     t.gamma_c = values.number("mix.thixotropy.critical_shear_rate");
+  else if (t.kinetics == Kinetics::power)
+    t.gamma_c = 0.0;
+  if (values.has("mix.thixotropy.exponent")) t.exponent = values.number("mix.thixotropy.exponent");
+  if (values.has("mix.thixotropy.saturation")) t.saturation = values.number("mix.thixotropy.saturation");
   t.initial_flocculation = values.number("mix.thixotropy.initial_flocculation");
   mix.thixotropy = t;
   return mix;

@@ -74,7 +74,7 @@ std::optional<double> couette_reference(const Scene& scene, const Instrument& in
   double& lambda = flow.thixotropy.initial_flocculation;
   lambda = flocculation_after_rest(lambda, flow.thixotropy, scene.mix.tau_0, scene.rest);
   if (flow.thixotropy.alpha == 0.0) {  // nothing breaks it down: the same everywhere
-    if (flow.thixotropy.kinetics == Kinetics::roussel)
+    if (!has_gate(flow.thixotropy))
       lambda = flocculation_after_rest(lambda, flow.thixotropy, scene.mix.tau_0, scene.duration);
     bingham.tau_0 = static_yield_stress(lambda, bingham.tau_0);
     return reiner_riwlin(bingham, omega, instrument).torque;

@@ -10,24 +10,40 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "libmpm/constitutive/power_kinetics.hpp"
 
 namespace tremie {
 
 enum class Kinetics {
   roussel,  ///< equation (3) at all times
-  gated     ///< the paper's algorithm: build-up below the critical shear rate, breakdown above it
+  gated,    ///< the paper's algorithm: build-up below the critical shear rate, breakdown above it
+  power     ///< breakdown with a power of lambda, build-up to a saturation: power_kinetics.hpp
 };
 
 struct Thixotropy {
   double A_thix = 0.0;  ///< structuration rate at rest [Pa/s]
   double alpha = 0.01;  ///< destructuration parameter
   Kinetics kinetics = Kinetics::gated;
-  double gamma_c = 0.1;             ///< critical shear rate of the gate [1/s]
+  double gamma_c = 0.1;             ///< critical shear rate of the gate [1/s]; power: 0 is no gate
   double initial_flocculation = 0;  ///< lambda before any rest
+  double exponent = 1.0;            ///< n, power alone
+  double saturation = std::numeric_limits<double>::infinity();  ///< lambda_max, power alone
 };
+
+/// Whether build-up and breakdown exclude each other at gamma_c.
+inline bool has_gate(const Thixotropy& t) {
+  return t.kinetics == Kinetics::gated || (t.kinetics == Kinetics::power && t.gamma_c > 0.0);
+}
+
+inline detail::PowerRates power_rates(const Thixotropy& t, double tau_0) {
+  return {t.A_thix / tau_0, 1.0 / t.saturation, t.alpha, t.exponent};
+}
 
 /// lambda after a rest of duration `rest`: equation (3) at gamma_dot = 0 in closed form.
 inline double flocculation_after_rest(double lambda, const Thixotropy& t, double tau_0, double rest) {
+  if (t.kinetics == Kinetics::power) return detail::power_build(lambda, power_rates(t, tau_0), rest);
   return lambda + t.A_thix * rest / tau_0;
 }
 
@@ -99,9 +115,17 @@ inline double gated_step(double lambda, double build_rate, const Thixotropy& t, 
 inline double flocculation_step(double lambda, const Thixotropy& t, double tau_0, double gamma_0,
                                 double gamma_1, double dt) {
   const double build_rate = t.A_thix / tau_0;
-  return t.kinetics == Kinetics::roussel
-             ? detail::roussel_step(lambda, build_rate, t.alpha, gamma_0, gamma_1, dt)
-             : detail::gated_step(lambda, build_rate, t, gamma_0, gamma_1, dt);
+  switch (t.kinetics) {
+    case Kinetics::roussel:
+      return detail::roussel_step(lambda, build_rate, t.alpha, gamma_0, gamma_1, dt);
+    case Kinetics::gated:
+      return detail::gated_step(lambda, build_rate, t, gamma_0, gamma_1, dt);
+    case Kinetics::power:
+      break;
+  }
+  const detail::PowerRates rates = power_rates(t, tau_0);
+  return has_gate(t) ? detail::gated_power_step(lambda, rates, t.gamma_c, gamma_0, gamma_1, dt)
+                     : detail::power_step(lambda, rates, gamma_0, gamma_1, dt);
 }
 
 /// Static yield stress, equation (7) [Pa].

@@ -137,13 +137,14 @@ double gated_step(double lambda, double build_rate, const Thixotropy& t, const R
 /// lambda after a step of length dt from the time `start` of a history, in which rate(time) [1/s] gives the
 /// shear rate. gamma_0 and gamma_1 are its values at the ends of the step, which the neighbouring steps
 /// share. Sixth order where the rate is smooth, through the gate of the gated kinetics too; exact at constant
-/// rate; positive and bounded for every dt.
+/// rate; positive and bounded for every dt. The power kinetics takes the rate at the ends alone: second order.
 template <class Rate>
 double flocculation_step_along(double lambda, const Thixotropy& t, double tau_0, const Rate& rate,
                                double start, double gamma_0, double gamma_1, double dt) {
   const double build_rate = t.A_thix / tau_0;
   if (t.kinetics == Kinetics::gated)
     return detail::gated_step(lambda, build_rate, t, rate, start, gamma_0, gamma_1, dt);
+  if (t.kinetics == Kinetics::power) return flocculation_step(lambda, t, tau_0, gamma_0, gamma_1, dt);
   return detail::roussel_step(lambda, build_rate, t.alpha,
                               detail::cubic_rate(rate, start, gamma_0, gamma_1, dt), dt);
 }

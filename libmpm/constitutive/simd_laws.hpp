@@ -23,6 +23,11 @@ inline f64x8 decay_asymmetry(const f64x8& k, const f64x8& d) {
 /// flocculation_step of flocculation.hpp.
 inline f64x8 flocculation_step(const f64x8& lambda, const Thixotropy& t, double tau_0, const f64x8& gamma_0,
                                const f64x8& gamma_1, double dt) {
+  if (t.kinetics == Kinetics::power) {
+    f64x8 next = lambda;
+    for (int l = 0; l < 8; ++l) next[l] = flocculation_step(lambda[l], t, tau_0, gamma_0[l], gamma_1[l], dt);
+    return next;
+  }
   const double built = t.A_thix / tau_0 * dt, half = 0.5 * t.alpha * dt;
   if (t.kinetics == Kinetics::roussel) {
     const f64x8 k = half * (gamma_0 + gamma_1), d = mean_decay(k);

@@ -18,26 +18,37 @@ namespace {
 /// What the callbacks see: one piece of the history and the side of the gate that the integration is on.
 struct Problem {
   const ShearPiece* piece = nullptr;
-  Kinetics kinetics = Kinetics::gated;
+  bool gated = true;
   double build_rate = 0.0, alpha = 0.0, gamma_c = 0.0;
-  bool flowing = true;  ///< gated alone
+  double exponent = 1.0, inverse_saturation = 0.0;  ///< power alone
+  bool flowing = true;                              ///< gated alone
 
   double gamma_dot(double t) const { return piece->rate(std::clamp(t, 0.0, piece->duration)); }
-  bool builds() const { return kinetics == Kinetics::roussel || !flowing; }
-  bool breaks() const { return kinetics == Kinetics::roussel || flowing; }
+  bool builds() const { return !gated || !flowing; }
+  bool breaks() const { return !gated || flowing; }
+  /// lambda^n, and its derivative.
+  double broken(double lambda) const {
+    return exponent == 1.0 ? lambda : std::pow(std::max(lambda, 0.0), exponent);
+  }
+  double d_broken(double lambda) const {
+    return exponent == 1.0 ? 1.0 : exponent * std::pow(std::max(lambda, 0.0), exponent - 1.0);
+  }
 };
 
 int right_hand_side(sunrealtype t, N_Vector y, N_Vector ydot, void* user) {
   const Problem& p = *static_cast<const Problem*>(user);
-  double rate = p.builds() ? p.build_rate : 0.0;
-  if (p.breaks()) rate -= p.alpha * values(y)[0] * p.gamma_dot(t);
+  const double lambda = values(y)[0];
+  double rate = p.builds() ? p.build_rate * (1.0 - lambda * p.inverse_saturation) : 0.0;
+  if (p.breaks()) rate -= p.alpha * p.broken(lambda) * p.gamma_dot(t);
   values(ydot)[0] = rate;
   return 0;
 }
 
-int jacobian(sunrealtype t, N_Vector, N_Vector, SUNMatrix J, void* user, N_Vector, N_Vector, N_Vector) {
+int jacobian(sunrealtype t, N_Vector y, N_Vector, SUNMatrix J, void* user, N_Vector, N_Vector, N_Vector) {
   const Problem& p = *static_cast<const Problem*>(user);
-  SUNDenseMatrix_Data(J)[0] = p.breaks() ? -p.alpha * p.gamma_dot(t) : 0.0;
+  double& d_rate = SUNDenseMatrix_Data(J)[0];
+  d_rate = p.builds() ? -p.build_rate * p.inverse_saturation : 0.0;
+  if (p.breaks()) d_rate -= p.alpha * p.d_broken(values(y)[0]) * p.gamma_dot(t);
   return 0;
 }
 
@@ -53,12 +64,12 @@ bool flows_at_start(const Problem& p) {
   return start == p.gamma_c ? p.gamma_dot(1e-6 * p.piece->duration) >= p.gamma_c : start > p.gamma_c;
 }
 
-/// lambda relaxes on the time 1/(alpha gamma_dot); a piece that is much longer than this is stiff.
-int method_for(const Problem& p, OdeMethod wanted) {
+/// lambda relaxes on the time 1/(alpha gamma_dot), times lambda^(1-n)/n with a power; a piece that is much longer than this is stiff.
+int method_for(const Problem& p, double lambda, OdeMethod wanted) {
   if (wanted != OdeMethod::automatic) return wanted == OdeMethod::bdf ? CV_BDF : CV_ADAMS;
   double fastest = 0.0;
   for (int i = 0; i <= 64; ++i) fastest = std::max(fastest, p.gamma_dot(p.piece->duration * i / 64.0));
-  return p.alpha * fastest * p.piece->duration > 100.0 ? CV_BDF : CV_ADAMS;
+  return p.alpha * p.d_broken(lambda) * fastest * p.piece->duration > 100.0 ? CV_BDF : CV_ADAMS;
 }
 
 class Integrator {
@@ -69,7 +80,7 @@ class Integrator {
         solver_(SUNLinSol_Dense(y_.get, J_.get, context_.get)),
         problem_(problem) {
     values(y_.get)[0] = lambda;
-    method_ = method_for(problem, options.method);
+    method_ = method_for(problem, lambda, options.method);
     memory_.reset(CVodeCreate(method_, context_.get));
     void* m = memory_.get();
     if (!m) throw std::bad_alloc();
@@ -82,7 +93,7 @@ class Integrator {
     sundials_ok(CVodeSetMaxNumSteps(m, 50'000'000), "CVodeSetMaxNumSteps");
     sundials_ok(CVodeSetNonlinConvCoef(m, 1e-3), "CVodeSetNonlinConvCoef");
     sundials_ok(CVodeSetErrHandlerFn(m, quiet, nullptr), "CVodeSetErrHandlerFn");
-    if (problem.kinetics == Kinetics::gated) {
+    if (problem.gated) {
       sundials_ok(CVodeRootInit(m, 1, gate), "CVodeRootInit");
       sundials_ok(CVodeSetNoInactiveRootWarn(m), "CVodeSetNoInactiveRootWarn");
     }
@@ -152,6 +163,8 @@ void check(const Thixotropy& t, double tau_0, double lambda_0) {
   if (!not_negative(t.A_thix) || !not_negative(t.alpha) || !not_negative(t.gamma_c) ||
       !not_negative(lambda_0))
     throw std::invalid_argument("A_thix, alpha, the critical shear rate and lambda must not be negative");
+  if (!(t.exponent >= 1.0) || !(t.saturation > 0.0))
+    throw std::invalid_argument("the exponent must be at least 1 and the saturation greater than 0");
 }
 
 }  // namespace
@@ -166,8 +179,14 @@ OdeResult flocculation_ode(std::span<const ShearPiece> history, const Thixotropy
 
   OdeResult result;
   result.lambda.reserve(times.size());
-  Problem problem{nullptr, thixotropy.kinetics, thixotropy.A_thix / tau_0, thixotropy.alpha,
-                  thixotropy.gamma_c};
+  const bool power = thixotropy.kinetics == Kinetics::power;
+  Problem problem{nullptr,
+                  has_gate(thixotropy),
+                  thixotropy.A_thix / tau_0,
+                  thixotropy.alpha,
+                  thixotropy.gamma_c,
+                  power ? thixotropy.exponent : 1.0,
+                  power ? 1.0 / thixotropy.saturation : 0.0};
   double lambda = lambda_0, start = 0.0;
   std::size_t next = 0;
   for (const ShearPiece& piece : history) {

@@ -7,6 +7,7 @@
 //   roussel   d lambda/dt = A_thix/tau_0 - alpha lambda gamma_dot(t)                 equation (3)
 //   gated     d lambda/dt = A_thix/tau_0            where gamma_dot <  gamma_c       equation (3) at rest
 //             d lambda/dt = -alpha lambda gamma_dot where gamma_dot >= gamma_c       equation (4)
+//   power     d lambda/dt = A_thix/tau_0 (1 - lambda/lambda_max) - alpha lambda^n gamma_dot, gated where gamma_c > 0
 //
 // The gate is a discontinuity of the right-hand side. CVODE's root-finding stops on each crossing of gamma_c
 // and the integration starts anew behind it, so that no step straddles one.

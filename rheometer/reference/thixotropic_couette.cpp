@@ -18,6 +18,7 @@ namespace {
 /// [Pa].
 struct Gap {
   double tau_0 = 0.0, mu = 0.0, alpha = 0.0, build_rate = 0.0, gamma_c = 0.0, dx = 0.0;
+  double exponent = 1.0, inverse_saturation = 0.0;  ///< power alone
   bool gated = true, find_gate = true;
   std::vector<double> x, stress_share;  ///< ln(r/R_i) and (R_i/r)^2 of the nodes
   std::vector<char> flowing;            ///< the gate's side, gated alone
@@ -35,9 +36,19 @@ struct Gap {
     return find_gate ? flowing[i] != 0 : e >= gamma_c;
   }
 
+  double build(double lambda) const { return build_rate * (1.0 - lambda * inverse_saturation); }
+
+  /// lambda^n, and its derivative.
+  double broken(double lambda) const {
+    return exponent == 1.0 ? lambda : std::pow(std::max(lambda, 0.0), exponent);
+  }
+  double d_broken(double lambda) const {
+    return exponent == 1.0 ? 1.0 : exponent * std::pow(std::max(lambda, 0.0), exponent - 1.0);
+  }
+
   double kinetics(std::size_t i, double lambda, double e) const {
-    if (!breaks(i, e)) return build_rate;
-    return (gated ? 0.0 : build_rate) - alpha * lambda * std::max(0.0, e);
+    if (!breaks(i, e)) return build(lambda);
+    return (gated ? 0.0 : build(lambda)) - alpha * broken(lambda) * std::max(0.0, e);
   }
 };
 
@@ -146,9 +157,11 @@ int solve_arrow(SUNLinearSolver solver, SUNMatrix, N_Vector x_vector, N_Vector b
   double pivot = speed_by_stress(gap, d_excess), right = b[n];
   for (std::size_t i = 0; i < n; ++i) {
     const double e = gap.excess(i, y);
-    if (e > 0.0 && gap.breaks(i, e)) {
-      diagonal[i] += gap.alpha * (e - y[i] * gap.tau_0 / gap.mu);
-      column[i] = gap.alpha * y[i] * gap.stress_share[i] / gap.mu;
+    const bool broken = gap.breaks(i, e);
+    if (!gap.gated || !broken) diagonal[i] += gap.build_rate * gap.inverse_saturation;
+    if (e > 0.0 && broken) {
+      diagonal[i] += gap.alpha * (gap.d_broken(y[i]) * e - gap.broken(y[i]) * gap.tau_0 / gap.mu);
+      column[i] = gap.alpha * gap.broken(y[i]) * gap.stress_share[i] / gap.mu;
     }
     const double row = -d_excess[i] * gap.tau_0 / gap.mu;
     pivot -= row * column[i] / diagonal[i];
@@ -189,6 +202,8 @@ void check(const CouetteFlow& flow) {
   if (!not_negative(t.A_thix) || !not_negative(t.alpha) || !not_negative(t.gamma_c) ||
       !not_negative(t.initial_flocculation))
     throw std::invalid_argument("A_thix, alpha, the critical shear rate and lambda must not be negative");
+  if (!(t.exponent >= 1.0) || !(t.saturation > 0.0))
+    throw std::invalid_argument("the exponent must be at least 1 and the saturation greater than 0");
 }
 
 Gap make_gap(const CouetteFlow& flow, double width, const CouetteOptions& options) {
@@ -199,7 +214,11 @@ Gap make_gap(const CouetteFlow& flow, double width, const CouetteOptions& option
   gap.alpha = t.alpha;
   gap.build_rate = t.A_thix / flow.bingham.tau_0;
   gap.gamma_c = t.gamma_c;
-  gap.gated = t.kinetics == Kinetics::gated;
+  gap.gated = has_gate(t);
+  if (t.kinetics == Kinetics::power) {
+    gap.exponent = t.exponent;
+    gap.inverse_saturation = 1.0 / t.saturation;
+  }
   gap.find_gate = options.find_gate;
   gap.dx = width / options.intervals;
   for (int i = 0; i <= options.intervals; ++i) {

@@ -7,7 +7,7 @@
 //   (2), (6) int gamma_dot/r dr = Omega(t) no slip d lambda/dt = A_thix/tau_0 - alpha lambda gamma_dot
 //   equation (3),
 //
-// or the gated kinetics of the paper's algorithm. Material moves in circles, so every radius keeps its own
+// or the gated kinetics of the paper's algorithm, or the power kinetics (power_kinetics.hpp). Material moves in circles, so every radius keeps its own
 // lambda.
 //
 // Discretised on equal intervals of x = ln(r/R_i), where the constraint is int gamma_dot dx: lambda at the
