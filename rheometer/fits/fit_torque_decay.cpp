@@ -334,6 +334,32 @@ void report_apparent(const Readings& r, const FitInput& in, const Teller& told, 
   if (!a.windows.empty()) result.apparent = a;
 }
 
+/// Where a smooth curve through the record would leave far less than the model does, and neighbours miss on the same
+/// side, the misfit is the model's. The record's own noise is taken from second differences of the residuals.
+void judge_fit(const LeastSquaresFit& fit, FitResult& result) {
+  std::vector<double> residual, second;
+  double square = 0.0;
+  for (std::size_t i = 0; i < fit.residual.size(); ++i) {
+    if (fit.outlier[i]) continue;
+    residual.push_back(fit.residual[i]);
+    square += fit.residual[i] * fit.residual[i];
+  }
+  if (residual.size() < 10) return;
+  for (std::size_t i = 2; i < residual.size(); ++i)
+    second.push_back(residual[i] - 2.0 * residual[i - 1] + residual[i - 2]);
+  const double noise = robust_deviation(second) / std::sqrt(6.0);
+  const double misfit = std::sqrt(square / static_cast<double>(residual.size()));
+  if (misfit < 0.02 || misfit < 3.0 * noise || result.correlation < 0.5) return;
+  const auto percent = [](double v) {
+    return std::to_string(0.1 * static_cast<double>(std::lround(1000.0 * v))).substr(0, 4);
+  };
+  result.reasons.push_back("the model does not fit: it misses the readings by " + percent(misfit) +
+                           " % where they scatter by " + percent(noise) +
+                           " % about a smooth curve, and neighbours miss alike (correlation " +
+                           std::to_string(result.correlation).substr(0, 4) +
+                           "): the decay has another shape than these kinetics give it");
+}
+
 }  // namespace
 
 FitResult fit_torque_decay(const TorqueRecord& record, const FitInput& in) {
@@ -356,6 +382,7 @@ FitResult fit_torque_decay(const TorqueRecord& record, const FitInput& in) {
   const LeastSquaresFit fit = least_squares(model, r, layout);
   const Teller told{layout, fit, layout.with(fit.parameters)};
   report(r, fit, result);
+  judge_fit(fit, result);
   report_parameters(r, told, in, result);
   report_flow(r, told.p, in, result);
   report_apparent(r, in, told, result);

@@ -1,9 +1,12 @@
 #include "rheometer/records/torque_record.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <numbers>
 
+#include "rheometer/records/instrument_export.hpp"
 #include "rheometer/records/table.hpp"
 
 namespace tremie {
@@ -50,10 +53,52 @@ void require_below(const std::vector<double>& column, const NumberTable& table, 
       throw RecordError(at_position(name, table.line[i], position, what + "; is the header's unit right?"));
 }
 
+/// The first run of at least 8 rows whose speed stays within 2 % of its first; its rows [begin, end).
+std::pair<std::size_t, std::size_t> constant_speed(const std::vector<double>& omega) {
+  for (std::size_t begin = 0; begin < omega.size();) {
+    std::size_t end = begin + 1;
+    while (end < omega.size() && std::abs(omega[end] - omega[begin]) <= 0.02 * std::abs(omega[begin])) ++end;
+    if (end - begin >= 8 && std::abs(omega[begin]) > 1e-4) return {begin, end};
+    begin = end - begin >= 8 ? end : begin + 1;
+  }
+  return {0, 0};
+}
+
+/// Keeps the first section of constant speed as a torque decay.
+double keep_decay(NumberTable& table, const std::string& name, std::vector<std::string>& understood) {
+  const auto [begin, end] = constant_speed(table.column[1]);
+  if (begin == end)
+    throw RecordError(
+        at_position(name, table.header_line, 1,
+                    "time, speed and torque, but no 8 rows of one speed (within 2 %): no torque decay; for "
+                    "a flow curve leave the time column out"));
+  double speed = 0.0;
+  const auto count = static_cast<double>(end - begin);
+  for (std::size_t i = begin; i < end; ++i) speed += std::abs(table.column[1][i]) / count;
+  understood.push_back("first section of constant speed: lines " + std::to_string(table.line[begin]) +
+                       " to " + std::to_string(table.line[end - 1]) + ", " + std::to_string(speed / two_pi) +
+                       " rev/s; the other " + std::to_string(table.line.size() - (end - begin)) +
+                       " rows are not used");
+  const auto cut = [&](auto& v) {
+    v = {v.begin() + static_cast<std::ptrdiff_t>(begin), v.begin() + static_cast<std::ptrdiff_t>(end)};
+  };
+  for (auto& column : table.column) cut(column);
+  cut(table.line);
+  table.column[1].clear();
+  table.position[1] = 0;
+  return speed;
+}
+
 }  // namespace
 
-TorqueRecord parse_torque_record(std::string_view text, const std::string& name) {
-  NumberTable table = parse_number_table(text, name, quantities());
+TorqueRecord parse_torque_record(std::string_view bytes, const std::string& name) {
+  const std::string text = decoded_text(bytes, name);
+  const auto plain = plain_export(text, name);
+  NumberTable table = parse_number_table(plain ? plain->text : text, name, quantities());
+  TorqueRecord record;
+  if (plain) record.understood = plain->understood;
+  if (plain && table.position[0] != 0 && table.position[1] != 0 && !table.line.empty())
+    record.speed = keep_decay(table, name, record.understood);
   const bool has_time = table.position[0] != 0, has_speed = table.position[1] != 0;
   const std::string kinds = "a flow curve has speed_rev_per_s,torque_N_m, a torque decay time_s,torque_N_m";
   if (table.position[2] == 0)
@@ -65,7 +110,6 @@ TorqueRecord parse_torque_record(std::string_view text, const std::string& name)
             "; " + kinds));
   if (table.line.empty()) throw RecordError(at_position(name, table.header_line, 1, "a header without rows"));
 
-  TorqueRecord record;
   record.kind = has_time ? RecordKind::torque_decay : RecordKind::flow_curve;
   require_not_negative(table.column[2], table, table.position[2], "the torque", name);
   if (has_speed) require_not_negative(table.column[1], table, table.position[1], "the speed", name);

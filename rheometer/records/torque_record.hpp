@@ -15,10 +15,12 @@ enum class RecordKind { flow_curve, torque_decay };
 /// Rows in the order of the file, SI units.
 struct TorqueRecord {
   RecordKind kind = RecordKind::flow_curve;
-  std::vector<double> omega;   ///< flow curve alone [rad/s], > 0 or = 0
-  std::vector<double> time;    ///< torque decay alone [s], not descending
-  std::vector<double> torque;  ///< [N m], >= 0
-  std::vector<long> line;      ///< of the file, from 1
+  std::vector<double> omega;            ///< flow curve alone [rad/s], > 0 or = 0
+  std::vector<double> time;             ///< torque decay alone [s], not descending
+  std::vector<double> torque;           ///< [N m], >= 0
+  std::vector<long> line;               ///< of the file, from 1
+  double speed = 0.0;                   ///< of a torque decay whose file has it [rad/s]; 0: not there
+  std::vector<std::string> understood;  ///< how an instrument's export was read, a sentence each
 };
 
 /// A fault of a record: "name:line:column: what is wrong; what is allowed".
@@ -26,7 +28,8 @@ struct RecordError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Reads a record from text. The header names the columns and their units: speed_rev_per_s, speed_rpm,
+/// Reads a record from text. An instrument's export (instrument_export.hpp) is taken as it is; of one that has time,
+/// speed and torque the first section of constant speed is the decay. The header names the columns and their units: speed_rev_per_s, speed_rpm,
 /// speed_rad_per_s, time_s, time_ms, time_min, torque_N_m, torque_mN_m, ..., also as "torque (mN·m)"; other
 /// columns are left out. Separator comma, semicolon or tab; with the last two a decimal comma too. Lines from
 /// # on are comments; a byte-order mark is skipped. `name` is the file's, for messages. Throws RecordError

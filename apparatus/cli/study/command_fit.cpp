@@ -65,9 +65,13 @@ FitInput input_of(const Options& o) {
 }
 
 /// Faults of the record and of the options are the user's to mend.
-FitResult read_and_fit(const Options& o, const FitInput& in) {
+FitResult read_and_fit(const Options& o, FitInput& in) {
   try {
-    return fit(read_torque_record(o.data), in);
+    const TorqueRecord record = read_torque_record(o.data);
+    if (!in.omega && record.speed > 0.0) in.omega = record.speed;
+    FitResult result = fit(record, in);
+    result.notes.insert(result.notes.begin(), record.understood.begin(), record.understood.end());
+    return result;
   } catch (const RecordError& error) {
     throw scene::InputError(error.what());
   } catch (const std::invalid_argument& error) {
@@ -193,7 +197,7 @@ void print_result(const FitResult& r) {
 
 int run(const Options& options) {
   const Stopwatch watch;
-  const FitInput in = input_of(options);
+  FitInput in = input_of(options);
   const FitResult result = read_and_fit(options, in);
   const std::string name = std::filesystem::path(options.data).stem().string();
   const HeldInterrupts held;  // outlives the folder
