@@ -336,7 +336,7 @@ void report_apparent(const Readings& r, const FitInput& in, const Teller& told, 
 
 /// Where a smooth curve through the record would leave far less than the model does, and neighbours miss on the same
 /// side, the misfit is the model's. The record's own noise is taken from second differences of the residuals.
-void judge_fit(const LeastSquaresFit& fit, FitResult& result) {
+bool model_misses(const LeastSquaresFit& fit, FitResult& result) {
   std::vector<double> residual, second;
   double square = 0.0;
   for (std::size_t i = 0; i < fit.residual.size(); ++i) {
@@ -344,12 +344,12 @@ void judge_fit(const LeastSquaresFit& fit, FitResult& result) {
     residual.push_back(fit.residual[i]);
     square += fit.residual[i] * fit.residual[i];
   }
-  if (residual.size() < 10) return;
+  if (residual.size() < 10) return false;
   for (std::size_t i = 2; i < residual.size(); ++i)
     second.push_back(residual[i] - 2.0 * residual[i - 1] + residual[i - 2]);
   const double noise = robust_deviation(second) / std::sqrt(6.0);
   const double misfit = std::sqrt(square / static_cast<double>(residual.size()));
-  if (misfit < 0.02 || misfit < 3.0 * noise || result.correlation < 0.5) return;
+  if (misfit < 0.02 || misfit > 0.25 || misfit < 3.0 * noise || result.correlation < 0.5) return false;
   const auto percent = [](double v) {
     return std::to_string(0.1 * static_cast<double>(std::lround(1000.0 * v))).substr(0, 4);
   };
@@ -358,6 +358,7 @@ void judge_fit(const LeastSquaresFit& fit, FitResult& result) {
                            " % about a smooth curve, and neighbours miss alike (correlation " +
                            std::to_string(result.correlation).substr(0, 4) +
                            "): the decay has another shape than these kinetics give it");
+  return true;
 }
 
 }  // namespace
@@ -382,10 +383,21 @@ FitResult fit_torque_decay(const TorqueRecord& record, const FitInput& in) {
   const LeastSquaresFit fit = least_squares(model, r, layout);
   const Teller told{layout, fit, layout.with(fit.parameters)};
   report(r, fit, result);
-  judge_fit(fit, result);
+  const bool misses = model_misses(fit, result);
   report_parameters(r, told, in, result);
   report_flow(r, told.p, in, result);
   report_apparent(r, in, told, result);
+  if (misses && !in.mu) {
+    result.mu.reset();
+    result.notes.push_back(
+        "plastic_viscosity: one speed and a model that does not fit do not tell it; --plastic-viscosity "
+        "gives it");
+  }
+  if (misses && !in.tau_0) {
+    result.tau_0.reset();
+    result.notes.push_back(
+        "yield_stress: one speed and a model that does not fit do not tell it; --yield-stress gives it");
+  }
   return result;
 }
 

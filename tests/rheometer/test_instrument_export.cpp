@@ -36,6 +36,8 @@ TEST(InstrumentExport, TheMeasuredDecayIsSaidNotToFit) {
   in.omega = r.speed;
   const FitResult result = fit(r, in);
   EXPECT_FALSE(result.reasons.empty());
+  EXPECT_FALSE(result.mu.has_value());  // one speed
+  EXPECT_FALSE(result.tau_0.has_value());
 }
 
 // Made in the layout of an ICAR-like log: Latin-1, semicolons, decimal commas with thousands points, a repeated header.
