@@ -1,0 +1,55 @@
+#pragma once
+
+// Charts as SVG, in the report's style: one size, text that a phone shows in 11 px, colours that colour-blind
+// readers tell apart. Standing alone they are light; in a page they follow its colours.
+
+#include <string>
+#include <vector>
+
+namespace tremie::report {
+
+enum class Mark { line, dashed, points };
+
+struct Curve {
+  std::string label;  ///< at the curve's side of the legend; empty: none
+  std::vector<double> x, y;
+  Mark mark = Mark::line;
+};
+
+/// Between two curves over the same x: a 95 % band.
+struct Band {
+  std::string label;
+  std::vector<double> x, low, high;
+};
+
+/// A level that was measured, with its tolerance (0: a line alone).
+struct Level {
+  std::string label;
+  double value = 0.0, tolerance = 0.0;
+};
+
+/// The error of the last value of a curve: half the bar.
+struct EndBar {
+  double x = 0.0, y = 0.0, half = 0.0;
+};
+
+struct LineChart {
+  std::string title, x_label, y_label;  ///< with units as people write them: "time (s)"
+  std::vector<Curve> curves;
+  std::vector<Level> levels = {};
+  std::vector<Band> bands = {};
+  std::vector<EndBar> bars = {};
+  bool log_x = false, log_y = false;
+  bool y_from_zero = false;
+};
+
+/// Whether some curve has two finite points.
+bool can_be_drawn(const LineChart& chart);
+
+/// One <svg> element. Values that are not finite are left out.
+std::string chart_svg(const LineChart& chart);
+
+/// Round numbers that divide [low, high] into about `n` parts.
+std::vector<double> round_ticks(double low, double high, int n);
+
+}  // namespace tremie::report
