@@ -90,7 +90,8 @@ std::string data_json(const MovingPicture& picture) {
   for (const MovingFrame& frame : picture.frames)
     frames += fmt::format("{}{{\"t\":{:.4g},\"n\":{},\"d\":\"{}\"}}", frames.empty() ? "" : ",\n", frame.time,
                           frame.places.size(), base64(bytes_of(frame, picture.fields, e)));
-  for (const ColourField& field : picture.fields) fields += (fields.empty() ? "" : ",") + number_words(field);
+  for (const ColourField& field : picture.fields)
+    fields += fmt::format("{}{}", fields.empty() ? "" : ",", number_words(field));
   return fmt::format(
       "{{\"box\":[{:.6g},{:.6g},{:.6g},{:.6g}],\"mirrored\":{},\"speed\":{:.5g},\"fixed\":{},\"lifted\":{},"
       "\"fields\":[{}],\"frames\":[{}]}}",

@@ -50,7 +50,7 @@ class Bitmap {
     if (i >= 0 && j >= 0 && i < nx_ && j < ny_) on_[index(i, j)] = 1;
   }
   void close() {
-    for (const char value : {1, 0})
+    for (const char value : {char{1}, char{0}})
       for (const bool along_x : {true, false}) spread(value, along_x);
   }
   /// Rows of the body as (x, y, length) of runs [m].
