@@ -72,7 +72,6 @@ struct ExplicitState {
   TileGrid<D> grid;
   double next_dt = 0.0;     ///< of the step to come [s]
   double drift = 0.0;       ///< no point is further from where it was sorted, in cells
-  double farthest = 1e300;  ///< move of a point along an axis in the last step, in cells: not known yet
   double max_speed = 0.0;   ///< of the points [m/s]
   double lambda_max = 0.0;  ///< largest flocculation in a point
   StabilityLimits limits;

@@ -6,6 +6,8 @@
 // The grid's velocities themselves are held back, not the points': a point that stays while its cell's
 // velocities go on would lose its volume, and with it the pressure that pushes against the wall.
 
+#include <omp.h>
+
 #include "libmpm/boundary/rigid_wall.hpp"
 #include "libmpm/explicit/body.hpp"
 
@@ -177,13 +179,12 @@ void push_off_wall(const RigidWall<Geometry::dim>& wall, double time, double dt,
   constexpr int D = Geometry::dim;
   if (!wall) return;
   look_around_wall(wall, time, state);
-  const std::size_t near = state.near_wall.size(), parts = static_cast<std::size_t>(state.grid.pool->size());
+  const std::size_t near = state.near_wall.size(), parts = static_cast<std::size_t>(omp_get_max_threads());
   std::vector<std::vector<WallPoint<D>>> touching(parts);
-  state.grid.pool->run([&](int s) {
-    const auto part = static_cast<std::size_t>(s);
+#pragma omp parallel for schedule(static)
+  for (std::size_t part = 0; part < parts; ++part)
     touching[part] = find_wall_points<Geometry>(wall, time, dt, gap_min, near * part / parts,
                                                 near * (part + 1) / parts, state);
-  });
   for (int sweep = 0; sweep < wall_sweeps; ++sweep)
     for (auto& part : touching)
       for (WallPoint<D>& p : part) push_off(p);

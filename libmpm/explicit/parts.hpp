@@ -15,7 +15,7 @@ void write_back(ExplicitState<Geometry>& state, Body<Geometry>& body) {
 namespace detail {
 
 /// Points are sorted anew before any can have left the cells that its tile sees: one cell beyond its own. A
-/// step may add half a cell, steps that follow each other what was left (steps_in_a_row).
+/// step may add half a cell.
 inline constexpr double drift_allowed = 0.45;
 
 /// Sorting takes as long as this many passes over points that are no longer with those of their cell, more

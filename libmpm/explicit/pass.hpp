@@ -394,33 +394,19 @@ PassSums pass_as_set(const Mix& mix, const Law& law, const ExplicitSettings& set
   return pass_over_tile<pass, f64x4, Geometry>(mix, law, settings, input, t, state);
 }
 
-/// A pass over the points, tile by tile in any order, in each of some steps.
+/// A pass over the points of all tiles, with the velocities that the nodes have.
 template <Pass pass, class Geometry, class Law>
-struct PointsPass {
-  const Mix& mix;
-  const Law& law;
-  const ExplicitSettings& settings;
-  PassInput input;
-  ExplicitState<Geometry>& state;
-  int steps = 1;
-  std::vector<PassSums> of_tile =
-      std::vector<PassSums>(state.grid.tiles.size() * static_cast<std::size_t>(steps));
-
-  void operator()(int tile, int step) {
-    const auto t = static_cast<std::size_t>(tile);
-    of_tile[static_cast<std::size_t>(step) * state.grid.tiles.size() + t] =
-        pass_as_set<pass, Geometry>(mix, law, settings, input, t, state);
-  }
-
-  /// Of a step, when all tiles are done, and its steps before have been asked for.
-  PassSums sums(int step) const {
-    PassSums all;
-    const auto first = of_tile.begin() + step * std::ssize(state.grid.tiles);
-    std::for_each(first, first + std::ssize(state.grid.tiles), [&](const PassSums& one) { all.add(one); });
-    if (state.mixed_groups < 0) state.mixed_groups = all.mixed;
-    state.mixed_since += std::max<std::int64_t>(0, all.mixed - state.mixed_groups);
-    return all;
-  }
-};
+PassSums pass_over_points(const Mix& mix, const Law& law, const ExplicitSettings& settings,
+                          const PassInput& input, ExplicitState<Geometry>& state) {
+  std::vector<PassSums> of_tile(state.grid.tiles.size());
+  for_each_tile(state.grid, [&](std::size_t t) {
+    of_tile[t] = pass_as_set<pass, Geometry>(mix, law, settings, input, t, state);
+  });
+  PassSums all;
+  for (const PassSums& one : of_tile) all.add(one);
+  if (state.mixed_groups < 0) state.mixed_groups = all.mixed;
+  state.mixed_since += std::max<std::int64_t>(0, all.mixed - state.mixed_groups);
+  return all;
+}
 
 }  // namespace tremie::detail

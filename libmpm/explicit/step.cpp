@@ -1,4 +1,4 @@
-// An explicit step of the material point method, from top to bottom, and some that follow each other.
+// An explicit step of the material point method, from top to bottom.
 
 #include "libmpm/explicit/step.hpp"
 
@@ -8,27 +8,6 @@
 #include "libmpm/explicit/wall_fill.hpp"
 
 namespace tremie {
-
-namespace detail {
-
-/// A pass over the points for repeat_passes: `of_block(block)` makes the velocities that it reads.
-template <Pass pass, class Geometry, class Law, class OfBlock>
-auto controls_to_points(bool controls_done, OfBlock of_block, PointsPass<pass, Geometry, Law>& of_tile) {
-  return GridPass{controls_done, [of_block](int block, int) { of_block(static_cast<std::size_t>(block)); },
-                  [&of_tile](int tile, int step) { of_tile(tile, step); }};
-}
-
-/// A pass over the points, with the velocities that the nodes have.
-template <Pass pass, class Geometry, class Law>
-PassSums pass_over_points(const Mix& mix, const Law& law, const ExplicitSettings& settings,
-                          const PassInput& input, ExplicitState<Geometry>& state) {
-  const auto no_change = [](std::size_t) {};
-  PointsPass<pass, Geometry, Law> of_tile{mix, law, settings, input, state};
-  run_passes(state.grid, controls_to_points(true, no_change, of_tile));
-  return of_tile.sums(0);
-}
-
-}  // namespace detail
 
 template <class Geometry>
 ExplicitState<Geometry> start_explicit(Body<Geometry>& body, const YieldLaw& law,
@@ -52,95 +31,47 @@ ExplicitState<Geometry> start_explicit(Body<Geometry>& body, const YieldLaw& law
   return state;
 }
 
+namespace detail {
+
 /// Updates the stress last (USL): the velocities at the end of a step deform and move the points. Points to
 /// grid for the step to come happens in the same pass, with the impulses that the new stresses give in it.
-/// Returns the sums of each of n steps: one where there is a wall, or the points must be sorted.
 template <class Geometry, class Law>
-std::vector<detail::PassSums> stress_last(Body<Geometry>& body, const Law& law,
-                                          const ExplicitSettings& settings,
-                                          const RigidWall<Geometry::dim>& wall, double dt, int n,
-                                          ExplicitState<Geometry>& state) {
+PassSums stress_last(Body<Geometry>& body, const Law& law, const ExplicitSettings& settings,
+                     const RigidWall<Geometry::dim>& wall, double dt, ExplicitState<Geometry>& state) {
   const Vec<Geometry::dim> pull = dt * body.gravity, none = Vec<Geometry::dim>::Zero();
   const double friction = settings.friction_coefficient;
+  const bool flip = settings.transfer.flip;
   // Momentum balance on the grid; the stresses' impulses are in the momenta, but for FLIP.
-  const auto velocities = [&](std::size_t block) {
-    const bool flip = settings.transfer.flip;
-    detail::velocities_from_sums(body, flip ? 0.0 : friction, flip ? none : pull, block, state);
-    if (flip) detail::add_impulses(body, friction, state.grid.forces, flip, pull, block, state);
-  };
-  const bool sort = detail::should_sort(state), all_at_once = wall || sort;
-  if (all_at_once) for_each_block(state.grid, velocities);
-  detail::push_off_wall(wall, body.time + dt, dt, settings.wall_gap, state);
-  if (sort) detail::sort_points(settings, state);
+  for_each_block(state.grid, [&](std::size_t block) {
+    velocities_from_sums(body, flip ? 0.0 : friction, flip ? none : pull, block, state);
+    if (flip) add_impulses(body, friction, state.grid.forces, flip, pull, block, state);
+  });
+  push_off_wall(wall, body.time + dt, dt, settings.wall_gap, state);
+  if (should_sort(state)) sort_points(settings, state);
   look_into_wall_cells(state);
   // Grid to points, stress, motion, points to grid.
-  detail::PointsPass<detail::whole_pass, Geometry, Law> whole{body.mix, law, settings, {dt, state.next_dt},
-                                                              state,    n};
-  repeat_passes(state.grid, n, detail::controls_to_points(all_at_once, velocities, whole));
-  std::vector<detail::PassSums> sums;
-  for (int step = 0; step < n; ++step) sums.push_back(whole.sums(step));
-  return sums;
+  return pass_over_points<whole_pass>(body.mix, law, settings, {dt, state.next_dt}, state);
 }
 
 /// Updates the stress first (USF), the paper's order: with the points' velocities as the grid has them before
-/// the forces act. Sums and n as in stress_last.
+/// the forces act.
 template <class Geometry, class Law>
-std::vector<detail::PassSums> stress_first(Body<Geometry>& body, const Law& law,
-                                           const ExplicitSettings& settings,
-                                           const RigidWall<Geometry::dim>& wall, double dt, int n,
-                                           ExplicitState<Geometry>& state) {
+PassSums stress_first(Body<Geometry>& body, const Law& law, const ExplicitSettings& settings,
+                      const RigidWall<Geometry::dim>& wall, double dt, ExplicitState<Geometry>& state) {
   const Vec<Geometry::dim> pull = dt * body.gravity, none = Vec<Geometry::dim>::Zero();
-  const auto velocities = [&](std::size_t block) {
-    detail::velocities_from_sums(body, 0.0, none, block, state);
-  };
-  const auto impulses = [&](std::size_t block) {
-    const auto add = [&](const auto& of_tiles) {
-      detail::add_impulses(body, settings.friction_coefficient, of_tiles, settings.transfer.flip, pull, block,
-                           state);
-    };
-    state.grid.single ? add(state.grid.single_sums) : add(state.grid.sums);
-  };
-  const bool sort = detail::should_sort(state);
-  if (sort) {
-    for_each_block(state.grid, velocities);
-    detail::sort_points(settings, state);
-  }
+  for_each_block(state.grid, [&](std::size_t block) { velocities_from_sums(body, 0.0, none, block, state); });
+  if (should_sort(state)) sort_points(settings, state);
   look_into_wall_cells(state);
-  detail::PointsPass<detail::stress_pass, Geometry, Law> stress{body.mix, law, settings, {dt, dt}, state, n};
-  detail::PointsPass<detail::motion_pass, Geometry, Law> motion{body.mix, law, settings, {dt, 0.0}, state, n};
-  const auto first = detail::controls_to_points(sort, velocities, stress);
-  const auto second = detail::controls_to_points(bool{wall}, impulses, motion);
-  if (wall) {
-    run_passes(state.grid, first);
-    for_each_block(state.grid, impulses);
-    detail::push_off_wall(wall, body.time + dt, dt, settings.wall_gap, state);
-    run_passes(state.grid, second);
-  } else {
-    repeat_passes(state.grid, n, first, second);
-  }
-  std::vector<detail::PassSums> sums;
-  for (int step = 0; step < n; ++step) {
-    sums.push_back(stress.sums(step));
-    sums.back().add(motion.sums(step));
-  }
+  PassSums sums = pass_over_points<stress_pass>(body.mix, law, settings, {dt, dt}, state);
+  const auto add_from = [&](const auto& of_tiles) {
+    for_each_block(state.grid, [&](std::size_t block) {
+      add_impulses(body, settings.friction_coefficient, of_tiles, settings.transfer.flip, pull, block, state);
+    });
+  };
+  state.grid.single ? add_from(state.grid.single_sums) : add_from(state.grid.sums);
+  push_off_wall(wall, body.time + dt, dt, settings.wall_gap, state);
+  sums.add(pass_over_points<motion_pass>(body.mix, law, settings, {dt, 0.0}, state));
   return sums;
-}
-
-namespace detail {
-
-/// How many steps may follow each other, at most `most`, before points must be sorted or cells at walls
-/// looked into, if they move no more than twice as far in each as in the last. Points that are faster all of
-/// a sudden are sorted late, and those that leave what their tile sees fail.
-template <class Geometry>
-int steps_in_a_row(const ExplicitSettings& settings, const ExplicitState<Geometry>& state, bool wall,
-                   std::int64_t most) {
-  if (wall || settings.fixed_dt != state.next_dt || should_sort(state) || state.holding.drift >= hold_drift)
-    return 1;
-  const double left = std::min(drift_allowed - state.drift, hold_drift - state.holding.drift);
-  const double steps = left / std::max(2.0 * state.farthest, 1e-300);
-  return static_cast<int>(
-      std::clamp(static_cast<double>(std::min<std::int64_t>(most, TileGrid<Geometry::dim>::most_times)), 1.0,
-                 std::max(1.0, steps)));
 }
 
 /// The step to come, with what is known of the last.
@@ -163,7 +94,6 @@ void end_step(const ExplicitSettings& settings, const PassSums& sums, Body<Geome
   report.max_speed = state.max_speed = std::sqrt(sums.speed2);
   report.shear_rate_mean = sums.volume > 0.0 ? sums.volume_rate / sums.volume : 0.0;
   state.lambda_max = sums.lambda;
-  state.farthest = sums.farthest;
   state.drift += sums.farthest;
   state.holding.drift += sums.farthest;
   state.wall_drift += sums.farthest * body.grid.axes[0].h + settings.wall_speed * report.dt;
@@ -173,38 +103,22 @@ void end_step(const ExplicitSettings& settings, const PassSums& sums, Body<Geome
 }  // namespace detail
 
 template <class Geometry>
-std::vector<ExplicitReport> explicit_steps(Body<Geometry>& body, const YieldLaw& law,
-                                           const ExplicitSettings& settings, std::int64_t most,
-                                           ExplicitState<Geometry>& state,
-                                           const RigidWall<Geometry::dim>& wall) {
-  const int n = detail::steps_in_a_row(settings, state, bool{wall}, most);
-  std::vector<ExplicitReport> reports{detail::begin_step(body, law, settings, state)};
-  const double dt = reports[0].dt;
-  const auto sums = settings.stress == StressUpdate::last
-                        ? stress_last(body, law, settings, wall, dt, n, state)
-                        : stress_first(body, law, settings, wall, dt, n, state);
-  for (const detail::PassSums& of_step : sums) {
-    if (&of_step != sums.data()) reports.push_back(detail::begin_step(body, law, settings, state));
-    detail::end_step(settings, of_step, body, state, reports.back());
-    if (reports.back().failed) break;
-  }
-  return reports;
+ExplicitReport explicit_step(Body<Geometry>& body, const YieldLaw& law, const ExplicitSettings& settings,
+                             ExplicitState<Geometry>& state, const RigidWall<Geometry::dim>& wall) {
+  ExplicitReport report = detail::begin_step(body, law, settings, state);
+  const auto step = settings.stress == StressUpdate::last ? detail::stress_last<Geometry, YieldLaw>
+                                                          : detail::stress_first<Geometry, YieldLaw>;
+  detail::end_step(settings, step(body, law, settings, wall, report.dt, state), body, state, report);
+  return report;
 }
 
-template ExplicitState<Axisymmetric> start_explicit(Body<Axisymmetric>&, const YieldLaw&,
-                                                    const ExplicitSettings&, const Shape<2>&);
-template std::vector<ExplicitReport> explicit_steps(Body<Axisymmetric>&, const YieldLaw&,
-                                                    const ExplicitSettings&, std::int64_t,
-                                                    ExplicitState<Axisymmetric>&, const RigidWall<2>&);
-template ExplicitState<PlaneStrain> start_explicit(Body<PlaneStrain>&, const YieldLaw&,
-                                                   const ExplicitSettings&, const Shape<2>&);
-template std::vector<ExplicitReport> explicit_steps(Body<PlaneStrain>&, const YieldLaw&,
-                                                    const ExplicitSettings&, std::int64_t,
-                                                    ExplicitState<PlaneStrain>&, const RigidWall<2>&);
-template ExplicitState<ThreeD> start_explicit(Body<ThreeD>&, const YieldLaw&, const ExplicitSettings&,
-                                              const Shape<3>&);
-template std::vector<ExplicitReport> explicit_steps(Body<ThreeD>&, const YieldLaw&, const ExplicitSettings&,
-                                                    std::int64_t, ExplicitState<ThreeD>&,
-                                                    const RigidWall<3>&);
+#define TREMIE_EXPLICIT_STEPS_IN(Geometry)                                                                   \
+  template ExplicitState<Geometry> start_explicit(Body<Geometry>&, const YieldLaw&, const ExplicitSettings&, \
+                                                  const Shape<Geometry::dim>&);                              \
+  template ExplicitReport explicit_step(Body<Geometry>&, const YieldLaw&, const ExplicitSettings&,           \
+                                        ExplicitState<Geometry>&, const RigidWall<Geometry::dim>&);
+TREMIE_EXPLICIT_STEPS_IN(Axisymmetric)
+TREMIE_EXPLICIT_STEPS_IN(PlaneStrain)
+TREMIE_EXPLICIT_STEPS_IN(ThreeD)
 
 }  // namespace tremie

@@ -2,8 +2,6 @@
 
 // Explicit steps of the material point method. They are compiled in step.cpp, for Axisymmetric, PlaneStrain and ThreeD.
 
-#include <vector>
-
 #include "libmpm/boundary/rigid_wall.hpp"
 #include "libmpm/constitutive/yield_law.hpp"
 #include "libmpm/explicit/parts.hpp"
@@ -16,19 +14,10 @@ template <class Geometry>
 ExplicitState<Geometry> start_explicit(Body<Geometry>& body, const YieldLaw& law,
                                        const ExplicitSettings& settings, const Shape<Geometry::dim>& shape);
 
-/// Advances the body by up to `most` steps, one or more, and reports on each; where one fails it is the last,
-/// and the points are not to be used. They are left on the tiles: write_back brings them to body.points.
-template <class Geometry>
-std::vector<ExplicitReport> explicit_steps(Body<Geometry>& body, const YieldLaw& law,
-                                           const ExplicitSettings& settings, std::int64_t most,
-                                           ExplicitState<Geometry>& state,
-                                           const RigidWall<Geometry::dim>& wall = {});
-
-/// One step.
+/// Advances the body by one step. Where it fails the points are not to be used. They are left on the tiles:
+/// write_back brings them to body.points.
 template <class Geometry>
 ExplicitReport explicit_step(Body<Geometry>& body, const YieldLaw& law, const ExplicitSettings& settings,
-                             ExplicitState<Geometry>& state, const RigidWall<Geometry::dim>& wall = {}) {
-  return explicit_steps(body, law, settings, 1, state, wall).front();
-}
+                             ExplicitState<Geometry>& state, const RigidWall<Geometry::dim>& wall = {});
 
 }  // namespace tremie

@@ -1,8 +1,6 @@
 #pragma once
 
-// The explicit grid laid under its tiles, and who begins with which of them.
-
-#include <omp.h>
+// The explicit grid laid under its tiles.
 
 #include <algorithm>
 
@@ -42,40 +40,6 @@ void join_blocks(TileGrid<D>& grid) {
     for (int k = 0; k < power(2, D); ++k) t.block[k] = find_at<D>(grid.blocks, neighbour(t.at, k, 1));
 }
 
-/// What a pass over a tile costs, in tenths of a group of one cell's points (measured: tests/verification/
-/// explicit.md).
-template <int D>
-std::int64_t cost_of(const Tile<D>& tile) {
-  return 15 + 10 * (tile.last_group - tile.first_group) + 6 * tile.mixed_groups;
-}
-
-/// Where the runs of n threads begin among the tiles, neighbours together: each takes about as long.
-template <int D>
-std::vector<int> even_runs(const std::vector<Tile<D>>& tiles, int n) {
-  std::int64_t all = 0, so_far = 0;
-  for (const Tile<D>& tile : tiles) all += cost_of(tile);
-  std::vector<int> begin{0};
-  for (std::size_t t = 0; t < tiles.size(); ++t) {
-    // A tile is on the side of a border that has its middle.
-    const std::int64_t twice_middle = 2 * so_far + cost_of(tiles[t]);
-    while (twice_middle * n >= 2 * all * std::ssize(begin)) begin.push_back(static_cast<int>(t));
-    so_far += cost_of(tiles[t]);
-  }
-  begin.resize(static_cast<std::size_t>(n) + 1, static_cast<int>(tiles.size()));
-  return begin;
-}
-
-/// Sets the pool to the tiles.
-template <int D>
-void share_out(TileGrid<D>& grid, int n_threads) {
-  if (!grid.pool || grid.pool->size() != n_threads) grid.pool = std::make_unique<ThreadPool>(n_threads);
-  const std::vector<int> begin = even_runs<D>(grid.tiles, n_threads);
-  for (WorkSharing& work : grid.tile_work) work.set_out(begin);
-  grid.block_claims.set_out(grid.blocks.size());
-  grid.blocks_done.set_out(grid.blocks.size()), grid.tiles_done.set_out(grid.tiles.size());
-  grid.passes = 0;
-}
-
 /// Velocities of the nodes that were there before.
 template <int D>
 std::vector<BlockNodes<D>> kept(const std::vector<NodeBlock<D>>& old, const std::vector<BlockNodes<D>>& v,
@@ -88,11 +52,9 @@ std::vector<BlockNodes<D>> kept(const std::vector<NodeBlock<D>>& old, const std:
 
 }  // namespace detail
 
-/// Lays the grid under these tiles, sorted by `at`, for a pool of n_threads. Velocities of nodes that were
-/// there are kept.
+/// Lays the grid under these tiles, sorted by `at`. Velocities of nodes that were there are kept.
 template <int D>
-void lay_tiles(TileGrid<D>& grid, std::vector<Tile<D>> tiles, bool flip,
-               int n_threads = omp_get_max_threads()) {
+void lay_tiles(TileGrid<D>& grid, std::vector<Tile<D>> tiles, bool flip) {
   const std::vector<NodeBlock<D>> old = std::move(grid.blocks);
   grid.tiles = std::move(tiles);
   grid.blocks = {};
@@ -103,7 +65,6 @@ void lay_tiles(TileGrid<D>& grid, std::vector<Tile<D>> tiles, bool flip,
   grid.single ? grid.single_sums.resize(n) : grid.sums.resize(n);
   if (flip) grid.forces.resize(n);
   grid.rows.assign(n, all_rows<D>);
-  detail::share_out<D>(grid, n_threads);
 }
 
 }  // namespace tremie

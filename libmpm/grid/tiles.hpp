@@ -10,15 +10,12 @@
 // for any number of threads. Points reach about half of the rows that their tile sees (a row: the nodes
 // along the last direction); each tile knows which, and the others are neither cleared nor read nor summed.
 //
-// A pass goes over the blocks, for the velocities of their nodes, and over the tiles. A block needs what
-// its 2^D tiles gave in the pass before, and a tile what is in its 2^D blocks: nobody waits for more than
-// that (passes.hpp).
+// A step goes over the blocks, for the velocities of their nodes, and over the tiles (passes.hpp).
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
-#include <memory>
 #include <vector>
 #ifdef __AVX__
 #include <immintrin.h>
@@ -26,7 +23,6 @@
 
 #include "libmpm/grid/active_grid.hpp"
 #include "libmpm/parallel/simd.hpp"
-#include "libmpm/parallel/thread_pool.hpp"
 
 namespace tremie {
 
@@ -110,18 +106,12 @@ using BlockNodes = std::array<f64x4, power(tile_cells, D)>;
 template <int D>
 struct TileGrid {
   static constexpr int tile_nodes = power(tile_span, D);
-  static constexpr int passes_in_a_step = 2, most_times = 8;  ///< that follow each other without a wait
   using Buffer = NodeCube<f64x4, tile_nodes>;
   using SingleBuffer = NodeCube<f32x4, tile_nodes>;
 
   std::array<Axis, D> axes;
   std::vector<Tile<D>> tiles;
   std::vector<NodeBlock<D>> blocks;
-  std::unique_ptr<ThreadPool> pool;
-  std::array<WorkSharing, passes_in_a_step * most_times> tile_work;  ///< in passes that follow each other
-  EpochClaims block_claims;
-  EpochFlags blocks_done, tiles_done;
-  std::int64_t passes = 0;             ///< so far, since the grid was laid
   std::vector<BlockNodes<D>> v;        ///< a block: velocities, in the rows that a tile reaches
   std::vector<BlockNodes<D>> v_start;  ///< a block: before the step's forces, for FLIP alone
   std::vector<Buffer> sums;            ///< a tile: momentum and mass that the points give
