@@ -86,7 +86,7 @@ void set_threads(Scene& scene, int threads) { scene.functions->threads(scene.tes
 int default_threads(const Scene& scene) {
   const SpaceKind space = model_of(scene).space;
   if (!test_run::is_3d(space)) return 1;  // spares the estimate
-  return test_run::default_threads(estimate(scene)->points, space,
+  return test_run::default_threads(estimate(scene)->points, space, model_of(scene).scheme,
                                    static_cast<int>(std::thread::hardware_concurrency()));
 }
 
