@@ -8,6 +8,7 @@
 #include <omp.h>
 
 #include "apparatus/verification/references/bodies.hpp"
+#include "libmpm/explicit/single_precision.hpp"
 #include "libmpm/explicit/step.hpp"
 
 namespace tremie {
