@@ -11,7 +11,7 @@
 
 #include "apparatus/calibration/lab.hpp"
 #include "apparatus/calibration/posterior.hpp"
-#include "apparatus/study/row.hpp"
+#include "apparatus/study/rows/row.hpp"
 
 namespace tremie::calibration {
 

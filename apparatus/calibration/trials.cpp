@@ -6,7 +6,7 @@
 #include "apparatus/calibration/calibrate.hpp"
 #include "apparatus/registry/error_estimate.hpp"
 #include "apparatus/scene/input_error.hpp"
-#include "apparatus/study/pool.hpp"
+#include "apparatus/study/rows/pool.hpp"
 
 namespace tremie::calibration {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "apparatus/study/journal.hpp"
-#include "apparatus/study/pool.hpp"
+#include "apparatus/study/rows/journal.hpp"
+#include "apparatus/study/rows/pool.hpp"
 #include "tests/apparatus/shell.hpp"
 #include "tests/study/quick_study.hpp"
 

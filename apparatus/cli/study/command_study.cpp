@@ -22,10 +22,10 @@
 #include "apparatus/report/process.hpp"
 #include "apparatus/report/rheometer_files.hpp"
 #include "apparatus/scene/input_error.hpp"
-#include "apparatus/study/engines.hpp"
-#include "apparatus/study/files.hpp"
-#include "apparatus/study/pool.hpp"
-#include "apparatus/study/summary.hpp"
+#include "apparatus/study/rows/engines.hpp"
+#include "apparatus/study/rows/files.hpp"
+#include "apparatus/study/rows/pool.hpp"
+#include "apparatus/study/rows/summary.hpp"
 #include "libmpm/io/write_error.hpp"
 
 namespace tremie::cli {

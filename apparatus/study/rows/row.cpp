@@ -1,4 +1,4 @@
-#include "apparatus/study/row.hpp"
+#include "apparatus/study/rows/row.hpp"
 
 #include <fmt/format.h>
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apparatus/report/rheometer_files.hpp"
-#include "apparatus/study/files.hpp"
+#include "apparatus/study/rows/files.hpp"
 
 namespace tremie::study {
 

@@ -1,4 +1,4 @@
-#include "apparatus/study/summary.hpp"
+#include "apparatus/study/rows/summary.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "apparatus/study/indices.hpp"
+#include "apparatus/study/rows/indices.hpp"
 #include "libmpm/io/write_error.hpp"
 
 namespace tremie::study {

@@ -1,4 +1,4 @@
-#include "apparatus/study/files.hpp"
+#include "apparatus/study/rows/files.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "apparatus/study/indices.hpp"
+#include "apparatus/study/rows/indices.hpp"
 
 namespace tremie::study {
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "apparatus/study/design.hpp"
-#include "apparatus/study/journal.hpp"
+#include "apparatus/study/rows/journal.hpp"
 
 namespace tremie::study {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "apparatus/study/design.hpp"
-#include "apparatus/study/journal.hpp"
+#include "apparatus/study/rows/journal.hpp"
 
 namespace tremie::study {
 

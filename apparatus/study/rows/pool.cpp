@@ -1,4 +1,4 @@
-#include "apparatus/study/pool.hpp"
+#include "apparatus/study/rows/pool.hpp"
 
 #include <fmt/format.h>
 #include <poll.h>

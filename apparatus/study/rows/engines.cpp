@@ -1,4 +1,4 @@
-#include "apparatus/study/engines.hpp"
+#include "apparatus/study/rows/engines.hpp"
 
 #include <fmt/format.h>
 

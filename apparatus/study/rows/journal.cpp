@@ -1,4 +1,4 @@
-#include "apparatus/study/journal.hpp"
+#include "apparatus/study/rows/journal.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

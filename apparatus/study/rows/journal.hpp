@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "apparatus/study/design.hpp"
-#include "apparatus/study/row.hpp"
+#include "apparatus/study/rows/row.hpp"
 
 namespace tremie::study {
 
