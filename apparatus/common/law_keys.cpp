@@ -55,8 +55,9 @@ std::vector<std::string> mix_keys_of_laws() {
 /// Whether the scene has just the keys of [mix] that the law asks for.
 template <class L>
 bool has_its_mix_keys(const Values& values, const L& law) {
+  const auto keys = law.keys();
   return law.viscous != values.has(plastic_viscosity) &&
-         std::all_of(law.keys().begin(), law.keys().end(),
+         std::all_of(keys.begin(), keys.end(),
                      [&](const auto& key) { return section_of(key.name) != "mix" || values.has(key.name); });
 }
 
@@ -91,8 +92,9 @@ std::vector<Key> viscosity_keys() {
       if (section_of(of_law.name) != "mix" || find(keys, name_of(of_law.name))) continue;
       keys.push_back(scene_key(of_law));
       keys.back().needed_with = first;
-      if (first.empty()) first = keys.back().name;
-      keys.front().needed_without = first;
+      if (!first.empty()) continue;
+      first = keys.back().name;
+      add_once(keys.front().needed_without, first);
     }
   });
   return keys;

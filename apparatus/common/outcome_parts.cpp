@@ -26,7 +26,7 @@ std::string flocculation_use(const Mix& mix) {
 }
 
 void add_model_uses(const Model& model, std::vector<std::string>& lines) {
-  lines.push_back(is_exact(model.law) ? "regularisation: left out (model.yield = \"exact\")"
+  lines.push_back(is_exact(model.law) ? "regularisation: left out (exact yield)"
                                       : "regularisation: of the yield law");
   lines.push_back(model.transfer == TransferKind::flip ? "FLIP blend: in the transfer"
                                                        : "FLIP blend: left out (model.transfer = \"apic\")");

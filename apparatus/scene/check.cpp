@@ -221,7 +221,8 @@ class Checker {
       return !name.empty() && values_.has(dotted(place, name));
     };
     if (there(key.needed_with)) return true;
-    return key.required && applies(key, place) && !there(key.needed_without);
+    return key.required && applies(key, place) &&
+           std::none_of(key.needed_without.begin(), key.needed_without.end(), there);
   }
 
   static Value default_of(const Key& key) {

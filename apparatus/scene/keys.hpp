@@ -73,10 +73,11 @@ struct Key {
   std::vector<std::string> words =
       {};  ///< choice: all there are; quantity: taken in place of one ("instant")
   Shape shape = Shape::one;
-  std::string fallback = {};        ///< the default as in TOML, without the quotes of a string; empty: none
-  bool required = false;            ///< where the section is there and `only_with` holds
-  std::string needed_with = {};     ///< required beside this key of the section, and only there
-  std::string needed_without = {};  ///< `required`, but not beside this key of the section
+  std::string fallback = {};     ///< the default as in TOML, without the quotes of a string; empty: none
+  bool required = false;         ///< where the section is there and `only_with` holds
+  std::string needed_with = {};  ///< required beside this key of the section, and only there
+  std::vector<std::string> needed_without =
+      {};  ///< `required`, but not beside one of these keys of the section
   std::optional<Condition> only_with = {};
   std::string example = {};  ///< for `tremie new`, where there is no default
   std::string help = {};
