@@ -66,7 +66,8 @@ std::pair<std::size_t, std::size_t> constant_speed(const std::vector<double>& om
 
 /// Keeps the first section of constant speed as a torque decay.
 double keep_decay(NumberTable& table, const std::string& name, std::vector<std::string>& understood) {
-  const auto [begin, end] = constant_speed(table.column[1]);
+  const auto section = constant_speed(table.column[1]);
+  const std::size_t begin = section.first, end = section.second;
   if (begin == end)
     throw RecordError(
         at_position(name, table.header_line, 1,
