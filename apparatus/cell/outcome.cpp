@@ -39,10 +39,17 @@ scene::Outcome outcome(const Scene& scene, const CellResult& result) {
   const CellSample& last = result.samples.back();
   scene::Outcome o;
   o.apparatus = "cell";
-  o.results = {{"flocculation_error_max", scene::number(result.flocculation_error_max)},
+  double stress_max = none;
+  for (const CellSample& s : result.samples)
+    if (s.shear_stress)
+      stress_max = std::isfinite(stress_max) ? std::max(stress_max, *s.shear_stress) : *s.shear_stress;
+  o.results = {{"stress_max_Pa", scene::number(stress_max)},
                {"stress_end_Pa", scene::number(last.shear_stress)},
                {"flocculation_end", scene::number(last.flocculation)},
-               {"hysteresis_area_Pa_per_s", scene::number(result.hysteresis_area)}};
+               {"hysteresis_area_Pa_per_s", scene::number(result.hysteresis_area)},
+               {"flocculation_error_max", scene::number(result.flocculation_error_max)}};
+  o.asked = scene.name + ": one material cell";
+  o.answers = {{"stress_max_Pa", "largest stress", "Pa", 1}, {"stress_end_Pa", "at the end", "Pa", 1}};
   o.series = series_of(result);
   o.checks.volume_change = o.checks.mass_error = o.checks.max_speed_end = none;  // a cell has none
   double largest = 0.0;
@@ -59,16 +66,31 @@ scene::Outcome outcome(const Scene& scene, const CellResult& result) {
   const bool any_stress = std::any_of(result.samples.begin(), result.samples.end(),
                                       [](const CellSample& s) { return s.shear_stress.has_value(); });
   if (any_stress)
-    o.charts = {{"stress.svg",
+    o.charts = {{"flow_curve.svg",
+                 scene.name + ": flow curve",
+                 "shear rate (1/s)",
+                 "shear stress (Pa)",
+                 {"shear_stress_Pa"},
+                 {},
+                 {},
+                 "",
+                 "shear_rate_per_s"},
+                {"stress.svg",
                  scene.name + ": shear stress",
-                 "time in s",
-                 "shear stress in Pa",
+                 "time (s)",
+                 "shear stress (Pa)",
                  {"shear_stress_Pa"},
                  {}}};
   if (scene.cell.mix.thixotropy)
-    o.charts.push_back(
-        {"flocculation.svg", scene.name + ": flocculation", "time in s", "lambda", {"flocculation"}, {}});
-  o.lines = {"stress at the end    " + shown(last.shear_stress, " Pa"),
+    o.charts.push_back({"flocculation.svg",
+                        scene.name + ": flocculation",
+                        "time (s)",
+                        "flocculation state λ",
+                        {"flocculation"},
+                        {}});
+  o.lines = {"largest stress       " +
+                 shown(std::isfinite(stress_max) ? std::optional(stress_max) : std::nullopt, " Pa"),
+             "stress at the end    " + shown(last.shear_stress, " Pa"),
              "flocculation         " + shown(last.flocculation, ""),
              "largest error        " + shown(result.flocculation_error_max, " of lambda against CVODE"),
              "hysteresis area      " + shown(result.hysteresis_area, " Pa/s")};

@@ -10,9 +10,8 @@
 #include "apparatus/cli/commands.hpp"
 #include "apparatus/cli/set_option.hpp"
 #include "apparatus/registry/registry.hpp"
-#include "apparatus/report/html.hpp"
-#include "apparatus/report/result_files.hpp"
 #include "apparatus/report/rheometer_files.hpp"
+#include "apparatus/report/run_files/result_files.hpp"
 #include "apparatus/report/run_folder.hpp"
 #include "libmpm/io/write_error.hpp"
 
@@ -26,34 +25,10 @@ struct Options {
   bool quiet = false, force = false;
 };
 
-/// Stress over shear rate: the loop that a person looks for, with time as colour.
-std::string flow_curve_script(const std::string& title) {
-  return "set terminal svg size 720,440 dynamic background rgb 'white' font 'sans,14'\nset output "
-         "'flow_curve.svg'\n"
-         "set datafile separator ','\nset grid linecolor rgb '#dddddd'\nset border 3\nset tics nomirror out\n"
-         "set xlabel 'shear rate in 1/s'\nset ylabel 'shear stress in Pa'\nset cblabel 'time in s'\nunset "
-         "key\n"
-         "set palette defined (0 '#0b5394', 1 '#e0a030')\nset title '" +
-         title +
-         "' noenhanced\n"
-         "plot 'timeseries.csv' every ::1 using 2:3:1 with lines linewidth 2 linecolor palette\n";
-}
-
-std::vector<std::string> write(const cell::Scene& scene, scene::Outcome outcome,
-                               const std::filesystem::path& folder) {
-  report::ResultFiles files(folder, scene.resolved);
+std::vector<std::string> write(const cell::Scene& scene, const scene::Outcome& outcome,
+                               const std::string& command, const std::filesystem::path& folder) {
+  report::ResultFiles files(folder, scene.resolved, command);
   std::vector<std::string> notes = files.finish(outcome);
-  if (outcome.charts.empty() ||
-      outcome.charts.front().file != "stress.svg") {  // nothing flowed: no flow curve
-    io::write_text(folder / "summary.json", summary_of(outcome).dump(2) + "\n");
-    return notes;
-  }
-  std::string title = scene.name;
-  std::erase(title, '\'');
-  const std::string note = draw(folder, flow_curve_script(title));
-  if (!note.empty()) notes.push_back(note);
-  outcome.charts.insert(outcome.charts.begin(), {"flow_curve.svg", scene.name, "", "", {}, {}});
-  io::write_text(folder / "report.html", report::report_html(outcome, scene.resolved, folder));
   io::write_text(folder / "summary.json", summary_of(outcome).dump(2) + "\n");
   return notes;
 }
@@ -67,7 +42,8 @@ int run(const Options& options) {
   report::RunFolder folder(options.out.empty() ? "runs/" + scene.name : options.out, options.force);
   scene::Outcome outcome = cell::outcome(scene, result);
   watch.stop(outcome.cost);
-  const std::vector<std::string> notes = write(scene, outcome, folder.staging());
+  const std::vector<std::string> notes =
+      write(scene, outcome, "tremie cell " + options.scene, folder.staging());
   folder.publish();
   for (const auto& reason : outcome.checks.reasons) fmt::print(stderr, "not to be trusted: {}\n", reason);
   if (!options.quiet) {

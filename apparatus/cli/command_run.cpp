@@ -15,7 +15,8 @@
 #include "apparatus/cli/set_option.hpp"
 #include "apparatus/registry/error_estimate.hpp"
 #include "apparatus/registry/registry.hpp"
-#include "apparatus/report/result_files.hpp"
+#include "apparatus/report/run_files/html.hpp"
+#include "apparatus/report/run_files/result_files.hpp"
 #include "apparatus/report/run_folder.hpp"
 
 namespace tremie::cli {
@@ -65,6 +66,8 @@ int exit_code_of(const scene::Outcome& outcome) {
 
 void print_outcome(const scene::Scene& scene, const scene::Outcome& outcome) {
   for (const auto& line : outcome.lines) fmt::print("{}\n", line);
+  if (const std::string line = report::measured_line(outcome); !line.empty())
+    fmt::print("measured        {}\n", line);
   for (const auto& line : scene::error_lines(scene, outcome)) fmt::print("error           {}\n", line);
   const Checks& c = outcome.checks;
   fmt::print("checks          volume {:+.3g} %, mass {:.1e}, {} unconverged steps, {} points lost\n",
@@ -120,9 +123,17 @@ void note_accuracy(const Options& options, scene::Outcome& outcome) {
                                                  options.accuracy, error.bars.front().name, 100.0 * reached));
 }
 
+/// What repeats the run, to be typed where it was.
+std::string command_of(const Options& options) {
+  std::string text = "tremie run " + options.scene;
+  for (const auto& change : options.overrides) text += " --set '" + change + "'";
+  if (!options.accuracy.empty()) return text + " --accuracy '" + options.accuracy + "'";
+  return options.with_error ? text + " --with-error" : text;
+}
+
 scene::Outcome run_and_write(const scene::Scene& scene, const Options& options,
                              const report::RunFolder& folder, std::vector<std::string>& notes) {
-  report::ResultFiles files(folder.staging(), scene.resolved);
+  report::ResultFiles files(folder.staging(), scene.resolved, command_of(options), scene.output.frames);
   scene::Observer observer;
   observer.interrupted = &stop_requested;
   observer.on_frame = [&](const Frame& frame) { files.frame(frame); };

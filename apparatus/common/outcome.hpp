@@ -3,6 +3,7 @@
 // A result in the one form that the writers, the charts and the screen understand, whatever the apparatus.
 // Each apparatus states once which of its numbers go under which name.
 
+#include <array>
 #include <atomic>
 #include <functional>
 #include <optional>
@@ -50,6 +51,7 @@ struct Chart {
   std::vector<Reference> references;
   std::vector<std::string> labels = {};  ///< of the columns, where there are several
   std::string table = {};                ///< file of the table that the columns are in; empty: the series
+  std::string over = {};                 ///< column on the horizontal axis; empty: the first
 };
 
 /// Columns over something else than the series' time, in a file of its own and in results.h5.
@@ -69,6 +71,36 @@ struct ErrorEstimate {
   double cpu = 0.0;   ///< that they cost [s]
 };
 
+/// A result that stands in the first line of a report: "spread 348 ± 8 mm". `name`: of the result; `word`
+/// before the number, empty for none; `digits` behind the point.
+struct Answer {
+  std::string name, word, unit;
+  int digits = 0;
+};
+
+/// What was measured on the real concrete for what the run computed, in the unit of the result `name`.
+struct Measurement {
+  std::string name, word, unit;
+  double value = 0.0, tolerance = 0.0;
+  double difference = 0.0;  ///< computed minus measured
+};
+
+using Outline = std::vector<std::array<double, 2>>;  ///< a line of walls [m]
+
+/// How the frames' points are looked at: which of x, y, z goes across and which up, and the walls about them.
+struct Stage {
+  int across = 0, up = 2;
+  int depth = 1;       ///< the third direction
+  double slice = 0.0;  ///< points within this of depth = 0 are shown [m]; 0: all
+  bool mirrored = false;
+  std::vector<Outline> walls;   ///< that stay
+  std::vector<Outline> lifted;  ///< that rise from time 0 on
+  double lift_speed = 0.0;      ///< [m/s]
+  double point_size = 0.005;    ///< about the distance of points [m]
+  std::string plan = {};        ///< result that is the body's diameter from above [mm]; empty: no plan
+  double ring_diameter = 0.0;   ///< of the circle on the plate [m]; 0: none
+};
+
 struct Outcome {
   std::string apparatus;
   Status status = Status::completed;
@@ -82,6 +114,13 @@ struct Outcome {
   bool pictured = true;            ///< tremie-picture has a way to draw it
   std::vector<ResultTable> tables = {};
   std::optional<ErrorEstimate> error = {};  ///< where it was asked for
+  std::string asked = {};                   ///< "Mix A, slump flow after 240 s of rest"
+  std::vector<Answer> answers = {};
+  bool moving_at_end = false;  ///< still flowed when its time was over: no class, no verdict
+  std::optional<Measurement> measured = {};
+  std::string judged = {};                ///< class and accepted range, in a sentence; empty: none
+  std::vector<std::string> remarks = {};  ///< what a reader must know to read the result rightly
+  std::optional<Stage> stage = {};        ///< empty: no shape to be seen
 };
 
 /// The value of a result by its name; nullptr where there is none.

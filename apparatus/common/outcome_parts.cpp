@@ -36,6 +36,12 @@ void add_model_uses(const Model& model, std::vector<std::string>& lines) {
                         : "sums between points and grid: in double precision");
 }
 
+std::string asked_text(const std::string& mix_name, const std::string& test, double rest) {
+  const std::string mix = mix_name.empty() ? "The mix" : mix_name;
+  return rest > 0.0 ? fmt::format("{}, {} after {:g} s of rest", mix, test, rest)
+                    : fmt::format("{}, {} without rest", mix, test);
+}
+
 ResultValue word_or_null(const std::string& word) {
   if (word.empty()) return std::monostate{};
   return word;

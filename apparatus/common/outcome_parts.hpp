@@ -35,6 +35,9 @@ void add_flocculation_line(std::optional<double> start, std::optional<double> en
 std::string flocculation_use(const Mix& mix);
 void add_model_uses(const Model& model, std::vector<std::string>& lines);
 
+/// "slump flow at once", "… after 240 s of rest": what was asked of which mix.
+std::string asked_text(const std::string& mix_name, const std::string& test, double rest);
+
 /// A word, or null for an empty one.
 ResultValue word_or_null(const std::string& word);
 

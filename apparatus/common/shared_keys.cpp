@@ -198,8 +198,23 @@ Measured read_measured(const Values& values) {
   const auto length = [&](const char* key) -> std::optional<double> {
     return values.has(key) ? std::optional(values.number(key)) : std::nullopt;
   };
-  return {text("mix.name"), text("mix.source"), length("mix.slump_flow_0"), length("mix.slump_flow_240"),
-          length("mix.slump_flow_tolerance").value_or(0.0)};
+  return {text("mix.name"),
+          text("mix.source"),
+          length("mix.slump_flow_0"),
+          length("mix.slump_flow_240"),
+          length("mix.slump_flow_tolerance").value_or(0.0),
+          length("measured.spread"),
+          length("measured.tolerance"),
+          length("measured.t500")};
+}
+
+Section measured_section() {
+  return {.name = "measured",
+          .help = "What was measured on the real concrete, for the verdict; not used by the run.",
+          .keys = {{.name = "spread", .range = positive, .example = "590 mm", .help = "slump flow"},
+                   {.name = "tolerance", .range = positive, .fallback = "30 mm", .help = "of the spread"},
+                   {.name = "t500", .dimension = Dimension::time, .range = positive, .example = "2.5 s"}},
+          .optional = true};
 }
 
 Section floor_section() {
@@ -307,20 +322,25 @@ Model read_model(const Values& values) {
 }
 
 Section output_section() {
-  return {
-      .name = "output",
-      .help = "What is written beside the result.",
-      .keys = {
-          {.name = "frames",
-           .kind = Kind::boolean,
-           .fallback = "true",
-           .help = "the points over time, for ParaView"},
-          {.name = "frame_interval", .dimension = Dimension::time, .range = positive, .fallback = "0.5 s"},
-      }};
+  return {.name = "output",
+          .help = "What is written beside the result.",
+          .keys = {
+              {.name = "frames",
+               .kind = Kind::boolean,
+               .fallback = "true",
+               .help = "the points over time, for ParaView"},
+              {.name = "frame_interval",
+               .dimension = Dimension::time,
+               .range = positive,
+               .words = {"auto"},
+               .fallback = "auto",
+               .help = "auto: often while it flows fast, seldom later"},
+          }};
 }
 
 Output read_output(const Values& values) {
-  return {values.number("output.frame_interval"), values.boolean("output.frames")};
+  return {values.number_unless("output.frame_interval", "auto").value_or(0.0),
+          values.boolean("output.frames")};
 }
 
 }  // namespace tremie::scene

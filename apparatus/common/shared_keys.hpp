@@ -25,8 +25,14 @@ struct Measured {
   std::string name, source;
   std::optional<double> slump_flow_0, slump_flow_240;  ///< [m], without and with 240 s of rest
   double tolerance = 0.0;                              ///< of both [m]
+  // [measured], which wins over the mix's:
+  std::optional<double> spread = {}, spread_tolerance = {};  ///< [m]
+  std::optional<double> t500 = {};                           ///< [s]
 };
 Measured read_measured(const Values& values);
+
+/// [measured], of a slump flow.
+Section measured_section();
 
 /// [floor].
 Section floor_section();
@@ -48,7 +54,7 @@ Model read_model(const Values& values);
 /// [output].
 Section output_section();
 struct Output {
-  double frame_interval = 0.5;  ///< [s]
+  double frame_interval = 0.0;  ///< [s]; 0: chosen (run/run_loop.hpp)
   bool frames = true;
 };
 Output read_output(const Values& values);

@@ -12,7 +12,7 @@ scene::Apparatus apparatus() {
       scene::icar_vane_scene, scene::icar_vane_uses,
       [](icar_vane::Scene scene, const scene::RunOptions& options, const scene::Observer& observer) {
         scene.with_reference = scene.with_reference && !options.coarser;
-        return scene::run_icar_vane(scene, options.all_frames, observer);
+        return scene::run_icar_vane(scene, options.measured, options.all_frames, observer);
       },
       [](const Scene& scene) { return estimate(scene); });
 }

@@ -39,7 +39,7 @@ struct Scene {
   double average_time = 2.0;    ///< the last part of each hold, over which the torque is averaged [s]
   double orientation = 0.0;     ///< of the blades against the points, plane sections alone [rad]
   Model model;                  ///< space couette or plane
-  double frame_interval = 0.5;  ///< [s]
+  double frame_interval = 0.0;  ///< [s]
   int threads = 1;
   bool with_reference = true;  ///< read torque_couette_reference; no scene key, for runs that are coarser
 };

@@ -231,7 +231,7 @@ icar_vane::Scene icar_vane_scene(const Values& values) {
   read_schedule(values, scene);
   scene.orientation = values.number("test.orientation");
   scene.model = read_model(values);
-  scene.frame_interval = values.number("output.frame_interval");
+  scene.frame_interval = read_output(values).frame_interval;
   check_cells(values, scene);
   return scene;
 }

@@ -33,9 +33,16 @@ void add_comparison(const icar_vane::Scene& scene, const icar_vane::Results& r,
         row("plastic viscosity", in.plastic_viscosity, r.reiner_riwlin->plastic_viscosity, "Pa.s"));
   }
   if (r.static_yield_stress_apparent)
-    lines.push_back(row("static yield stress", in.static_yield_stress, r.static_yield_stress_apparent, "Pa"));
+    lines.push_back(
+        row("apparent at the peak", in.static_yield_stress, r.static_yield_stress_apparent, "Pa"));
   if (r.dynamic_yield_stress_apparent)
-    lines.push_back(row("dynamic yield stress", in.yield_stress, r.dynamic_yield_stress_apparent, "Pa"));
+    lines.push_back(row("apparent at the end", in.yield_stress, r.dynamic_yield_stress_apparent, "Pa"));
+  if (r.dynamic_yield_stress_apparent && scene.mix.thixotropy && scene.rest > 0.0 && scene.speeds.empty())
+    lines.push_back(
+        "                apparent: T/(2 pi r^2 h), with the viscous part and what flocculation is left in "
+        "it; beside it\n"
+        "                the static and the dynamic yield stress that went in. Not an error of the "
+        "computation");
   if (in.flocculation)
     lines.push_back(row("flocculation at the start", *in.flocculation, r.flocculation_apparent_start, ""));
   if (in.alpha) lines.push_back(row("alpha", *in.alpha, r.alpha_apparent, ""));

@@ -15,7 +15,7 @@ using icar_vane::CurvePoint;
 using icar_vane::ProfilePoint;
 using icar_vane::Sample;
 
-constexpr const char* time_label = "time since the vane began to turn / s";
+constexpr const char* time_label = "time since the vane began to turn (s)";
 
 /// What went in, to be read beside what the instrument would report.
 std::vector<Result> input_of(const icar_vane::Scene& scene) {
@@ -86,7 +86,11 @@ ResultTable profile_of(const std::vector<ProfilePoint>& profile) {
   return table;
 }
 
-/// The record as `tremie fit` reads it: magnitudes, and no reading before the vane has its speed.
+/// Share of the torque that may accelerate the concrete in a reading of the record.
+constexpr double steady_enough = 0.02;
+
+/// The record as `tremie fit` reads it: magnitudes, and no reading before the vane has its speed and the concrete
+/// has followed it: a torque that accelerates the concrete is none of its rheology.
 ResultTable record_of(const icar_vane::Scene& scene, const icar_vane::Outcome& raw) {
   if (!scene.speeds.empty()) {
     const auto& curve = raw.results.flow_curve;
@@ -96,7 +100,11 @@ ResultTable record_of(const icar_vane::Scene& scene, const icar_vane::Outcome& r
   }
   const double direction = scene.speed < 0.0 ? -1.0 : 1.0;
   std::vector<Sample> record;
-  std::copy_if(raw.series.begin(), raw.series.end(), std::back_inserter(record),
+  const auto steady = std::find_if(raw.series.begin(), raw.series.end(), [&](const Sample& s) {
+    return s.speed == scene.speed && direction * s.torque > 0.0 &&
+           std::abs(s.momentum_rate) < steady_enough * std::abs(s.torque);
+  });
+  std::copy_if(steady, raw.series.end(), std::back_inserter(record),
                [&](const Sample& s) { return s.speed == scene.speed && direction * s.torque > 0.0; });
   return {"torque.csv",
           {column("time_s", record, [](const Sample& s) { return s.time; }),
@@ -107,7 +115,7 @@ Chart torque_chart(const icar_vane::Results& r, bool constant_speed) {
   Chart chart{"torque.svg",
               "Torque",
               time_label,
-              "torque / N m",
+              "torque (N·m)",
               {"torque_N_m", "torque_wall_N_m", "torque_power_N_m"},
               {},
               {"on the blades", "on the container", "power / speed"}};
@@ -117,33 +125,76 @@ Chart torque_chart(const icar_vane::Results& r, bool constant_speed) {
 }
 
 Chart profile_chart(const char* file, const char* title, const char* y_label, const char* name) {
-  return {file, title, "radius / mm", y_label, {name}, {}, {}, "profile.csv"};
+  return {file, title, "radius (mm)", y_label, {name}, {}, {}, "profile.csv"};
 }
 
 std::vector<Chart> charts_of(const icar_vane::Scene& scene, const icar_vane::Results& r) {
   std::vector<Chart> charts{torque_chart(r, scene.speeds.empty()),
                             profile_chart("shear_rate_profile.svg", "Shear rate at the end",
-                                          "shear rate / (1/s)", "shear_rate_per_s")};
+                                          "shear rate (1/s)", "shear_rate_per_s")};
   if (!scene.speeds.empty())
     charts.push_back({"flow_curve.svg",
                       "Flow curve",
-                      "speed / (rev/s)",
-                      "torque / N m",
+                      "speed (rev/s)",
+                      "torque (N·m)",
                       {"torque_N_m"},
                       {},
                       {},
                       "flow_curve.csv"});
   if (!scene.mix.thixotropy) return charts;
-  charts.push_back(profile_chart("flocculation_profile.svg", "Flocculation at the end", "flocculation state",
-                                 "flocculation"));
+  charts.push_back(profile_chart("flocculation_profile.svg", "Flocculation at the end",
+                                 "flocculation state λ", "flocculation"));
   charts.push_back({"flocculation.svg",
                     "Flocculation",
                     time_label,
-                    "flocculation state",
+                    "flocculation state λ",
                     {"flocculation_mean", "flocculation_apparent"},
                     {},
                     {"volume mean", "apparent, from the torque"}});
   return charts;
+}
+
+std::string test_text(const icar_vane::Scene& scene) {
+  return scene.speeds.empty() ? fmt::format("vane at {:g} rev/s", scene.speed)
+                              : fmt::format("vane, flow curve of {} speeds", scene.speeds.size());
+}
+
+std::vector<Answer> answers_of(const icar_vane::Results& r) {
+  if (r.reiner_riwlin) return {{"torque_end_N_m", "torque at the end", "N·m", 3}};
+  return {{"torque_peak_N_m", "torque at its peak", "N·m", 3}, {"torque_end_N_m", "at the end", "N·m", 3}};
+}
+
+/// How the instrument's readings are to be taken.
+std::vector<std::string> remarks_on(const icar_vane::Scene& scene, const icar_vane::Results& r) {
+  std::vector<std::string> remarks;
+  if (r.reiner_riwlin)
+    remarks.push_back(fmt::format(
+        "From this curve an instrument reports a yield stress of {:.4g} Pa and a plastic viscosity of "
+        "{:.4g} Pa·s; {:.4g} Pa and {:.4g} Pa·s went in.",
+        r.reiner_riwlin->yield_stress, r.reiner_riwlin->plastic_viscosity, scene.mix.tau_0, scene.mix.mu));
+  if (scene.mix.thixotropy && scene.rest > 0.0 && scene.speeds.empty())
+    remarks.push_back(
+        "The apparent yield stresses are T/(2πr²h), as the instrument reads them: in rested concrete the one "
+        "at the "
+        "end still holds what flocculation is left there and the viscous part, so it lies far above the "
+        "dynamic "
+        "yield stress that went in. It is what the instrument would say, not an error of the computation.");
+  return remarks;
+}
+
+/// Blades in the plane have a shape to be seen; a solid cylinder's section is a line.
+std::optional<Stage> stage_of(const icar_vane::Scene& scene) {
+  if (scene.model.space != SpaceKind::plane) return std::nullopt;
+  Stage stage;
+  stage.up = 1, stage.depth = 2;
+  Outline circle;
+  for (int i = 0; i <= 96; ++i) {
+    const double a = 2.0 * 3.14159265358979 * i / 96.0;
+    circle.push_back({scene.vane.container_radius * std::cos(a), scene.vane.container_radius * std::sin(a)});
+  }
+  stage.walls = {circle};
+  stage.point_size = scene.model.cell[0] / scene.model.points_per_cell[0];
+  return stage;
 }
 
 double whole_time(const icar_vane::Scene& scene) {
@@ -165,7 +216,8 @@ icar_vane::Observer observe(double duration, bool all_frames, const Observer& ob
 
 }  // namespace
 
-Outcome run_icar_vane(const icar_vane::Scene& scene, bool all_frames, const Observer& observer) {
+Outcome run_icar_vane(const icar_vane::Scene& scene, const Measured& measured, bool all_frames,
+                      const Observer& observer) {
   icar_vane::Outcome raw = icar_vane::run(scene, observe(whole_time(scene), all_frames, observer));
   if (!all_frames && observer.on_frame) observer.on_frame(raw.final_frame);
   Outcome outcome;
@@ -175,6 +227,10 @@ Outcome run_icar_vane(const icar_vane::Scene& scene, bool all_frames, const Obse
   outcome.checks = std::move(raw.checks);
   outcome.cost = raw.cost;
   outcome.series = series_of(raw.series, scene.mix.thixotropy.has_value());
+  outcome.asked = asked_text(measured.name, test_text(scene), scene.rest);
+  outcome.answers = answers_of(raw.results);
+  outcome.remarks = remarks_on(scene, raw.results);
+  outcome.stage = stage_of(scene);
   outcome.tables = {profile_of(raw.results.profile), record_of(scene, raw)};
   outcome.charts = charts_of(scene, raw.results);
   outcome.lines = vane_lines(scene, raw);

@@ -14,7 +14,7 @@ scene::Apparatus apparatus() {
        {"t400_s", "t400", "s", 2}},
       scene::l_box_scene, scene::l_box_uses,
       [](const Scene& scene, const scene::RunOptions& options, const scene::Observer& observer) {
-        return scene::run_l_box(scene, options.all_frames, observer);
+        return scene::run_l_box(scene, options.measured, options.all_frames, observer);
       },
       [](const Scene& scene) { return estimate(scene); });
 }

@@ -125,9 +125,10 @@ Outcome run_in(const Scene& scene, const Observer& observer) {
       .speed = [](const StepReport& step) { return step.bulk_speed; },
       .free_to_flow =
           [&] { return !scene.gate_speed || *scene.gate_speed * body.time > scene.box.channel_height; }};
-  const auto stopped_at = test_run::run_loop(
-      flow, {observer.on_frame, observer.interrupted, scene.frame_interval, scene.frame_interval},
-      outcome.status, outcome.checks, outcome.cost);
+  const auto stopped_at = test_run::run_loop(flow,
+                                             {observer.on_frame, observer.interrupted, scene.frame_interval,
+                                              test_run::frame_after(0.0, scene.frame_interval)},
+                                             outcome.status, outcome.checks, outcome.cost);
 
   read_results(body, scene, stopped_at, outcome);
   test_run::judge(body, start_mass, outcome.checks, outcome.cost);

@@ -112,7 +112,7 @@ l_box::Scene l_box_scene(const Values& values) {
   scene.gate_speed = values.number_unless("test.gate_speed", "instant");
   scene.bars = static_cast<int>(values.integer("test.bars"));
   scene.model = read_model(values);
-  scene.frame_interval = values.number("output.frame_interval");
+  scene.frame_interval = read_output(values).frame_interval;
   check_cells(values, scene);
   return scene;
 }

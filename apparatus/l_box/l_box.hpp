@@ -36,7 +36,7 @@ struct Scene {
   std::optional<double> gate_speed = 0.30;  ///< [m/s]; empty: the gate is gone at once
   int bars = 0;                             ///< 0; 2 or 3 in space alone
   Model model;
-  double frame_interval = 0.5;  ///< simulated time between frames [s]
+  double frame_interval = 0.0;  ///< simulated time between frames [s]; 0: chosen (run/run_loop.hpp)
   int threads = 1;
   /// Against velocities that alternate from node to node (libmpm/implicit/problem/yield_problem.hpp), in plastic
   /// viscosities; no scene key, for studies.

@@ -9,9 +9,10 @@
 namespace tremie::scene {
 namespace {
 
-constexpr const char* time_label = "time since the start of the lift / s";
+constexpr const char* time_label = "time since the start of the lift (s)";
 
 std::string class_of(const l_box::Scene& scene, const l_box::Results& r) {
+  if (!r.stopped_at) return "";  // a class is that of concrete at rest
   return r.passing_ratio ? l_box::passing_class(*r.passing_ratio, scene.bars) : "";
 }
 
@@ -57,18 +58,18 @@ ResultTable profile_of(const l_box::Results& r) {
 
 std::vector<Chart> charts_of(bool thixotropic) {
   std::vector<Chart> charts{
-      {"front.svg", "Front", time_label, "distance from the gate / mm", {"front_mm"}, {}},
+      {"front.svg", "Front", time_label, "distance from the gate (mm)", {"front_mm"}, {}},
       {"depths.svg",
        "Depths",
        time_label,
-       "depth / mm",
+       "depth (mm)",
        {"h1_mm", "h2_mm"},
        {},
        {"H1, behind the gate", "H2, at the channel's end"}},
       {"profile.svg",
        "Profile at the end",
-       "distance from the gate / mm",
-       "depth / mm",
+       "distance from the gate (mm)",
+       "depth (mm)",
        {"depth_mm"},
        {},
        {},
@@ -77,7 +78,7 @@ std::vector<Chart> charts_of(bool thixotropic) {
     charts.push_back({"flocculation.svg",
                       "Flocculation",
                       time_label,
-                      "volume mean of the flocculation state",
+                      "mean flocculation state λ",
                       {"flocculation_mean"},
                       {}});
   return charts;
@@ -86,23 +87,53 @@ std::vector<Chart> charts_of(bool thixotropic) {
 std::string ratio_text(const l_box::Scene& scene, const l_box::Results& r) {
   if (!r.passing_ratio) return "passing ratio   none";
   const std::string cls = class_of(scene, r);
-  const char* without = scene.bars == 0 ? "none without bars" : "none: below 0.80";
+  const char* without = scene.bars == 0 ? "without bars the test has none"
+                        : !r.stopped_at ? "not yet: it still moves"
+                                        : "none: below 0.80";
   return fmt::format("passing ratio   {:.2f}   class {}", *r.passing_ratio, cls.empty() ? without : cls);
 }
 
 std::vector<std::string> lines_for(const l_box::Scene& scene, const l_box::Results& r) {
   const std::string h2 = r.h2 ? fmt::format("{:.0f} mm   at the channel's end", *r.h2 * mm)
                               : "none: the channel's end was never reached";
-  std::vector<std::string> lines{
-      fmt::format("H1              {:.0f} mm   behind the gate", r.h1 * mm),
-      "H2              " + h2,
-      ratio_text(scene, r),
-      fmt::format("t200            {}", seconds_or(r.t200, "never reached")),
-      fmt::format("t400            {}", seconds_or(r.t400, "never reached")),
-      fmt::format("stopped at      {}", seconds_or(r.stopped_at, "still moving at the end")),
-      fmt::format("in the channel  {:.2f} l", r.volume_in_channel * 1e3)};
+  std::vector<std::string> lines{fmt::format("H1              {:.0f} mm   behind the gate", r.h1 * mm),
+                                 "H2              " + h2,
+                                 ratio_text(scene, r),
+                                 fmt::format("t200            {}", seconds_or(r.t200, "never reached")),
+                                 fmt::format("t400            {}", seconds_or(r.t400, "never reached")),
+                                 r.stopped_at
+                                     ? fmt::format("stopped at      {:.2f} s", *r.stopped_at)
+                                     : "stopped         not within the time of the test (test.duration)",
+                                 fmt::format("in the channel  {:.2f} l", r.volume_in_channel * 1e3)};
   add_flocculation_line(r.flocculation_mean_start, r.flocculation_mean_end, lines);
   return lines;
+}
+
+/// The box seen from the side: column, channel, and the gate that rises.
+Stage stage_of(const l_box::Scene& scene) {
+  const l_box::Box& box = scene.box;
+  const double end = box.column_length + box.channel_length;
+  const bool plane =
+      scene.model.space == SpaceKind::plane || scene.model.space == SpaceKind::plane_with_side_walls;
+  Stage stage;
+  stage.up = plane ? 1 : 2, stage.depth = plane ? 2 : 1;
+  stage.walls = {{{0.0, box.column_height}, {0.0, 0.0}, {end, 0.0}, {end, box.channel_height}},
+                 {{box.column_length, box.column_height}, {box.column_length, box.channel_height}}};
+  if (scene.gate_speed) {
+    stage.lifted = {{{box.column_length, 0.0}, {box.column_length, box.channel_height}}};
+    stage.lift_speed = *scene.gate_speed;
+  }
+  stage.point_size = scene.model.cell[1] / scene.model.points_per_cell[1];
+  return stage;
+}
+
+std::string judged(const l_box::Scene& scene, const l_box::Results& r) {
+  if (!r.stopped_at || !r.passing_ratio) return {};
+  const std::string cls = class_of(scene, r);
+  if (!cls.empty()) return fmt::format("Class {} of EN 206: the passing ratio is at least 0.80.", cls);
+  return scene.bars == 0
+             ? "Without bars the test has no class; a passing ratio of 0.80 is what the classes ask for."
+             : "No class: the passing ratio is below 0.80.";
 }
 
 l_box::Observer observe(const l_box::Scene& scene, bool all_frames, const Observer& observer) {
@@ -120,7 +151,8 @@ l_box::Observer observe(const l_box::Scene& scene, bool all_frames, const Observ
 
 }  // namespace
 
-Outcome run_l_box(const l_box::Scene& scene, bool all_frames, const Observer& observer) {
+Outcome run_l_box(const l_box::Scene& scene, const Measured& measured, bool all_frames,
+                  const Observer& observer) {
   l_box::Outcome raw = l_box::run(scene, observe(scene, all_frames, observer));
   if (!all_frames && observer.on_frame) observer.on_frame(raw.final_frame);
   const bool thixotropic = scene.mix.thixotropy.has_value();
@@ -131,6 +163,14 @@ Outcome run_l_box(const l_box::Scene& scene, bool all_frames, const Observer& ob
   outcome.checks = std::move(raw.checks);
   outcome.cost = raw.cost;
   outcome.series = series_of(raw.series, thixotropic);
+  outcome.asked = asked_text(measured.name, "L-box", scene.rest);
+  if (raw.results.passing_ratio) outcome.answers.push_back({"passing_ratio", "passing ratio", "", 2});
+  outcome.answers.push_back({"h1_mm", "H1", "mm", 0});
+  outcome.moving_at_end = !raw.results.stopped_at;
+  outcome.judged = judged(scene, raw.results);
+  if (!raw.results.passing_ratio)
+    outcome.remarks.push_back("The concrete did not reach the channel's end: there is no passing ratio.");
+  outcome.stage = stage_of(scene);
   outcome.tables = {profile_of(raw.results)};
   outcome.charts = charts_of(thixotropic);
   outcome.lines = lines_for(scene, raw.results);

@@ -20,7 +20,7 @@ bool is_at_rest(const Flow& flow, const StepReport& step, RestWatch& watch) {
 void show_frame(const Flow& flow, Onlooker& onlooker) {
   if (!onlooker.on_frame || flow.time() < onlooker.next_frame) return;
   onlooker.on_frame(flow.frame());
-  onlooker.next_frame += onlooker.frame_interval;
+  onlooker.next_frame = frame_after(onlooker.next_frame, onlooker.frame_interval);
 }
 
 }  // namespace

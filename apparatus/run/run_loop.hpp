@@ -2,6 +2,7 @@
 
 // The one loop by which every apparatus runs its test, by implicit or explicit steps.
 
+#include <algorithm>
 #include <atomic>
 #include <functional>
 #include <optional>
@@ -43,11 +44,17 @@ struct Flow {
   std::function<bool()> gains_energy = {};  ///< more than a stable run can; may be empty
 };
 
-/// Who looks on. Frames come at `next_frame` and every `frame_interval` after it [s].
+/// When the frame after that of time t is due [s]. An interval of 0 is chosen: a fifth of a second at first, a
+/// fourth of the time that has gone by later, since a flow slows down as it spreads.
+inline double frame_after(double t, double interval) {
+  return interval > 0.0 ? t + interval : std::max(t + 0.2, 1.25 * t);
+}
+
+/// Who looks on. Frames come at `next_frame` and every `frame_interval` after it [s]; 0: chosen.
 struct Onlooker {
   const std::function<void(const Frame&)>& on_frame;  ///< may be empty
   const std::atomic<bool>* interrupted = nullptr;
-  double frame_interval = 0.5, next_frame = 0.0;
+  double frame_interval = 0.0, next_frame = 0.0;
 };
 
 /// Runs the flow until its time is over, it is at rest, a step fails or somebody interrupts. Returns when it

@@ -169,9 +169,10 @@ Outcome run_explicit_in(const Scene& scene, const Law& law, const Observer& obse
             energy.see(test_run::energy_of<Geometry>(body.points, body.mix.K), bool{wall});
             return energy.ran_away();
           }};
-  const auto stopped_at = test_run::run_loop(
-      flow, {observer.on_frame, observer.interrupted, scene.frame_interval, scene.frame_interval},
-      outcome.status, outcome.checks, outcome.cost);
+  const auto stopped_at = test_run::run_loop(flow,
+                                             {observer.on_frame, observer.interrupted, scene.frame_interval,
+                                              test_run::frame_after(0.0, scene.frame_interval)},
+                                             outcome.status, outcome.checks, outcome.cost);
 
   read_results(stopped_at, outcome);
   limits.tell(outcome.cost.steps, outcome.checks);

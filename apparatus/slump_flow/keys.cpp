@@ -117,6 +117,7 @@ ApparatusKeys slump_flow_keys() {
                      .settle = settle};
   keys.schema.push_back(cone_section());
   keys.schema.push_back(test_section());
+  keys.schema.push_back(measured_section());
   keys.schema.push_back(floor_section());
   keys.schema.push_back(model_section({"axisymmetric", "quarter", "full"}));
   keys.schema.push_back(output_section());
@@ -133,7 +134,7 @@ slump_flow::Scene slump_flow_scene(const Values& values) {
   scene.duration = values.number("test.duration");
   scene.lift_speed = values.number_unless("test.lift_speed", "instant");
   scene.model = read_model(values);
-  scene.frame_interval = values.number("output.frame_interval");
+  scene.frame_interval = read_output(values).frame_interval;
   check_cells(values, scene);
   return scene;
 }

@@ -9,12 +9,21 @@ namespace tremie::scene {
 namespace {
 
 // Accepted for tremie concrete by the sources of Wilkes, Kumar and Biscontin (EFFC/DFI).
+constexpr const char* time_label = "time since the start of the lift (s)";
 constexpr double tremie_range_low = 0.450, tremie_range_high = 0.650;
 
 bool in_tremie_range(double spread) { return spread >= tremie_range_low && spread <= tremie_range_high; }
 
-ResultValue class_of(double spread) {
-  return word_or_null(std::isfinite(spread) ? slump_flow::spread_class(spread) : "");
+bool stopped(const slump_flow::Results& r) { return r.stopped_at.has_value() && std::isfinite(r.spread); }
+
+/// A class is that of concrete at rest.
+std::string class_of(const slump_flow::Results& r) {
+  return stopped(r) ? slump_flow::spread_class(r.spread) : std::string{};
+}
+
+ResultValue range_of(const slump_flow::Results& r) {
+  if (!stopped(r)) return std::monostate{};
+  return in_tremie_range(r.spread);
 }
 
 std::vector<Result> results_of(const slump_flow::Results& r) {
@@ -23,12 +32,12 @@ std::vector<Result> results_of(const slump_flow::Results& r) {
           {"height_mm", number(r.height, mm)},
           {"t500_s", number(r.t500)},
           {"stopped_at_s", number(r.stopped_at)},
-          {"class_en12350_8", class_of(r.spread)},
+          {"class_en12350_8", word_or_null(class_of(r))},
           {"flocculation_mean_start", number(r.flocculation_mean_start)},
           {"flocculation_mean_end", number(r.flocculation_mean_end)},
           {"shear_rate_mean_peak_per_s", number(r.shear_rate_mean_peak)},
           {"mean_velocity_mm_per_s", number(r.mean_velocity, mm)},
-          {"within_tremie_range", in_tremie_range(r.spread)}};
+          {"within_tremie_range", range_of(r)}};
 }
 
 std::vector<Column> columns_of(const std::vector<slump_flow::Sample>& s, bool thixotropic) {
@@ -52,53 +61,118 @@ std::vector<Column> columns_of(const std::vector<slump_flow::Sample>& s, bool th
   return columns;
 }
 
-/// What was measured after the rest that this scene has; nothing for any other rest.
-std::vector<Reference> references_for(double rest, const Measured& measured) {
-  const auto& value = rest == 0.0 ? measured.slump_flow_0 : measured.slump_flow_240;
-  if (!value || (rest != 0.0 && rest != 240.0)) return {};
-  return {{"measured", *value * mm, measured.tolerance * mm}};
+/// What was measured after the rest that this scene has; nothing for any other rest. [measured] wins.
+std::optional<Measurement> measurement_for(double rest, const Measured& measured, double spread) {
+  std::optional<double> value = measured.spread;
+  double tolerance = measured.spread_tolerance.value_or(0.03);
+  if (!value) {
+    if (rest == 0.0) value = measured.slump_flow_0;
+    if (rest == 240.0) value = measured.slump_flow_240;
+    tolerance = measured.tolerance;
+  }
+  if (!value) return std::nullopt;
+  return Measurement{"spread_mm", "spread", "mm", *value * mm, tolerance * mm, (spread - *value) * mm};
 }
 
-std::vector<Chart> charts_of(const slump_flow::Scene& scene, const Measured& measured) {
-  std::vector<Chart> charts{{"spread.svg",
-                             "Spread",
-                             "time since the start of the lift / s",
-                             "spread / mm",
-                             {"spread_mm"},
-                             references_for(scene.rest, measured)}};
+std::vector<Reference> references_for(const std::optional<Measurement>& measured) {
+  if (!measured) return {};
+  return {{"measured", measured->value, measured->tolerance}};
+}
+
+/// results.measured; null without a measurement.
+ResultValue measured_result(const std::optional<Measurement>& m, const Measured& measured,
+                            const slump_flow::Results& r) {
+  std::vector<Result> results;
+  if (m)
+    results = {
+        {"spread_mm", m->value}, {"tolerance_mm", m->tolerance}, {"difference_mm", number(m->difference)}};
+  if (measured.t500) {
+    results.push_back({"t500_s", *measured.t500});
+    results.push_back({"t500_difference_s", r.t500 ? number(*r.t500 - *measured.t500) : std::monostate{}});
+  }
+  if (results.empty()) return std::monostate{};
+  return results;
+}
+
+/// Class and accepted range; only of concrete at rest.
+std::string judged(const slump_flow::Results& r) {
+  if (!stopped(r)) return {};
+  const std::string cls = class_of(r);
+  std::string text = !cls.empty() ? fmt::format("Class {} of EN 206", cls)
+                     : r.spread < 0.545
+                         ? "Below the classes of self-compacting concrete (SF1 begins at 550 mm)"
+                         : "Above the classes of self-compacting concrete (SF3 ends at 850 mm)";
+  return text + (in_tremie_range(r.spread)
+                     ? "; within the 450 to 650 mm that are accepted for tremie concrete."
+                     : "; outside of the 450 to 650 mm that are accepted for tremie concrete.");
+}
+
+/// Why a spread may differ from the measured one although the computation is right.
+constexpr const char* why_it_may_differ =
+    "A difference from a measured spread beyond the error of the computation lies in what went in: yield "
+    "stress and viscosity "
+    "come from a rheometer, and instruments differ by factors; the destructuration α says how much of what "
+    "built up at rest "
+    "survives the lift, and one value for all concretes is a guess; the plate may hold the concrete or let "
+    "it slip "
+    "(floor.contact). tremie calibrate looks for the values that meet the measurements.";
+
+Stage stage_of(const slump_flow::Scene& scene) {
+  Stage stage;
+  stage.mirrored = scene.model.space != SpaceKind::full;
+  stage.slice = scene.model.space == SpaceKind::axisymmetric ? 0.0 : scene.model.cell[0];
+  if (scene.lift_speed) {
+    stage.lifted = {{{scene.cone.bottom_radius, 0.0}, {scene.cone.top_radius, scene.cone.height}}};
+    stage.lift_speed = *scene.lift_speed;
+    if (!stage.mirrored)
+      stage.lifted.push_back({{-scene.cone.bottom_radius, 0.0}, {-scene.cone.top_radius, scene.cone.height}});
+  }
+  const double across = scene.model.cell[0] / scene.model.points_per_cell[0];
+  stage.point_size = std::max(across, scene.model.cell[1] / scene.model.points_per_cell[1]);
+  stage.plan = "spread_mm";
+  stage.ring_diameter = 0.5;
+  return stage;
+}
+
+std::vector<Chart> charts_of(const slump_flow::Scene& scene, const std::optional<Measurement>& measured) {
+  std::vector<Chart> charts{
+      {"spread.svg", "Spread", time_label, "spread (mm)", {"spread_mm"}, references_for(measured)}};
   charts.push_back({"shear_rate.svg",
                     "Mean shear rate",
-                    "time since the start of the lift / s",
-                    "volume mean of the shear rate / (1/s)",
+                    time_label,
+                    "mean shear rate (1/s)",
                     {"shear_rate_mean_per_s"},
                     {}});
   if (scene.mix.thixotropy) {
     charts.push_back({"flocculation.svg",
                       "Flocculation",
-                      "time since the start of the lift / s",
-                      "volume mean of the flocculation state",
+                      time_label,
+                      "mean flocculation state λ",
                       {"flocculation_mean"},
                       {}});
   }
   return charts;
 }
 
-std::vector<std::string> lines_for(const slump_flow::Scene& scene, const Measured& measured,
-                                   const slump_flow::Results& r) {
-  const std::string cls = std::isfinite(r.spread) ? slump_flow::spread_class(r.spread) : "";
-  std::vector<std::string> lines{
-      fmt::format("spread          {:.0f} mm   class {}", r.spread * mm,
-                  cls.empty() ? "none of SF1 to SF3" : cls),
-      fmt::format("height          {:.0f} mm", r.height * mm),
-      fmt::format("t500            {}", seconds_or(r.t500, "never reached")),
-      fmt::format("stopped at      {}", seconds_or(r.stopped_at, "still moving at the end"))};
-  if (r.mean_velocity) lines.push_back(fmt::format("mean velocity   {:.1f} mm/s", *r.mean_velocity * mm));
-  lines.push_back(fmt::format("tremie concrete {} the accepted 450 to 650 mm",
-                              in_tremie_range(r.spread) ? "within" : "outside of"));
+std::string class_text(const slump_flow::Results& r) {
+  if (!stopped(r)) return "no class yet: it still moves";
+  const std::string cls = class_of(r);
+  return !cls.empty()       ? "class " + cls
+         : r.spread < 0.545 ? "below class SF1 (550 mm)"
+                            : "above class SF3 (850 mm)";
+}
+
+std::vector<std::string> lines_for(const slump_flow::Results& r) {
+  std::vector<std::string> lines{fmt::format("spread          {:.0f} mm   {}", r.spread * mm, class_text(r)),
+                                 fmt::format("height          {:.0f} mm", r.height * mm),
+                                 fmt::format("t500            {}", seconds_or(r.t500, "never reached")),
+                                 r.stopped_at
+                                     ? fmt::format("stopped at      {:.2f} s", *r.stopped_at)
+                                     : "stopped         not within the time of the test (test.duration)"};
+  if (stopped(r))
+    lines.push_back(fmt::format("tremie concrete {} the accepted 450 to 650 mm",
+                                in_tremie_range(r.spread) ? "within" : "outside of"));
   add_flocculation_line(r.flocculation_mean_start, r.flocculation_mean_end, lines);
-  for (const auto& reference : references_for(scene.rest, measured))
-    lines.push_back(
-        fmt::format("measured        {:.0f} mm, +/- {:.0f} mm", reference.value, reference.tolerance));
   return lines;
 }
 
@@ -124,12 +198,20 @@ Outcome run_slump_flow(const slump_flow::Scene& scene, const Measured& measured,
   Outcome outcome;
   outcome.apparatus = "slump_flow";
   outcome.status = raw.status;
+  outcome.measured = measurement_for(scene.rest, measured, raw.results.spread);
   outcome.results = results_of(raw.results);
+  outcome.results.push_back({"measured", measured_result(outcome.measured, measured, raw.results)});
+  outcome.asked = asked_text(measured.name, "slump flow", scene.rest);
+  outcome.answers = {{"spread_mm", "", "mm", 0}};
+  outcome.moving_at_end = !raw.results.stopped_at;
+  outcome.judged = judged(raw.results);
+  if (outcome.measured) outcome.remarks.push_back(why_it_may_differ);
+  outcome.stage = stage_of(scene);
   outcome.checks = std::move(raw.checks);
   outcome.cost = raw.cost;
   outcome.series = columns_of(raw.series, scene.mix.thixotropy.has_value());
-  outcome.charts = charts_of(scene, measured);
-  outcome.lines = lines_for(scene, measured, raw.results);
+  outcome.charts = charts_of(scene, outcome.measured);
+  outcome.lines = lines_for(raw.results);
   outcome.axisymmetric = scene.model.space == SpaceKind::axisymmetric;
   if (!std::isfinite(raw.results.spread))
     outcome.checks.reasons.push_back("the spread is not a finite number");

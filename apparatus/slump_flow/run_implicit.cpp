@@ -63,9 +63,10 @@ Outcome run_implicit_in(const Scene& scene, const Observer& observer) {
                        pushed);
             return energy.ran_away();
           }};
-  const auto stopped_at = test_run::run_loop(
-      flow, {observer.on_frame, observer.interrupted, scene.frame_interval, scene.frame_interval},
-      outcome.status, outcome.checks, outcome.cost);
+  const auto stopped_at = test_run::run_loop(flow,
+                                             {observer.on_frame, observer.interrupted, scene.frame_interval,
+                                              test_run::frame_after(0.0, scene.frame_interval)},
+                                             outcome.status, outcome.checks, outcome.cost);
 
   read_results(stopped_at, outcome);
   energy.tell(outcome.checks);

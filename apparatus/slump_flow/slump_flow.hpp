@@ -28,7 +28,7 @@ struct Scene {
   double duration = 30.0;                   ///< of the flow, at most [s]
   std::optional<double> lift_speed = 0.15;  ///< [m/s]; empty: the cone is gone at once
   Model model;
-  double frame_interval = 0.5;  ///< simulated time between frames [s]
+  double frame_interval = 0.0;  ///< simulated time between frames [s]; 0: chosen (run/run_loop.hpp)
   int threads = 1;
 };
 

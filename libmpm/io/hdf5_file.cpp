@@ -91,26 +91,33 @@ void Hdf5File::attribute(const std::string& object, const std::string& name, std
 void Hdf5File::attribute(const std::string& object, const std::string& name, const std::string& value) {
   const Handle id(open(object), H5Oclose);
   const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
-  H5Tset_size(type, value.size() + 1);
+  H5Tset_size(type, H5T_VARIABLE);  // Python reads it as a string, one of fixed length as bytes
   H5Tset_cset(type, H5T_CSET_UTF8);
-  check(write_attribute(id, name, type, value.c_str()));
+  const char* text = value.c_str();
+  check(write_attribute(id, name, type, &text));
 }
 
 void Hdf5File::array(const std::string& path, std::span<const double> values, std::size_t columns,
-                     const std::string& unit) {
+                     const std::string& unit, const std::string& description, bool packed) {
   errno = 0;
   const std::array<hsize_t, 2> size{values.size() / columns, columns};
   const Handle space(H5Screate_simple(columns == 1 ? 1 : 2, size.data(), nullptr), H5Sclose);
   const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_obj_track_times(creation, false);
+  if (packed && !values.empty()) {
+    H5Pset_chunk(creation, columns == 1 ? 1 : 2, size.data());
+    H5Pset_shuffle(creation);
+    H5Pset_deflate(creation, 6);
+  }
   {
-    const Handle made(
-        H5Dcreate2(file_, path.c_str(), H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, creation, H5P_DEFAULT),
-        H5Dclose);
+    const Handle made(H5Dcreate2(file_, path.c_str(), packed ? H5T_NATIVE_FLOAT : H5T_NATIVE_DOUBLE, space,
+                                 H5P_DEFAULT, creation, H5P_DEFAULT),
+                      H5Dclose);
     check(made);
     check(H5Dwrite(made, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
   }
   attribute(path, "unit", unit);
+  if (!description.empty()) attribute(path, "description", description);
 }
 
 }  // namespace tremie::io

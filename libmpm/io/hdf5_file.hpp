@@ -26,9 +26,10 @@ class Hdf5File {
   void attribute(const std::string& object, const std::string& name, std::int64_t value);
   void attribute(const std::string& object, const std::string& name, const std::string& value);
 
-  /// `values` as rows of `columns` (1: a plain list), with its unit as an attribute.
+  /// `values` as rows of `columns` (1: a plain list), with its unit and description as attributes. `packed`: in
+  /// single precision and compressed, for what is large and looked at.
   void array(const std::string& path, std::span<const double> values, std::size_t columns,
-             const std::string& unit);
+             const std::string& unit, const std::string& description = "", bool packed = false);
 
   void close();
 

@@ -6,8 +6,11 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "apparatus/report/chart.hpp"
-#include "apparatus/report/result_files.hpp"
+#include "apparatus/report/page/page.hpp"
+#include "apparatus/report/run_files/chart.hpp"
+#include "apparatus/report/run_files/html.hpp"
+#include "apparatus/report/run_files/moving.hpp"
+#include "apparatus/report/run_files/result_files.hpp"
 #include "apparatus/report/run_folder.hpp"
 #include "apparatus/report/summary.hpp"
 #include "apparatus/scene/input_error.hpp"
@@ -106,7 +109,9 @@ TEST(ResultsH5, HoldsSeriesFramesAndProvenance) {
   const hid_t file = H5Fopen((folder / "a" / "results.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   ASSERT_GE(file, 0);
   EXPECT_EQ(read_array(file, "/series/spread_mm"), (std::vector{200.0, 0.1 + 0.2}));
-  EXPECT_EQ(read_array(file, "/frames/00001/position"), (std::vector{0.1, 0.0, 0.2, 0.3, 0.0, 0.4}));
+  // Frames are kept in single precision: half of its last digit is 6e-8 of the value.
+  const std::vector<double> position = read_array(file, "/frames/00001/position");
+  EXPECT_EQ(position, (std::vector<double>{0.1F, 0.0F, 0.2F, 0.3F, 0.0F, 0.4F}));
   EXPECT_EQ(H5Lexists(file, "/frames/00001/flocculation", H5P_DEFAULT), 0);  // not stored, not written
   for (const char* name :
        {"schema", "tremie_version", "tremie_commit", "compiler", "scene", "apparatus", "status"})
@@ -122,6 +127,29 @@ TEST(ResultFiles, WritesEverything) {
     EXPECT_TRUE(std::filesystem::exists(folder / "a" / name)) << name;
   const std::string pvd = test::read_file(folder / "a" / "frames.pvd");
   EXPECT_NE(pvd.find("timestep=\"0.5\" file=\"frames/frame_00001.vtp\""), std::string::npos);
+}
+
+// 1000 frames of 5000 points in a space: 120 frames of 3000 points at most, the first and the last among them, times
+// in order, and no point farther from y = 0 than one that is left out (y = 0, 1, ... 4999 mm, so below 3000 mm).
+TEST(ShownFrames, AreBoundedAndKeepTheEnds) {
+  ShownFrames shown;
+  Frame frame;
+  for (int p = 0; p < 5000; ++p) frame.position.push_back({0.0, 1e-3 * p, 1.0});
+  frame.shear_rate.assign(5000, 2.0);
+  for (int i = 0; i < 1000; ++i) {
+    frame.time = i;
+    shown.add(frame);
+    ASSERT_LE(shown.frames().size(), ShownFrames::most_frames);
+    ASSERT_EQ(shown.frames().front().time, 0.0);
+    ASSERT_EQ(shown.frames().back().time, i);
+  }
+  EXPECT_GT(shown.frames().size(), ShownFrames::most_frames / 3);
+  for (std::size_t i = 1; i < shown.frames().size(); ++i)
+    EXPECT_GT(shown.frames()[i].time, shown.frames()[i - 1].time);
+  const Frame& last = shown.frames().back();
+  EXPECT_EQ(last.position.size(), ShownFrames::most_points);
+  EXPECT_EQ(last.shear_rate.size(), ShownFrames::most_points);
+  for (const auto& p : last.position) EXPECT_LT(p[1], 3.0);
 }
 
 TEST(Vtp, RefusesAFieldThatDoesNotFit) {
@@ -147,11 +175,15 @@ TEST(Vtp, IsWellFormedAndHoldsItsArrays) {
   for (const char c : text) ASSERT_TRUE(c == '\n' || (c >= ' ' && c <= '~')) << "no text: " << int{c};
 }
 
-TEST(Chart, MeasuredValuesAreDashed) {
-  const auto outcome = small_outcome();
-  const std::string script = chart_script(outcome.charts.front(), outcome.series);
-  EXPECT_NE(script.find("590 with lines dashtype 2"), std::string::npos);
-  EXPECT_NE(script.find("0.1 0.3\n"), std::string::npos);
+TEST(Chart, ShowsWhatWasMeasuredAndTheErrorBar) {
+  auto outcome = small_outcome();
+  outcome.error = scene::ErrorEstimate{{{"spread_mm", 8.0}}, "", 0.0};
+  const LineChart chart = line_chart(outcome.charts.front(), outcome);
+  ASSERT_EQ(chart.levels.size(), 1U);
+  EXPECT_EQ(chart.levels.front().tolerance, 30.0);
+  ASSERT_EQ(chart.bars.size(), 1U);
+  EXPECT_EQ(chart.bars.front().half, 8.0);
+  EXPECT_NE(chart_svg(chart).find("measured, 590 ± 30"), std::string::npos);
 }
 
 TEST(Chart, DrawsFromATableWithALabelACurve) {
@@ -160,10 +192,11 @@ TEST(Chart, DrawsFromATableWithALabelACurve) {
       {"profile.csv", {{"radius_mm", {63.5, 143.0}}, {"a_mm", {1.0, 2.0}}, {"b_mm", {3.0, 4.0}}}}};
   outcome.charts = {
       {"profile.svg", "Profile", "r", "y", {"a_mm", "b_mm"}, {}, {"the one", "the other"}, "profile.csv"}};
-  const auto& chart = outcome.charts.front();
-  const std::string script = chart_script(chart, scene::columns_of(chart, outcome));
-  for (const char* part : {"63.5 1\n", "143 4\n", "title 'the one'", "title 'the other'"})
-    EXPECT_NE(script.find(part), std::string::npos) << part << " is not in:\n" << script;
+  const LineChart chart = line_chart(outcome.charts.front(), outcome);
+  ASSERT_EQ(chart.curves.size(), 2U);
+  EXPECT_EQ(chart.curves[1].label, "the other");
+  EXPECT_EQ(chart.curves[1].x, (std::vector{63.5, 143.0}));
+  EXPECT_EQ(chart.curves[1].y, (std::vector{3.0, 4.0}));
 }
 
 TEST(Chart, OneThatHasNothingToDrawIsLeftOut) {
@@ -171,8 +204,31 @@ TEST(Chart, OneThatHasNothingToDrawIsLeftOut) {
   scene::Outcome outcome = small_outcome();
   outcome.charts = {{"empty.svg", "Empty", "t", "y", {"flocculation_mean"}, {}},
                     {"none.svg", "None", "t", "y", {"a_mm"}, {}, {}, "none.csv"}};
-  EXPECT_EQ(draw_charts(outcome, folder.path()), "");
+  draw_charts(outcome, folder.path());
   EXPECT_FALSE(std::filesystem::exists(folder / "empty.svg"));
+}
+
+TEST(Page, EscapesAllText) {
+  Page page;
+  page.headline = "<script>alert('a & \"b\"')</script>";
+  page.numbers = {{"<b>", {{"<i>", "1", "<u>", "<k>"}}}};
+  const std::string html = to_html(page);
+  for (const char* raw : {"<script>", "<b>", "<i>", "<u>", "<k>"})
+    EXPECT_EQ(html.find(raw), std::string::npos) << raw;
+  EXPECT_NE(html.find("&lt;script&gt;alert(&#39;a &amp; &quot;b&quot;&#39;)"), std::string::npos);
+  EXPECT_NE(html.find("name=\"viewport\""), std::string::npos);
+}
+
+TEST(Measured, ADifferenceBeyondTheToleranceIsSaid) {
+  scene::Outcome outcome = small_outcome();
+  outcome.measured = scene::Measurement{"spread_mm", "spread", "mm", 590.0, 30.0, -34.0};
+  EXPECT_EQ(measured_line(outcome),
+            "Differs from the measured 590 ± 30 mm: 34 mm below, 1.1 times the tolerance.");
+  outcome.measured->difference = -20.0;
+  EXPECT_EQ(measured_line(outcome), "Agrees with the measured 590 ± 30 mm: 20 mm below.");
+  outcome.moving_at_end = true;  // it may still reach it
+  EXPECT_EQ(measured_line(outcome),
+            "Still moving at the end, so no verdict; so far 20 mm below the measured 590 ± 30 mm.");
 }
 
 TEST(ResultFiles, WritesTables) {

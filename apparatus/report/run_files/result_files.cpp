@@ -1,13 +1,16 @@
-#include "apparatus/report/result_files.hpp"
+#include "apparatus/report/run_files/result_files.hpp"
 
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <span>
 
-#include "apparatus/report/chart.hpp"
-#include "apparatus/report/html.hpp"
 #include "apparatus/report/picture.hpp"
+#include "apparatus/report/run_files/chart.hpp"
+#include "apparatus/report/run_files/glossary.hpp"
+#include "apparatus/report/run_files/html.hpp"
+#include "apparatus/report/run_files/moving.hpp"
 #include "apparatus/report/summary.hpp"
 #include "libmpm/io/vtp.hpp"
 #include "libmpm/io/write_error.hpp"
@@ -41,9 +44,11 @@ std::vector<Field> fields_of(const Frame& frame) {
 void write_frame_h5(io::Hdf5File& h5, const std::string& group, const Frame& frame) {
   h5.group(group);
   h5.attribute(group, "time_s", frame.time);
-  h5.array(group + "/position", flat(frame.position), 3, "m");
+  h5.array(group + "/position", flat(frame.position), 3, "m",
+           "x, y, z of the points; a section of a body of revolution lies at y = 0, x its radius", true);
   for (const Field& field : fields_of(frame))
-    h5.array(group + "/" + field.name, field.values, static_cast<std::size_t>(field.components), field.unit);
+    h5.array(group + "/" + field.name, field.values, static_cast<std::size_t>(field.components), field.unit,
+             words_of(field.name), true);
 }
 
 void write_frame_vtp(const std::filesystem::path& file, const Frame& frame) {
@@ -52,25 +57,11 @@ void write_frame_vtp(const std::filesystem::path& file, const Frame& frame) {
   io::write_vtp(file, frame.time, frame.position, fields);
 }
 
-/// "spread_mm" is in mm: the unit stands behind the last underscore of a quantity's name, "_per_" reading as
-/// "/".
-std::string unit_of(const std::string& column) {
-  for (const auto& [ending, unit] : {std::pair{"_mm", "mm"},
-                                     {"_m_per_s", "m/s"},
-                                     {"_rev_per_s", "rev/s"},
-                                     {"_per_s", "1/s"},
-                                     {"_s", "s"},
-                                     {"_J", "J"},
-                                     {"_Pa", "Pa"},
-                                     {"_N_m", "N.m"},
-                                     {"_m", "m"}})
-    if (column.ends_with(ending)) return unit;
-  return "1";
-}
-
 void write_results(io::Hdf5File& h5, const std::string& group, const std::vector<scene::Result>& results) {
   h5.group(group);
   for (const auto& [name, value] : results) {
+    if (std::holds_alternative<std::monostate>(value)) h5.attribute(group, name, std::nan(""));
+    if (const auto* truth = std::get_if<bool>(&value)) h5.attribute(group, name, std::int64_t{*truth});
     if (const auto* number = std::get_if<double>(&value)) h5.attribute(group, name, *number);
     if (const auto* text = std::get_if<std::string>(&value)) h5.attribute(group, name, *text);
     if (const auto* below = std::get_if<std::vector<scene::Result>>(&value))
@@ -80,8 +71,13 @@ void write_results(io::Hdf5File& h5, const std::string& group, const std::vector
 
 }  // namespace
 
-ResultFiles::ResultFiles(const std::filesystem::path& folder, const std::string& resolved)
-    : folder_(folder), resolved_(resolved), h5_(folder / "results.h5") {
+ResultFiles::ResultFiles(const std::filesystem::path& folder, const std::string& resolved,
+                         const std::string& command, bool with_frames)
+    : folder_(folder),
+      resolved_(resolved),
+      command_(command),
+      with_frames_(with_frames),
+      h5_(folder / "results.h5") {
   io::write_text(folder_ / "scene.toml", resolved_);
   h5_.attribute("/", "schema", std::int64_t{1});
   h5_.attribute("/", "tremie_version", std::string(version));
@@ -92,6 +88,8 @@ ResultFiles::ResultFiles(const std::filesystem::path& folder, const std::string&
 }
 
 void ResultFiles::frame(const Frame& frame) {
+  shown_.add(frame);
+  if (!with_frames_) return;
   if (!frames_.empty() && frames_.back().first == frame.time) return;  // the end may fall on a frame's time
   write_frame_h5(h5_, fmt::format("/frames/{:05}", frames_.size()), frame);
   std::filesystem::create_directories(folder_ / "frames");
@@ -104,12 +102,12 @@ void ResultFiles::write_results_h5(const scene::Outcome& outcome) {
   h5_.attribute("/", "status", std::string(status_name(outcome.status)));
   h5_.group("/series");
   for (const auto& column : outcome.series)
-    h5_.array("/series/" + column.name, column.values, 1, unit_of(column.name));
+    h5_.array("/series/" + column.name, column.values, 1, unit_of(column.name), words_of(column.name));
   for (const auto& table : outcome.tables) {
     const std::string group = fmt::format("/{}", std::filesystem::path(table.file).stem().string());
     h5_.group(group);
     for (const auto& column : table.columns)
-      h5_.array(group + "/" + column.name, column.values, 1, unit_of(column.name));
+      h5_.array(group + "/" + column.name, column.values, 1, unit_of(column.name), words_of(column.name));
   }
   write_results(h5_, "/results", outcome.results);
   h5_.close();
@@ -121,10 +119,11 @@ std::vector<std::string> ResultFiles::finish(const scene::Outcome& outcome) {
   io::write_text(folder_ / "timeseries.csv", columns_csv(outcome.series));
   for (const auto& table : outcome.tables) io::write_text(folder_ / table.file, columns_csv(table.columns));
   if (!frames_.empty()) io::write_pvd(folder_ / "frames.pvd", frames_);
-  notes.push_back(draw_charts(outcome, folder_));
+  draw_charts(outcome, folder_);
   if (!frames_.empty() && outcome.pictured)
     notes.push_back(draw_picture(outcome, folder_, frames_.back().second));
-  io::write_text(folder_ / "report.html", report_html(outcome, resolved_, folder_));
+  io::write_text(folder_ / "report.html",
+                 report_html(outcome, resolved_, moving_picture(outcome, shown_.frames()), command_));
   io::write_text(folder_ / "summary.json", summary_json(outcome));
   std::erase(notes, "");
   return notes;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "apparatus/common/outcome.hpp"
+#include "apparatus/report/run_files/moving.hpp"
 #include "libmpm/io/hdf5_file.hpp"
 
 namespace tremie::report {
@@ -16,8 +17,10 @@ namespace tremie::report {
 /// Every call throws io::WriteError where the folder cannot be written.
 class ResultFiles {
  public:
-  /// `folder` is there. `resolved` is the scene as TOML.
-  ResultFiles(const std::filesystem::path& folder, const std::string& resolved);
+  /// `folder` is there. `resolved` is the scene as TOML; `command` repeats the run. Without `with_frames` no points
+  /// are written: the report alone shows them.
+  ResultFiles(const std::filesystem::path& folder, const std::string& resolved,
+              const std::string& command = "", bool with_frames = true);
 
   /// One more time in results.h5 and in frames/.
   void frame(const Frame& frame);
@@ -29,7 +32,9 @@ class ResultFiles {
   void write_results_h5(const scene::Outcome& outcome);
 
   std::filesystem::path folder_;
-  std::string resolved_;
+  std::string resolved_, command_;
+  bool with_frames_;
+  ShownFrames shown_;  ///< thinned, for the report
   io::Hdf5File h5_;
   std::vector<std::pair<double, std::string>> frames_;  ///< time, file name
 };

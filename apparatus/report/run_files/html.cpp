@@ -1,0 +1,166 @@
+#include "apparatus/report/run_files/html.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "apparatus/report/page/page.hpp"
+#include "apparatus/report/page/shapes.hpp"
+#include "apparatus/report/run_files/chart.hpp"
+#include "apparatus/report/run_files/glossary.hpp"
+#include "apparatus/report/summary.hpp"
+
+namespace tremie::report {
+namespace {
+
+std::optional<double> number_in(const scene::Outcome& o, const std::string& name) {
+  const auto* value = scene::find_result(o, name);
+  const auto* number = value ? std::get_if<double>(value) : nullptr;
+  return number ? std::optional(*number) : std::nullopt;
+}
+
+std::optional<double> error_of(const scene::Outcome& o, const std::string& name) {
+  if (o.error)
+    for (const auto& bar : o.error->bars)
+      if (bar.name == name) return bar.error;
+  return std::nullopt;
+}
+
+std::string answer_text(const scene::Outcome& o, const scene::Answer& a) {
+  const auto value = number_in(o, a.name);
+  if (!value) return {};
+  std::string text = a.word.empty() ? "" : a.word + " ";
+  text += fmt::format("{:.{}f}", *value, a.digits);
+  if (const auto error = error_of(o, a.name)) text += fmt::format(" ± {:.{}f}", *error, a.digits);
+  return a.unit.empty() ? text : text + " " + a.unit;
+}
+
+Verdict verdict_of(const scene::Outcome& o) {
+  Verdict verdict;
+  const auto line = measured_line(o);
+  if (line.empty()) {
+    verdict.text = o.judged;
+    return verdict;
+  }
+  const auto& m = *o.measured;
+  const bool beyond = std::abs(m.difference) > m.tolerance;
+  // What still spreads can only grow: beyond the measured value it differs already.
+  const bool final = !o.moving_at_end || m.difference > m.tolerance;
+  if (final) verdict.kind = beyond ? VerdictKind::differs : VerdictKind::agrees;
+  verdict.text = line + (o.judged.empty() ? "" : " " + o.judged);
+  return verdict;
+}
+
+Trust trust_of(const scene::Outcome& o) {
+  const Checks& c = o.checks;
+  Trust trust{c.reasons.empty() && o.status == Status::completed, {}, c.reasons};
+  trust.text = o.error && !o.error->bars.empty()
+                   ? fmt::format("The error of cells and steps is the ± above ({}). ", o.error->basis)
+                   : std::string("The error of cells and steps was not estimated; --with-error does. ");
+  if (std::isfinite(c.volume_change))
+    trust.text += fmt::format(
+        "The concrete's volume changed by {:+.2g} %, {} of {} steps did not converge, {} points were lost.",
+        100.0 * c.volume_change, c.unconverged_steps, o.cost.steps, c.points_lost);
+  if (o.moving_at_end)
+    trust.text += " The concrete still moved when the time of the test was over (test.duration).";
+  return trust;
+}
+
+std::string value_text(const scene::ResultValue& value, const std::string& key) {
+  if (const auto* number = std::get_if<double>(&value)) return person_number(*number, key);
+  if (const auto* text = std::get_if<std::string>(&value)) return *text;
+  if (const auto* truth = std::get_if<bool>(&value)) return *truth ? "yes" : "no";
+  return "–";
+}
+
+void add_rows(const scene::Outcome& o, const std::vector<scene::Result>& results, const std::string& prefix,
+              NumberTable& table) {
+  for (const auto& [name, value] : results) {
+    if (const auto* below = std::get_if<std::vector<scene::Result>>(&value)) {
+      add_rows(o, *below, prefix + name + ".", table);
+      continue;
+    }
+    std::string text = value_text(value, name);
+    if (const auto error = error_of(o, name); error && prefix.empty())
+      text += " ± " + person_number(*error, name);
+    const bool number = std::holds_alternative<double>(value);
+    table.rows.push_back({words_of(prefix + name), text, number ? unit_for_people(name) : "", prefix + name});
+  }
+}
+
+NumberTable cost_table(const Cost& c) {
+  return {"What it cost",
+          {{"processor time", fmt::format("{:.3g}", c.cpu), "s", "cpu_s"},
+           {"by the clock", fmt::format("{:.3g}", c.wall), "s", "wall_s"},
+           {"steps", fmt::format("{}", c.steps), "", "steps"},
+           {"points", fmt::format("{}", c.points), "", "points"},
+           {"simulated", fmt::format("{:.4g}", c.simulated), "s", "simulated_s"}}};
+}
+
+void add_shape(const scene::Outcome& o, const MovingPicture& moving, Page& page) {
+  if (!o.stage || moving.frames.empty()) return;
+  Shape shape{.title = "Shape at the end",
+              .places = {},
+              .point_size = o.stage->point_size,
+              .walls = moving.fixed,
+              .mirrored = moving.mirrored,
+              .ring_diameter = o.stage->ring_diameter};
+  for (const auto& p : moving.frames.back().places) shape.places.push_back({p[0], p[1]});
+  if (!o.stage->plan.empty()) shape.plan_diameter = 1e-3 * number_in(o, o.stage->plan).value_or(0.0);
+  page.figures.push_back({"shape", "The concrete at the end, from the computed points.", shape_svg(shape)});
+}
+
+}  // namespace
+
+std::string headline_of(const scene::Outcome& o) {
+  std::string text;
+  for (const auto& answer : o.answers)
+    if (const std::string part = answer_text(o, answer); !part.empty())
+      text += (text.empty() ? "" : ", ") + part;
+  const std::string asked = o.asked.empty() ? o.apparatus : o.asked;
+  const std::string so_far = o.moving_at_end ? " and still moving" : "";
+  return asked + ": " + (text.empty() ? status_name(o.status) : text + so_far);
+}
+
+std::string measured_line(const scene::Outcome& o) {
+  if (!o.measured || !std::isfinite(o.measured->difference)) return {};
+  const auto& m = *o.measured;
+  const std::string measured = fmt::format("the measured {:.4g} ± {:.3g} {}", m.value, m.tolerance, m.unit);
+  const std::string off =
+      fmt::format("{:.3g} {} {}", std::abs(m.difference), m.unit, m.difference < 0.0 ? "below" : "above");
+  if (o.moving_at_end && m.difference <= m.tolerance)
+    return fmt::format("Still moving at the end, so no verdict; so far {} {}.", off, measured);
+  if (std::abs(m.difference) <= m.tolerance) return fmt::format("Agrees with {}: {}.", measured, off);
+  return m.tolerance > 0.0 ? fmt::format("Differs from {}: {}, {:.1f} times the tolerance.", measured, off,
+                                         std::abs(m.difference) / m.tolerance)
+                           : fmt::format("Differs from {}: {}.", measured, off);
+}
+
+std::string report_html(const scene::Outcome& o, const std::string& resolved, const MovingPicture& moving,
+                        const std::string& command) {
+  Page page;
+  page.headline = headline_of(o);
+  page.title = "Tremie: " + page.headline;
+  page.verdict = verdict_of(o);
+  page.trust = trust_of(o);
+  page.remarks = o.remarks;
+  add_shape(o, moving, page);
+  for (const auto& chart : o.charts)
+    if (const LineChart drawn = line_chart(chart, o); can_be_drawn(drawn))
+      page.figures.push_back({chart.file.substr(0, chart.file.find('.')), chart.title, chart_svg(drawn)});
+  if (moving.frames.size() > 1) page.moving = thinned(moving, 40, 2500);
+  NumberTable results{"Results", {}};
+  add_rows(o, o.results, "", results);
+  page.numbers = {results, cost_table(o.cost)};
+  page.words = {
+      "λ, the flocculation state: 0 in concrete just sheared, growing at rest; the yield stress is (1 + λ) "
+      "times the "
+      "dynamic one.",
+      "–: does not apply to this run."};
+  page.made = facts_of_this_run(command);
+  page.scene = resolved;
+  return to_html(page);
+}
+
+}  // namespace tremie::report
