@@ -48,7 +48,7 @@ scene::Outcome outcome(const Scene& scene, const CellResult& result) {
                {"flocculation_end", scene::number(last.flocculation)},
                {"hysteresis_area_Pa_per_s", scene::number(result.hysteresis_area)},
                {"flocculation_error_max", scene::number(result.flocculation_error_max)}};
-  o.asked = scene.name + ": one material cell";
+  o.asked = scene.name + ", one material cell";
   o.answers = {{"stress_max_Pa", "largest stress", "Pa", 1}, {"stress_end_Pa", "at the end", "Pa", 1}};
   o.series = series_of(result);
   o.checks.volume_change = o.checks.mass_error = o.checks.max_speed_end = none;  // a cell has none

@@ -124,14 +124,14 @@ class Poly {
   std::size_t offset_ = 0;
 };
 
-/// One vertex cell a point: without cells ParaView shows nothing.
+/// One cell that has all points as its vertices: without cells ParaView shows nothing.
 void vertices(Poly& poly, std::size_t n) {
-  using Number = std::int64_t;
-  const auto number = [](std::size_t i) { return static_cast<Number>(i); };
+  using Number = std::int32_t;
   poly.xml << "<Verts>\n";
-  poly.array("Int64", "connectivity", 1, array_of<Number>(n, number));
-  poly.array("Int64", "offsets", 1,
-             array_of<Number>(n, [](std::size_t i) { return static_cast<Number>(i + 1); }));
+  poly.array("Int32", "connectivity", 1,
+             array_of<Number>(n, [](std::size_t i) { return static_cast<Number>(i); }));
+  poly.array("Int32", "offsets", 1,
+             array_of<Number>(n > 0 ? 1 : 0, [n](std::size_t) { return static_cast<Number>(n); }));
   poly.xml << "</Verts>\n";
 }
 
@@ -146,7 +146,7 @@ void write_vtp(const std::filesystem::path& file, double time, std::span<const s
          "header_type=\"UInt64\">\n<PolyData>\n<FieldData>\n"
       << "<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">" << time
       << "</DataArray>\n</FieldData>\n"
-      << "<Piece NumberOfPoints=\"" << points.size() << "\" NumberOfVerts=\"" << points.size()
+      << "<Piece NumberOfPoints=\"" << points.size() << "\" NumberOfVerts=\"" << (points.empty() ? 0 : 1)
       << "\">\n<Points>\n";
   const std::span<const double> coordinates(points.empty() ? nullptr : points.front().data(),
                                             3 * points.size());

@@ -26,8 +26,9 @@ std::string trust_html(const Trust& trust) {
 }
 
 std::string figure_html(const Figure& figure) {
-  return fmt::format("<figure id=\"{}\">{}<figcaption>{}</figcaption></figure>\n", escaped(figure.id),
-                     figure.svg, escaped(figure.caption));
+  const std::string caption =
+      figure.caption.empty() ? "" : "<figcaption>" + escaped(figure.caption) + "</figcaption>";
+  return fmt::format("<figure id=\"{}\">{}{}</figure>\n", escaped(figure.id), figure.svg, caption);
 }
 
 std::string numbers_html(const NumberTable& table) {

@@ -30,7 +30,7 @@ struct GridTable {
   std::vector<std::vector<std::string>> rows;
 };
 
-/// A picture that prints. `svg` is one <svg> element, made by charts.hpp or shapes.hpp: markup, not escaped.
+/// A picture that prints. An empty `caption` is left out. `svg` is one <svg> element, made by charts.hpp or shapes.hpp: markup, not escaped.
 struct Figure {
   std::string id, caption, svg;
 };

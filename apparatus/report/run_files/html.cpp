@@ -55,10 +55,12 @@ Verdict verdict_of(const scene::Outcome& o) {
 Trust trust_of(const scene::Outcome& o) {
   const Checks& c = o.checks;
   Trust trust{c.reasons.empty() && o.status == Status::completed, {}, c.reasons};
-  trust.text = o.error && !o.error->bars.empty()
-                   ? fmt::format("The error of cells and steps is the ± above ({}). ", o.error->basis)
-                   : std::string("The error of cells and steps was not estimated; --with-error does. ");
-  if (std::isfinite(c.volume_change))
+  const bool has_cells = std::isfinite(c.volume_change);  // a material cell has none
+  if (o.error && !o.error->bars.empty())
+    trust.text = fmt::format("The error of cells and steps is the ± above ({}). ", o.error->basis);
+  else if (has_cells)
+    trust.text = "The error of cells and steps was not estimated; --with-error does. ";
+  if (has_cells)
     trust.text += fmt::format(
         "The concrete's volume changed by {:+.2g} %, {} of {} steps did not converge, {} points were lost.",
         100.0 * c.volume_change, c.unconverged_steps, o.cost.steps, c.points_lost);
@@ -148,7 +150,7 @@ std::string report_html(const scene::Outcome& o, const std::string& resolved, co
   add_shape(o, moving, page);
   for (const auto& chart : o.charts)
     if (const LineChart drawn = line_chart(chart, o); can_be_drawn(drawn))
-      page.figures.push_back({chart.file.substr(0, chart.file.find('.')), chart.title, chart_svg(drawn)});
+      page.figures.push_back({chart.file.substr(0, chart.file.find('.')), "", chart_svg(drawn)});
   if (moving.frames.size() > 1) page.moving = thinned(moving, 40, 2500);
   NumberTable results{"Results", {}};
   add_rows(o, o.results, "", results);
