@@ -152,6 +152,21 @@ TEST(ShownFrames, AreBoundedAndKeepTheEnds) {
   for (const auto& p : last.position) EXPECT_LT(p[1], 3.0);
 }
 
+// Of six frames every second is written, and the last: 0, 2, 4 and 5 s.
+TEST(ResultFiles, SomeFramesAreEverySecondAndTheLast) {
+  const test::TemporaryFolder folder;
+  ResultFiles files(folder.path(), "schema = 1\n", "", FramesWritten::some);
+  for (const double t : {0.0, 1.0, 2.0, 3.0, 4.0, 5.0}) files.frame(small_frame(t));
+  scene::Outcome outcome = small_outcome();
+  outcome.charts.clear();
+  files.finish(outcome);
+  const std::string pvd = test::read_file(folder / "frames.pvd");
+  for (const char* time : {"\"0\"", "\"2\"", "\"4\"", "\"5\""})
+    EXPECT_NE(pvd.find(std::string("timestep=") + time), std::string::npos) << time;
+  for (const char* time : {"\"1\"", "\"3\""})
+    EXPECT_EQ(pvd.find(std::string("timestep=") + time), std::string::npos) << time;
+}
+
 TEST(Vtp, RefusesAFieldThatDoesNotFit) {
   const test::TemporaryFolder folder;
   const std::vector<std::array<double, 3>> points{{0, 0, 0}};

@@ -72,12 +72,8 @@ void write_results(io::Hdf5File& h5, const std::string& group, const std::vector
 }  // namespace
 
 ResultFiles::ResultFiles(const std::filesystem::path& folder, const std::string& resolved,
-                         const std::string& command, bool with_frames)
-    : folder_(folder),
-      resolved_(resolved),
-      command_(command),
-      with_frames_(with_frames),
-      h5_(folder / "results.h5") {
+                         const std::string& command, FramesWritten written)
+    : folder_(folder), resolved_(resolved), command_(command), written_(written), h5_(folder / "results.h5") {
   io::write_text(folder_ / "scene.toml", resolved_);
   h5_.attribute("/", "schema", std::int64_t{1});
   h5_.attribute("/", "tremie_version", std::string(version));
@@ -89,7 +85,16 @@ ResultFiles::ResultFiles(const std::filesystem::path& folder, const std::string&
 
 void ResultFiles::frame(const Frame& frame) {
   shown_.add(frame);
-  if (!with_frames_) return;
+  if (written_ == FramesWritten::none) return;
+  const std::size_t every = written_ == FramesWritten::all ? 1 : frame.position.size() > 20000 ? 3 : 2;
+  last_.reset();
+  if (came_++ % every == 0)
+    write_frame(frame);
+  else
+    last_ = frame;
+}
+
+void ResultFiles::write_frame(const Frame& frame) {
   if (!frames_.empty() && frames_.back().first == frame.time) return;  // the end may fall on a frame's time
   write_frame_h5(h5_, fmt::format("/frames/{:05}", frames_.size()), frame);
   std::filesystem::create_directories(folder_ / "frames");
@@ -115,6 +120,7 @@ void ResultFiles::write_results_h5(const scene::Outcome& outcome) {
 
 std::vector<std::string> ResultFiles::finish(const scene::Outcome& outcome) {
   std::vector<std::string> notes;
+  if (last_) write_frame(*last_);
   write_results_h5(outcome);
   io::write_text(folder_ / "timeseries.csv", columns_csv(outcome.series));
   for (const auto& table : outcome.tables) io::write_text(folder_ / table.file, columns_csv(table.columns));

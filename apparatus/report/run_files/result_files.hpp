@@ -4,6 +4,7 @@
 // results.h5, frames, charts, report.html). Frames are written as they come, the rest at the end.
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,27 +15,33 @@
 
 namespace tremie::report {
 
+/// Which of the frames that come are written for ParaView and Python: some, so that a default run stays small
+/// (every second, every third of more than 20000 points, and the last), or all. The report shows them all.
+enum class FramesWritten { none, some, all };
+
 /// Every call throws io::WriteError where the folder cannot be written.
 class ResultFiles {
  public:
-  /// `folder` is there. `resolved` is the scene as TOML; `command` repeats the run. Without `with_frames` no points
-  /// are written: the report alone shows them.
+  /// `folder` is there. `resolved` is the scene as TOML; `command` repeats the run.
   ResultFiles(const std::filesystem::path& folder, const std::string& resolved,
-              const std::string& command = "", bool with_frames = true);
+              const std::string& command = "", FramesWritten written = FramesWritten::all);
 
-  /// One more time in results.h5 and in frames/.
+  /// One more time for the report, results.h5 and frames/.
   void frame(const Frame& frame);
 
   /// All the rest. Returns notes for a person: what was left out, and why.
   std::vector<std::string> finish(const scene::Outcome& outcome);
 
  private:
+  void write_frame(const Frame& frame);
   void write_results_h5(const scene::Outcome& outcome);
 
   std::filesystem::path folder_;
   std::string resolved_, command_;
-  bool with_frames_;
-  ShownFrames shown_;  ///< thinned, for the report
+  FramesWritten written_;
+  std::size_t came_ = 0;
+  std::optional<Frame> last_;  ///< came last and is not written: it is if no other follows
+  ShownFrames shown_;          ///< thinned, for the report
   io::Hdf5File h5_;
   std::vector<std::pair<double, std::string>> frames_;  ///< time, file name
 };
