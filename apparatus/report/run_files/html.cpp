@@ -52,12 +52,21 @@ Verdict verdict_of(const scene::Outcome& o) {
   return verdict;
 }
 
+/// How the errors were found, with the results' keys in words.
+std::string basis_in_words(const scene::ErrorEstimate& error) {
+  std::string text = error.basis;
+  for (const auto& bar : error.bars)
+    if (const std::size_t at = text.find(bar.name + ":"); at != std::string::npos)
+      text.replace(at, bar.name.size(), words_of(bar.name));
+  return text;
+}
+
 Trust trust_of(const scene::Outcome& o) {
   const Checks& c = o.checks;
   Trust trust{c.reasons.empty() && o.status == Status::completed, {}, c.reasons};
   const bool has_cells = std::isfinite(c.volume_change);  // a material cell has none
   if (o.error && !o.error->bars.empty())
-    trust.text = fmt::format("The error of cells and steps is the ± above ({}). ", o.error->basis);
+    trust.text = fmt::format("The error of cells and steps is the ± above ({}). ", basis_in_words(*o.error));
   else if (has_cells)
     trust.text = "The error of cells and steps was not estimated; --with-error does. ";
   if (has_cells)
