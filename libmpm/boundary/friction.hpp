@@ -1,8 +1,10 @@
 #pragma once
 
-// The Coulomb floor as a yield term of the step: energy g |u| at each floor node, u its sliding velocity, g =
-// coefficient times normal force. g is frozen while a step is solved and renewed from the reaction
-// afterwards.
+// Coulomb friction on flat walls as a yield term of the implicit step: energy g |u| at each node of a wall of
+// FaceKind::friction, u its sliding velocity (walls stand still), g = coefficient times normal force. g is frozen while
+// a step is solved and renewed from the reaction by update_normal_forces() in implicit/solve.hpp, where the coefficient
+// enters. The drag of side walls is carried by the same nodes (normal_axis < 0). Explicit steps have their friction in
+// explicit/nodes.hpp.
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 
 // What a yield law states. A law is a struct of its parameters in a file of this folder and a line in
-// yield_law.hpp; nothing else of the library, the apparatus or the rheometer names it.
+// yield_law.hpp (YieldLaw); the solvers, the apparatus and the rheometer name none.
 //
 // Every law splits the deviatoric stress of a generalised Newtonian fluid into a Newtonian part, which the mix's
 // plastic viscosity mu gives, and a part of its own,
@@ -16,19 +16,24 @@
 //   secant(gamma_dot, tau_y)    s                                   [Pa s]
 //   slope(gamma_dot, tau_y)     (ds/dgamma_dot) / gamma_dot         [Pa s^3]
 //   potential(gamma_dot, tau_y) int_0^gamma_dot f                   [Pa/s], convex
-//   prox(a, tau_y, r)           the d >= 0 with f(d) + r d = a      [1/s]
+//   prox(a, tau_y, r)           the d >= 0 with f(d) + r d = a; r may be 0 [1/s]
 //   stress(gamma_dot, tau_y)    f, and at gamma_dot = 0 its limit from the side of flow [Pa]
-//   dual_limit(gamma_dot, tau_y) the largest stress that Newton's dual may carry at gamma_dot [Pa]
-//   newtonian()                 its share in the mix's mu: 0 unless it is viscous [Pa s]
-//   viscosity(gamma_dot)        of its viscous part beyond mu: 0 unless f has one [Pa s]
-//   largest_secant(tau_y)       over the shear rates of a test; infinite where there is none [Pa s]
+//   dual_limit(gamma_dot, tau_y) the largest stress |s| that Newton's dual may carry, so that its tangent stays
+//                               positive: |s| <= secant^2 / (|slope| gamma_dot); tau_y for exact Bingham [Pa]
+//   newtonian()                 its share in the mix's mu: 0 unless it is Bingham in other words, with no viscous part
+//                               left in f (Reiner-Riwlin's formulas then hold) [Pa s]
+//   viscosity(gamma_dot)        of its viscous part beyond mu, 0 unless f has one; for the stress scale of ADMM and the
+//                               drag of side walls [Pa s]
+//   largest_secant(tau_y)       over the shear rates of a test, for the explicit step's limit; infinite where there is
+//                               none [Pa s]
 //
 // none of which divides by a shear rate that may be zero, and
 //
 //   exact                       whether the stress at rest is anything up to tau_y
 //   viscous                     whether it takes the place of the mix's plastic viscosity
-//   word                        its name as model.yield
-//   keys()                      the scene keys of its parameters
+//   word                        its name as model.yield. Laws may share one: which is meant is told by their keys in
+//                               [mix], as for Bingham and Herschel-Bulkley, which are both "exact"
+//   keys()                      the scene keys of its parameters; a law with keys in [mix] has no part in the mix's mu
 //
 // and may state simd_secant(gamma_dot, tau_y) for points side by side, where one by one is too slow for it.
 
@@ -53,7 +58,7 @@ struct LawKey {
 
 inline constexpr double unbounded = std::numeric_limits<double>::infinity();
 
-/// Hardly any place of a test shears faster for long [1/s].
+/// Hardly any point of a test shears faster for long [1/s].
 inline constexpr double fastest_rate = 100.0;
 
 /// Below it nothing is told from rest [1/s].
