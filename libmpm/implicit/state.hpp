@@ -30,7 +30,7 @@ struct StepSettings {
   double time_left = 1e300;        ///< no step goes beyond it [s]
   double cfl = 0.6;                ///< largest move in a step, in cells
   double growth = 1.3;             ///< largest ratio of successive steps
-  double detached = 0.0;           ///< share of the points that may be drops in the air (detached_particles.hpp)
+  double detached = 0.0;  ///< share of the points that may be drops in the air (detached_particles.hpp)
   double friction_coefficient = 0.0;
   bool keep_forces = false;            ///< fill Body::wall_force and Body::dissipation
   double boundary_stiffness = 1000.0;  ///< of walls inside the grid, in m/dt
