@@ -383,7 +383,8 @@ FitResult fit_torque_decay(const TorqueRecord& record, const FitInput& in) {
   const LeastSquaresFit fit = least_squares(model, r, layout);
   const Teller told{layout, fit, layout.with(fit.parameters)};
   report(r, fit, result);
-  const bool misses = model_misses(fit, result);
+  // Whatever makes the fit not to be trusted, a record of one speed then splits its torque into neither.
+  const bool misses = model_misses(fit, result) || !result.reasons.empty();
   report_parameters(r, told, in, result);
   report_flow(r, told.p, in, result);
   report_apparent(r, in, told, result);
