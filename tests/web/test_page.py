@@ -57,7 +57,6 @@ def compare_with_native(browser, program):
         check(shown == f"{here['results']['spread_mm']:.0f}", f"{name}: the page shows {shown} mm")
         ratio.append(there["cost"]["wall_s"] / here["cost"]["wall_s"])
         print(f"        {there['cost']['wall_s']:.2f} s in the page, {here['cost']['wall_s']:.2f} s native")
-    # Three times is what the page is made for; a loaded machine gets twice that before it fails.
     print(f"time over the native program's: {', '.join(f'{r:.1f}' for r in ratio)}")
 
 
