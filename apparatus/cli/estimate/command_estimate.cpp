@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/options/quantity.hpp"
 #include "apparatus/estimate/estimate.hpp"
 #include "apparatus/scene/input_error.hpp"
 #include "apparatus/scene/load.hpp"
@@ -23,17 +24,6 @@ struct Options {
   std::string spread, t500, density, spread_error, t500_error;
   bool json = false;
 };
-
-std::optional<double> quantity(const char* option, const std::string& text, Dimension dimension) {
-  if (text.empty()) return std::nullopt;
-  try {
-    const double value = scene::parse_quantity(text, dimension);
-    if (!(value > 0.0)) throw std::invalid_argument(fmt::format("\"{}\" is not greater than 0", text));
-    return value;
-  } catch (const std::invalid_argument& error) {
-    throw scene::InputError(fmt::format("{}: {}", option, error.what()));
-  }
-}
 
 estimate::Measured measured_of(const Options& o) {
   estimate::Measured m;

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/options/quantity.hpp"
 #include "apparatus/cli/program.hpp"
 #include "apparatus/cli/study/charts.hpp"
 #include "apparatus/report/rheometer_files.hpp"
@@ -34,18 +35,6 @@ struct Options {
 
 // --- in
 // ---------------------------------------------------------------------------------------------------------
-
-/// The SI value of an option, which is a quantity with a unit; empty where it is not given.
-std::optional<double> quantity(const char* option, const std::string& text, Dimension dimension) {
-  if (text.empty()) return std::nullopt;
-  try {
-    const double value = scene::parse_quantity(text, dimension);
-    if (!(value > 0.0)) throw std::invalid_argument(fmt::format("\"{}\" is not greater than 0", text));
-    return value;
-  } catch (const std::invalid_argument& error) {
-    throw scene::InputError(fmt::format("{}: {}", option, error.what()));
-  }
-}
 
 FitInput input_of(const Options& o) {
   FitInput in;
