@@ -17,6 +17,7 @@ inline constexpr int not_to_be_trusted = 3;
 inline constexpr int interrupted = 130;
 
 void add_command_run(CLI::App& app, int& exit_code);
+void add_command_resume(CLI::App& app, int& exit_code);
 void add_command_check(CLI::App& app, int& exit_code);
 void add_command_new(CLI::App& app, int& exit_code);
 void add_command_estimate(CLI::App& app, int& exit_code);

@@ -5,6 +5,7 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 
 #include "apparatus/cli/commands.hpp"
@@ -13,6 +14,8 @@ namespace tremie::cli {
 
 int hand_over(char** argv) {
   const auto program = own_file().parent_path() / "tremie-study";
+  // What Ceres logs is for its programmers; what went wrong is told by us.
+  setenv("GLOG_minloglevel", "3", 0);
   execv(program.c_str(), argv);
   fmt::print(stderr, "tremie: {}: {}\n", program.string(), std::strerror(errno));
   return fault;

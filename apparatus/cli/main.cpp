@@ -46,6 +46,7 @@ int main(int argc, char** argv) {
   if (argc > 1 && is_study_command(argv[1])) return hand_over(argv);
   return run_program(argc, argv, [](CLI::App& app, int& exit_code) {
     add_command_run(app, exit_code);
+    add_command_resume(app, exit_code);
     add_command_check(app, exit_code);
     add_command_new(app, exit_code);
     add_command_cell(app, exit_code);

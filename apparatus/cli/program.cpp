@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <new>
+#include <string_view>
 
 #include "apparatus/cli/commands.hpp"
 #include "apparatus/scene/input_error.hpp"
@@ -56,6 +58,25 @@ int flushed(int exit_code) {
   return exit_code == done ? static_cast<int>(fault) : exit_code;
 }
 
+/// Control characters that came in with a file or an argument do nothing to the terminal.
+std::string visible(std::string_view text) {
+  std::string shown;
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if ((code < 0x20 && c != '\n' && c != '\t') || code == 0x7f)
+      shown += fmt::format("\\x{:02x}", code);
+    else
+      shown += c;
+  }
+  return shown;
+}
+
+/// A message of a person's size, whatever was put in.
+std::string message(std::string_view text) {
+  constexpr std::size_t most = 10000;
+  return visible(text.substr(0, most)) + (text.size() > most ? " …" : "");
+}
+
 int parse_and_run(int argc, char** argv, const std::function<void(CLI::App&, int&)>& add) {
   CLI::App app{"Virtual test apparatus for thixotropic fresh concrete", "tremie"};
   app.set_version_flag("--version", fmt::format("tremie {} ({})", version, commit));
@@ -78,10 +99,14 @@ int run_program(int argc, char** argv, const std::function<void(CLI::App&, int&)
   try {
     return flushed(parse_and_run(argc, argv, add));
   } catch (const scene::InputError& error) {
-    fmt::print(stderr, "{}\n", error.what());
+    fmt::print(stderr, "{}\n", message(error.what()));
     return bad_input;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr,
+               "tremie: there is not enough memory: larger cells (model.cell) or fewer points_per_cell\n");
+    return fault;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "tremie: {}\n", error.what());
+    fmt::print(stderr, "tremie: {}\n", message(error.what()));
     return fault;
   }
 }

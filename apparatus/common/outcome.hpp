@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "apparatus/common/checkpoints.hpp"
 #include "apparatus/common/model.hpp"
 
 namespace tremie::scene {
@@ -139,6 +140,7 @@ struct Observer {
   std::function<void(const Progress&)> on_progress;
   std::function<void(const Frame&)> on_frame;
   const std::atomic<bool>* interrupted = nullptr;
+  const Checkpoints* checkpoints = nullptr;
 };
 
 }  // namespace tremie::scene

@@ -335,12 +335,18 @@ Section output_section() {
                .words = {"auto"},
                .fallback = "auto",
                .help = "auto: often while it flows fast, seldom later"},
+              {.name = "checkpoint_interval",
+               .dimension = Dimension::time,
+               .range = not_negative,
+               .words = {"never"},
+               .fallback = "60 s",
+               .help = "of wall time, between two checkpoints that `tremie resume` goes on from"},
           }};
 }
 
 Output read_output(const Values& values) {
   return {values.number_unless("output.frame_interval", "auto").value_or(0.0),
-          values.boolean("output.frames")};
+          values.boolean("output.frames"), values.number_unless("output.checkpoint_interval", "never")};
 }
 
 }  // namespace tremie::scene

@@ -56,6 +56,7 @@ Section output_section();
 struct Output {
   double frame_interval = 0.0;  ///< [s]; 0: chosen (run/run_loop.hpp)
   bool frames = true;
+  std::optional<double> checkpoint_interval = {};  ///< of wall time [s]; empty: none are kept
 };
 Output read_output(const Values& values);
 

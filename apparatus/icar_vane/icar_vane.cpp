@@ -7,6 +7,7 @@
 #include "apparatus/run/frames.hpp"
 #include "apparatus/run/run_checks.hpp"
 #include "apparatus/run/run_loop.hpp"
+#include "libmpm/implicit/archived_state.hpp"
 
 namespace tremie::icar_vane {
 namespace {
@@ -139,9 +140,15 @@ Outcome run_section(const Scene& scene, const Section& section, const Observer& 
             momentum = t.angular_momentum;
             if (observer.on_step) observer.on_step(outcome.series.back());
           },
-      .frame = [&] { return section.whole(test_run::frame_of(body), turned); }};
-  test_run::run_loop(flow, {observer.on_frame, observer.interrupted, scene.frame_interval}, outcome.status,
-                     outcome.checks, outcome.cost);
+      .frame = [&] { return section.whole(test_run::frame_of(body), turned); },
+      .state =
+          [&](Archive& archive) {
+            archive(body, turned, momentum, outcome.series);
+            archive(schedule.at, schedule.stage_start, schedule.last_speed);
+          }};
+  test_run::run_loop(
+      flow, {observer.on_frame, observer.interrupted, scene.frame_interval, 0.0, observer.checkpoints},
+      outcome.status, outcome.checks, outcome.cost);
 
   test_run::judge(body, start_mass, outcome.checks, outcome.cost);
   outcome.results.profile = profile(body, section, scene.model.cell[0]);

@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "apparatus/common/checkpoints.hpp"
 #include "apparatus/common/model.hpp"
 #include "libmpm/constitutive/mix.hpp"
 
@@ -108,6 +109,7 @@ struct Observer {
   std::function<void(const Sample&)> on_step;
   std::function<void(const Frame&)> on_frame;
   const std::atomic<bool>* interrupted = nullptr;
+  const Checkpoints* checkpoints = nullptr;
 };
 
 struct Estimate {

@@ -205,6 +205,7 @@ double whole_time(const icar_vane::Scene& scene) {
 icar_vane::Observer observe(double duration, bool all_frames, const Observer& observer) {
   icar_vane::Observer result;
   result.interrupted = observer.interrupted;
+  result.checkpoints = observer.checkpoints;
   if (all_frames) result.on_frame = observer.on_frame;
   if (observer.on_progress) {
     result.on_step = [duration, &observer](const Sample& s) {

@@ -9,6 +9,7 @@
 #include "apparatus/run/run_checks.hpp"
 #include "apparatus/run/run_loop.hpp"
 #include "apparatus/run/step_settings.hpp"
+#include "libmpm/implicit/archived_state.hpp"
 
 namespace tremie::l_box {
 
@@ -99,7 +100,7 @@ Outcome run_in(const Scene& scene, const Observer& observer) {
 
   Outcome outcome;
   outcome.series.push_back(read(body, scene, {}));
-  if (observer.on_frame) observer.on_frame(test_run::frame_of(body));
+  if (observer.on_frame && !goes_on(observer.checkpoints)) observer.on_frame(test_run::frame_of(body));
   const test_run::Flow flow{
       .time = [&] { return body.time; },
       .unfinished = [&] { return body.time < scene.duration * (1.0 - 1e-12); },
@@ -124,11 +125,13 @@ Outcome run_in(const Scene& scene, const Observer& observer) {
       // Drops from the films on the column's walls fall long after the concrete stands.
       .speed = [](const StepReport& step) { return step.bulk_speed; },
       .free_to_flow =
-          [&] { return !scene.gate_speed || *scene.gate_speed * body.time > scene.box.channel_height; }};
-  const auto stopped_at = test_run::run_loop(flow,
-                                             {observer.on_frame, observer.interrupted, scene.frame_interval,
-                                              test_run::frame_after(0.0, scene.frame_interval)},
-                                             outcome.status, outcome.checks, outcome.cost);
+          [&] { return !scene.gate_speed || *scene.gate_speed * body.time > scene.box.channel_height; },
+      .state = [&](Archive& archive) { archive(body, outcome.series); }};
+  const auto stopped_at =
+      test_run::run_loop(flow,
+                         {observer.on_frame, observer.interrupted, scene.frame_interval,
+                          test_run::frame_after(0.0, scene.frame_interval), observer.checkpoints},
+                         outcome.status, outcome.checks, outcome.cost);
 
   read_results(body, scene, stopped_at, outcome);
   test_run::judge(body, start_mass, outcome.checks, outcome.cost);

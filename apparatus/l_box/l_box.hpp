@@ -8,6 +8,7 @@
 #include <functional>
 #include <optional>
 
+#include "apparatus/common/checkpoints.hpp"
 #include "apparatus/common/model.hpp"
 #include "libmpm/constitutive/mix.hpp"
 
@@ -81,6 +82,7 @@ struct Observer {
   std::function<void(const Sample&)> on_step;
   std::function<void(const Frame&)> on_frame;  ///< at the start, every frame_interval and at the end
   const std::atomic<bool>* interrupted = nullptr;
+  const Checkpoints* checkpoints = nullptr;
 };
 
 struct Estimate {

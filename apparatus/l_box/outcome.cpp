@@ -139,6 +139,7 @@ std::string judged(const l_box::Scene& scene, const l_box::Results& r) {
 l_box::Observer observe(const l_box::Scene& scene, bool all_frames, const Observer& observer) {
   l_box::Observer result;
   result.interrupted = observer.interrupted;
+  result.checkpoints = observer.checkpoints;
   if (all_frames) result.on_frame = observer.on_frame;
   if (observer.on_progress) {
     result.on_step = [&scene, &observer](const l_box::Sample& s) {

@@ -1,7 +1,16 @@
 #include "apparatus/report/run_folder.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <stdio.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <fstream>
+#include <vector>
 
 #include "apparatus/scene/input_error.hpp"
 #include "libmpm/io/write_error.hpp"
@@ -11,13 +20,36 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_earlier_result(const fs::path& folder) {
+constexpr const char* ours = ".tremie";          ///< marks a folder that results are written into
+constexpr const char* complete = ".publishing";  ///< all is written, and some of it already in its place
+
+fs::path tidy(const fs::path& folder) {
+  fs::path path = fs::absolute(folder).lexically_normal();
+  return path.has_filename() ? path : path.parent_path();
+}
+
+std::string hidden_name(const fs::path& target) {
+  return fmt::format(".{}.part", target.filename().string());
+}
+
+bool is_there(const fs::path& path) {
   std::error_code error;
+  return fs::exists(path, error);
+}
+
+bool is_earlier_result(const fs::path& folder) {
   // a run leaves its scene, a fit its readings, a calibration its mix, a verification its document
-  if (fs::exists(folder / "VERIFICATION.md", error)) return true;
-  return fs::exists(folder / "summary.json", error) &&
-         (fs::exists(folder / "scene.toml", error) || fs::exists(folder / "fit.csv", error) ||
-          fs::exists(folder / "mix.toml", error));
+  if (is_there(folder / "VERIFICATION.md")) return true;
+  return is_there(folder / "summary.json") &&
+         (is_there(folder / "scene.toml") || is_there(folder / "fit.csv") || is_there(folder / "mix.toml"));
+}
+
+/// Holds nothing, or nothing but what a run writes into on its way there.
+bool is_free(const fs::path& folder) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error))
+    if (entry.path().filename() != hidden_name(folder)) return false;
+  return !error;
 }
 
 [[noreturn]] void refuse(const fs::path& folder, const std::string& why) {
@@ -30,7 +62,11 @@ void refuse_what_is_in_the_way(const fs::path& folder, bool replace) {
   if (!fs::exists(status)) return;
   if (!fs::is_directory(status)) refuse(folder, "is there already and is no folder");
   if (access(folder.c_str(), R_OK | W_OK | X_OK) != 0) refuse(folder, "cannot be written");
-  if (fs::is_empty(folder, error)) return;
+  if (is_free(folder)) return;
+  if (!replace && is_there(folder / "checkpoint"))
+    refuse(folder,
+           fmt::format("holds an interrupted run: `tremie resume {}` goes on with it, --force replaces it",
+                       folder.string()));
   if (!replace) refuse(folder, "holds an earlier result; --force replaces it, --out DIR writes elsewhere");
   if (!is_earlier_result(folder))
     refuse(folder, "holds files that are no earlier result: --force does not replace them");
@@ -39,58 +75,189 @@ void refuse_what_is_in_the_way(const fs::path& folder, bool replace) {
 /// The topmost part of `folder` that is not there yet; empty where all of it is.
 fs::path first_missing(const fs::path& folder) {
   fs::path missing;
-  std::error_code error;
-  for (fs::path part = folder; !part.empty() && !fs::exists(part, error); part = part.parent_path())
-    missing = part;
+  for (fs::path part = folder; !part.empty() && !is_there(part); part = part.parent_path()) missing = part;
   return missing;
+}
+
+enum class Lock { held, taken_by_another, none };
+
+/// Locks a folder as long as this process has it open. A file system without locks has none.
+Lock lock_folder(const fs::path& folder, int& file) {
+  file = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (file < 0) return Lock::none;
+  if (flock(file, LOCK_EX | LOCK_NB) == 0) return Lock::held;
+  if (errno != EWOULDBLOCK) return Lock::none;
+  close(file);
+  file = -1;
+  return Lock::taken_by_another;
+}
+
+/// Whether the open folder is still the one of this name.
+bool is_named(int file, const fs::path& folder) {
+  struct stat open_one = {}, named = {};
+  return fstat(file, &open_one) == 0 && stat(folder.c_str(), &named) == 0 &&
+         open_one.st_ino == named.st_ino && open_one.st_dev == named.st_dev;
+}
+
+/// Moves all that is left in a complete result's folder into its place, the summary last.
+void move_rest(const fs::path& staging, const fs::path& target) {
+  std::vector<fs::path> names;
+  for (const auto& entry : fs::directory_iterator(staging)) names.push_back(entry.path().filename());
+  std::sort(names.begin(), names.end(), [](const fs::path& a, const fs::path& b) {
+    return (a == "summary.json") < (b == "summary.json");
+  });
+  for (const fs::path& name : names)
+    if (name != complete && name != ours) fs::rename(staging / name, target / name);
+  fs::remove_all(staging);
+}
+
+/// A process that was killed while it put a result in its place had all of it written.
+void finish_publishing(const fs::path& target) {
+  const fs::path staging = target / hidden_name(target);
+  int file = -1;
+  std::error_code ignored;
+  if (is_there(staging / complete) && lock_folder(staging, file) != Lock::taken_by_another) try {
+      move_rest(staging, target);
+    } catch (const fs::filesystem_error&) {  // then it is in the way, and refused
+    }
+  if (file >= 0) close(file);
+}
+
+/// Removes all of a folder but what is called `kept`.
+void clear(const fs::path& folder, const std::string& kept = "") {
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored))
+    if (entry.path().filename() != kept) fs::remove_all(entry.path(), ignored);
+}
+
+/// What dead processes have left beside a folder without a checkpoint.
+void clear_remains(const fs::path& parent, const fs::path& own) {
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(parent, ignored)) {
+    const fs::path& part = entry.path();
+    const std::string name = part.filename().string();
+    if (part == own || !name.starts_with('.') || !name.ends_with(".part") || !is_there(part / ours)) continue;
+    int file = -1;
+    if (lock_folder(part, file) == Lock::held && is_named(file, part) && !is_there(part / "checkpoint/state"))
+      fs::remove_all(part, ignored);
+    if (file >= 0) close(file);
+  }
 }
 
 }  // namespace
 
-RunFolder::RunFolder(const fs::path& folder, bool replace) {
-  target_ = fs::absolute(folder).lexically_normal();
-  if (!target_.has_filename()) target_ = target_.parent_path();
+fs::path find_checkpoint(const fs::path& folder) {
+  const fs::path target = tidy(folder), hidden = hidden_name(target);
+  for (const fs::path& part : {target.parent_path() / hidden, target / hidden, target})
+    if (is_there(part / "checkpoint/state")) return part / "checkpoint";
+  return {};
+}
+
+RunFolder::RunFolder(const fs::path& folder, bool replace) : target_(tidy(folder)), replace_(replace) {
+  finish_publishing(target_);
+  const fs::path unfinished = find_checkpoint(target_);
+  if (!replace && !unfinished.empty() && unfinished.parent_path() != target_)
+    refuse(target_,
+           fmt::format("there is an unfinished run: `tremie resume {}` goes on with it, --force begins anew",
+                       target_.string()));
   refuse_what_is_in_the_way(target_, replace);
   make_staging();
+  clear(staging_, ours);
+}
+
+RunFolder::RunFolder(const fs::path& folder, Resumed) : target_(tidy(folder)), replace_(true) {
+  if (find_checkpoint(target_).empty())
+    throw scene::InputError(fmt::format("{}: holds no unfinished run", target_.string()));
+  refuse_what_is_in_the_way(target_, true);
+  make_staging();
+  take_over_checkpoint();
 }
 
 void RunFolder::make_staging() {
   std::error_code error;
-  inside_ = fs::is_directory(target_, error) && fs::is_empty(target_, error);
+  inside_ = fs::is_directory(target_, error) && is_free(target_);
   const fs::path parent = inside_ ? target_ : target_.parent_path();
   made_parent_ = first_missing(parent);
   fs::create_directories(parent, error);
-  const std::string hidden = fmt::format(".{}.{}.part", target_.filename().string(), getpid());
-  if (!error) fs::create_directory(parent / hidden, error);
+  staging_ = parent / hidden_name(target_);
+  if (!error) lock();
+  if (lock_ >= 0) std::ofstream(staging_ / ours);
+  if (!error && !is_there(staging_ / ours)) error = std::make_error_code(std::errc::permission_denied);
   if (error) {
     if (!made_parent_.empty()) fs::remove_all(made_parent_);
     refuse(target_, "cannot be written: " + error.message());
   }
-  staging_ = parent / hidden;
+  clear_remains(parent, staging_);
+}
+
+void RunFolder::lock() {
+  for (int attempt = 0; attempt < 3; ++attempt) {  // another process may put its folder in place just now
+    std::error_code error;
+    fs::create_directory(staging_, error);
+    if (lock_folder(staging_, lock_) == Lock::taken_by_another)
+      refuse(target_, "another process writes its result there at this moment");
+    if (lock_ < 0 || is_named(lock_, staging_)) return;
+    close(lock_);
+    lock_ = -1;
+  }
+}
+
+/// The checkpoint of an interrupted run lies in its result, which stays as it is until this run is done.
+void RunFolder::take_over_checkpoint() {
+  clear(staging_, "checkpoint");
+  std::ofstream(staging_ / ours);
+  const fs::path from = find_checkpoint(target_);
+  std::error_code error;
+  if (from.parent_path() != staging_) {
+    fs::remove_all(checkpoint());
+    fs::copy(from, checkpoint(), error);
+  }
+  if (error) refuse(target_, "its checkpoint cannot be copied: " + error.message());
 }
 
 RunFolder::~RunFolder() {
-  if (published_) return;
   std::error_code ignored;
-  fs::remove_all(staging_, ignored);
-  for (fs::path part = staging_.parent_path(); !made_parent_.empty(); part = part.parent_path()) {
-    if (!fs::remove(part, ignored) || part == made_parent_) break;  // keeps what others have filled meanwhile
+  if (!published_ && is_there(checkpoint() / "state")) {  // `tremie resume` goes on from here
+    clear(staging_, "checkpoint");
+    std::ofstream(staging_ / ours);
+  } else if (!published_) {
+    fs::remove_all(staging_, ignored);
+    for (fs::path part = staging_.parent_path(); !made_parent_.empty(); part = part.parent_path()) {
+      if (!fs::remove(part, ignored) || part == made_parent_)
+        break;  // keeps what others have filled meanwhile
+    }
   }
+  if (lock_ >= 0) close(lock_);
+}
+
+/// The target may be a mount point, which cannot be renamed over: moves what is inside.
+void RunFolder::move_inside() {
+  std::ofstream(staging_ / complete);
+  move_rest(staging_, target_);
+}
+
+/// By one rename, or one exchange with an earlier result: at no moment is there none.
+void RunFolder::put_in_place() {
+  fs::remove(staging_ / ours);
+  if (!is_there(target_)) return fs::rename(staging_, target_);
+  const fs::path old = staging_.string() + ".old";
+  if (renameat2(AT_FDCWD, staging_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) == 0) {
+    fs::remove_all(staging_);
+    return;
+  }
+  fs::rename(target_, old);  // a file system that cannot exchange
+  fs::rename(staging_, target_);
+  fs::remove_all(old);
 }
 
 void RunFolder::publish() try {
-  if (inside_) {
-    // The target may be a mount point, which cannot be renamed over: move what is inside.
-    for (const auto& entry : fs::directory_iterator(staging_))
-      fs::rename(entry.path(), target_ / entry.path().filename());
-    fs::remove(staging_);
-  } else {
-    const fs::path old = staging_.string() + ".old";
-    const bool replaces = fs::exists(target_);
-    if (replaces) fs::rename(target_, old);
-    fs::rename(staging_, target_);
-    if (replaces) fs::remove_all(old);
+  if (!inside_ && !replace_ && is_there(target_) && !is_free(target_)) {
+    published_ = true;
+    fs::remove(staging_ / ours);
+    throw io::WriteError(fmt::format("{}: was filled by others meanwhile; the result lies in {}",
+                                     target_.string(), staging_.string()));
   }
+  inside_ ? move_inside() : put_in_place();
   published_ = true;
 } catch (const fs::filesystem_error& error) {
   throw io::WriteError(error.what());

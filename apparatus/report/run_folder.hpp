@@ -5,21 +5,30 @@
 
 namespace tremie::report {
 
-/// A folder that a result appears in whole or not at all. Everything is written into a hidden folder beside
-/// it (inside it, where it is there already and empty), which publish() puts in its place; without publish()
-/// nothing stays.
+/// Goes on with an unfinished run.
+struct Resumed {};
+
+/// A folder that a result appears in whole or not at all. Everything is written into a hidden folder beside it
+/// (inside it, where it is there already and empty), which publish() puts in its place; without publish() nothing
+/// stays but a run's checkpoint. One process at a time writes there, held by a lock that ends with it; what a dead
+/// process has left without a checkpoint is cleared away by the next that writes beside it.
 class RunFolder {
  public:
-  /// Throws scene::InputError where the folder holds something and `replace` is false, where it holds
-  /// something that is no earlier result, or where it cannot be written.
+  /// Throws scene::InputError where the folder holds something or an unfinished run and `replace` is false, where it
+  /// holds something that is no earlier result, where another process writes there, or where it cannot be written.
   RunFolder(const std::filesystem::path& folder, bool replace);
+  /// Goes on where find_checkpoint(folder) finds a run's checkpoint, which lies in checkpoint() then. Throws
+  /// scene::InputError where there is none, and as above.
+  RunFolder(const std::filesystem::path& folder, Resumed);
   ~RunFolder();
   RunFolder(const RunFolder&) = delete;
   RunFolder& operator=(const RunFolder&) = delete;
 
   /// Where to write.
   const std::filesystem::path& staging() const { return staging_; }
-  /// Where it will be.
+  /// Where a run keeps its checkpoint.
+  std::filesystem::path checkpoint() const { return staging_ / "checkpoint"; }
+  /// Where the result will be.
   const std::filesystem::path& target() const { return target_; }
 
   /// Throws io::WriteError.
@@ -27,11 +36,21 @@ class RunFolder {
 
  private:
   void make_staging();
+  void lock();
+  void take_over_checkpoint();
+  void move_inside();
+  void put_in_place();
 
   std::filesystem::path target_, staging_;
   std::filesystem::path made_parent_;  ///< the topmost folder that was made on the way
   bool inside_ = false;                ///< staging lies inside the empty target
+  bool replace_ = false;
   bool published_ = false;
+  int lock_ = -1;
 };
+
+/// The folder with the checkpoint of the unfinished run that was to fill `folder`: beside it where the run was killed,
+/// inside where it was interrupted. Empty where there is none.
+std::filesystem::path find_checkpoint(const std::filesystem::path& folder);
 
 }  // namespace tremie::report

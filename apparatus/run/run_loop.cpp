@@ -23,13 +23,26 @@ void show_frame(const Flow& flow, Onlooker& onlooker) {
   onlooker.next_frame = frame_after(onlooker.next_frame, onlooker.frame_interval);
 }
 
+/// The state between two steps: the flow's, the loop's own, and what was counted.
+VisitState state_of(const Flow& flow, Onlooker& onlooker, RestWatch& watch, Checks& checks, Cost& cost) {
+  return [&](Archive& archive) {
+    archive(onlooker.next_frame, watch, checks.unconverged_steps, checks.cells_in_a_step, checks.reasons);
+    archive(cost.steps, cost.cells_active);
+    flow.state(archive);
+  };
+}
+
 }  // namespace
 
 std::optional<double> run_loop(const Flow& flow, Onlooker onlooker, Status& status, Checks& checks,
                                Cost& cost) {
   RestWatch watch;
   bool at_rest = false;
+  const Checkpoints* checkpoints = flow.state ? onlooker.checkpoints : nullptr;
+  const VisitState state = state_of(flow, onlooker, watch, checks, cost);
+  if (goes_on(checkpoints)) checkpoints->restore(state);
   while (status == Status::completed && !at_rest && flow.unfinished()) {
+    if (checkpoints && checkpoints->due()) checkpoints->keep(state);
     flow.prepare();
     const StepReport step = flow.advance(checks, cost);
     if (gave_up(step, status, checks, flow.time())) break;
@@ -39,6 +52,7 @@ std::optional<double> run_loop(const Flow& flow, Onlooker onlooker, Status& stat
     if (flow.gains_energy && flow.gains_energy()) status = Status::failed;
     show_frame(flow, onlooker);
   }
+  if (checkpoints && status == Status::interrupted && !at_rest && flow.unfinished()) checkpoints->keep(state);
   return at_rest ? watch.slow_since : std::nullopt;
 }
 

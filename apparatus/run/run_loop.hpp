@@ -7,6 +7,7 @@
 #include <functional>
 #include <optional>
 
+#include "apparatus/common/checkpoints.hpp"
 #include "apparatus/common/model.hpp"
 #include "libmpm/implicit/step.hpp"
 
@@ -42,6 +43,8 @@ struct Flow {
   std::function<double(const StepReport&)> speed = {};
   std::function<bool()> free_to_flow = {};
   std::function<bool()> gains_energy = {};  ///< more than a stable run can; may be empty
+  /// All that goes on from one step to the next: body, schedule and series. Empty: the test keeps no checkpoints.
+  VisitState state = {};
 };
 
 /// When the frame after that of time t is due [s]. An interval of 0 is chosen: a fifth of a second at first, a
@@ -55,6 +58,7 @@ struct Onlooker {
   const std::function<void(const Frame&)>& on_frame;  ///< may be empty
   const std::atomic<bool>* interrupted = nullptr;
   double frame_interval = 0.0, next_frame = 0.0;
+  const Checkpoints* checkpoints = nullptr;
 };
 
 /// Runs the flow until its time is over, it is at rest, a step fails or somebody interrupts. Returns when it

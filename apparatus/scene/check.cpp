@@ -38,11 +38,54 @@ std::string allowed_text(const Key& key) {
   return range.empty() ? text : text + ", " + range;
 }
 
+/// The sizes that a quantity other than 0 may have, in SI: some orders of magnitude beyond all concretes and tests, and
+/// well within what can be computed with.
+Range sizes_of(Dimension dimension) {
+  switch (dimension) {
+    case Dimension::length:
+      return between(1e-6, 1e2);
+    case Dimension::time:
+      return between(1e-9, 1e9);
+    case Dimension::speed:
+      return between(1e-9, 1e3);
+    case Dimension::pressure:
+      return between(1e-9, 1e13);
+    case Dimension::density:
+      return between(1e-3, 1e6);
+    case Dimension::rate:
+    case Dimension::rotation:
+      return between(1e-12, 1e6);
+    case Dimension::angle:
+      return between(0.0, 1e6);
+    case Dimension::viscosity:
+    case Dimension::structuration:
+    case Dimension::consistency:
+    case Dimension::torque:
+    case Dimension::acceleration:
+      break;
+  }
+  return between(1e-12, 1e9);
+}
+
+void check_size(const Key& key, double value, const std::string& written) {
+  const Range sizes = key.kind == Kind::quantity ? sizes_of(key.dimension) : between(0.0, 1e9);
+  if (value == 0.0 || contains(sizes, std::abs(value))) return;
+  const auto amount = [&](double size) {
+    return key.kind == Kind::quantity ? write_quantity(size, key.dimension) : write_number(size);
+  };
+  throw Problem(std::abs(value) < sizes.low
+                    ? fmt::format("{} is too small to be computed with; allowed: at least {}", written,
+                                  amount(sizes.low))
+                    : fmt::format("{} is too large to be computed with; allowed: at most {}", written,
+                                  amount(sizes.high)));
+}
+
 void check_range(const Key& key, double value, const std::string& written) {
   if (!std::isfinite(value))
     throw Problem(fmt::format("{} is not a finite number; allowed: {}", written, allowed_text(key)));
   if (!contains(key.range, value))
     throw Problem(fmt::format("{} is out of range; it must be {}", written, range_text(key)));
+  check_size(key, value, written);
 }
 
 bool is_word(const Key& key, const std::string& text) {
@@ -126,11 +169,15 @@ class Checker {
     drop_what_does_not_apply();
     if (problems_.empty()) return std::move(values_);
     std::string all;
-    for (const auto& problem : problems_) all += (all.empty() ? "" : "\n") + problem;
+    const std::size_t shown = std::min(problems_.size(), most_shown);
+    for (std::size_t i = 0; i < shown; ++i) all += (i == 0 ? "" : "\n") + problems_[i];
+    if (shown < problems_.size()) all += fmt::format("\n… and {} more", problems_.size() - shown);
     throw InputError(all);
   }
 
  private:
+  static constexpr std::size_t most_shown = 20;
+
   /// `name` is the section as in the schema, `place` as in the values ("history[2]" for a repeated one).
   void visit(const Node& table, const std::string& name, const std::string& place) {
     values_.sections[place] = table.origin;

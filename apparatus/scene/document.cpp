@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <fstream>
-#include <iterator>
+#include <iostream>
 #include <optional>
 #include <utility>
 
@@ -94,6 +94,48 @@ void set_line_of_override(Node& node) {
 
 }  // namespace
 
+namespace {
+
+/// A scene has a few parts; so many more would fill the stack.
+constexpr std::size_t most_parts = 64;
+constexpr std::size_t most_bytes = std::size_t{1} << 28;
+
+/// Looks for a key of too many dotted parts before the parser does. Strings do not count.
+void refuse_deep_keys(std::string_view text, const std::string& name) {
+  std::size_t parts = 0, line = 1;
+  char within = 0;  // the quote of the string that this is in
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '\n') ++line;
+    if (within != 0) {
+      if (c == '\\' && within == '"') ++i;
+      if (c == within || c == '\n') within = 0;
+    } else if (c == '"' || c == '\'') {
+      within = c;
+    } else if (c == '.') {
+      if (++parts > most_parts)
+        throw InputError(fmt::format("{}:{}: a key has more than {} dotted parts", name, line, most_parts));
+    } else if (std::string_view("=,[]{}\n#").find(c) != std::string_view::npos) {
+      parts = 0;
+    }
+  }
+}
+
+/// All of a file; one without an end (a device) is no scene.
+std::string read_whole(std::istream& file, const std::string& name) {
+  std::string text;
+  std::vector<char> block(1 << 16);
+  while (file.read(block.data(), static_cast<std::streamsize>(block.size())), file.gcount() > 0) {
+    text.append(block.data(), static_cast<std::size_t>(file.gcount()));
+    if (text.size() > most_bytes)
+      throw InputError(fmt::format("{}: is no scene: longer than {} MB", name, most_bytes >> 20));
+  }
+  if (file.bad()) throw InputError(fmt::format("{}: cannot be read", name));
+  return text;
+}
+
+}  // namespace
+
 std::string describe(const Origin& origin) {
   const std::string prefix = origin.layer == Layer::command_line ? "--set " : "";
   if (origin.line > 0) return fmt::format("{}{}:{}", prefix, origin.file, origin.line);
@@ -101,6 +143,7 @@ std::string describe(const Origin& origin) {
 }
 
 Node parse_text(std::string_view text, const std::string& name, Layer layer) {
+  refuse_deep_keys(text, name);
   try {
     Node node = convert(toml::parse(text), {name, layer});
     node.origin.line = 1;
@@ -112,6 +155,7 @@ Node parse_text(std::string_view text, const std::string& name, Layer layer) {
 }
 
 Node parse_file(const std::filesystem::path& path) {
+  if (path == "-") return parse_text(read_whole(std::cin, "standard input"), "standard input", Layer::scene);
   std::error_code error;
   if (std::filesystem::is_directory(path, error))
     throw InputError(fmt::format("{}: is a folder, not a scene file", path.string()));
@@ -121,9 +165,7 @@ Node parse_file(const std::filesystem::path& path) {
         fmt::format("{}: {}", path.string(),
                     std::filesystem::exists(path, error) ? "cannot be read" : "there is no such file"));
   }
-  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (file.bad()) throw InputError(fmt::format("{}: cannot be read", path.string()));
-  return parse_text(text, path.string(), Layer::scene);
+  return parse_text(read_whole(file, path.string()), path.string(), Layer::scene);
 }
 
 const Node* find(const Node& node, std::string_view key) {
@@ -151,7 +193,7 @@ Override parse_override(const std::string& argument) {
     result.path.push_back(key.substr(start, end - start));
     start = end + 1;
   }
-  if (result.path.empty()) throw complain();
+  if (result.path.empty() || result.path.size() > most_parts) throw complain();
   result.value = value_or_words(trimmed(argument.substr(equals + 1)), {argument, Layer::command_line});
   set_line_of_override(result.value);
   return result;

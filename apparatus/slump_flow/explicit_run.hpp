@@ -9,6 +9,7 @@
 #include "apparatus/slump_flow/checks.hpp"
 #include "apparatus/slump_flow/series.hpp"
 #include "apparatus/slump_flow/set_up.hpp"
+#include "libmpm/explicit/archived_state.hpp"
 #include "libmpm/explicit/step.hpp"
 
 namespace tremie::slump_flow {
@@ -79,18 +80,17 @@ Frame frame_from(Body<Geometry>& body) {
 /// Counts of the steps that were longer than the scheme allows.
 struct LimitWatch {
   std::int64_t beyond = 0;
-  double worst = 0.0;  ///< largest step over its limit
-  const char* which = "";
+  double worst = 0.0;    ///< largest step over its limit
+  bool viscous = false;  ///< of the worst
   double limit = 0.0;
 
   void see(const ExplicitReport& step) {
     if (!step.beyond_limit) return;
     ++beyond;
-    const bool viscous = step.limits.viscous < step.limits.acoustic;
     const double shortest = std::min(step.limits.viscous, step.limits.acoustic);
     if (step.dt / shortest <= worst) return;
     worst = step.dt / shortest, limit = shortest;
-    which = viscous ? "viscous" : "acoustic";
+    viscous = step.limits.viscous < step.limits.acoustic;
   }
   void tell(std::int64_t steps, Checks& checks) const {
     if (beyond == 0) return;
@@ -100,7 +100,8 @@ struct LimitWatch {
         text, sizeof text,
         "%lld of %lld steps were longer than the explicit scheme is stable for: up to %.2f times the "
         "%s limit of %.3g s (model.time_step)",
-        static_cast<long long>(beyond), static_cast<long long>(steps), worst, which, limit);
+        static_cast<long long>(beyond), static_cast<long long>(steps), worst,
+        viscous ? "viscous" : "acoustic", limit);
     checks.reasons.push_back(text);
   }
 };
@@ -132,7 +133,7 @@ Outcome run_explicit_in(const Scene& scene, const Law& law, const Observer& obse
 
   Outcome outcome;
   outcome.series.push_back(read(scene, body, {}));
-  if (observer.on_frame) observer.on_frame(test_run::frame_of(body));
+  if (observer.on_frame && !goes_on(observer.checkpoints)) observer.on_frame(test_run::frame_of(body));
   test_run::EnergyWatch energy(test_run::energy_of<Geometry>(body.points, body.mix.K));
   auto state = start_explicit(body, law, settings, shape_of<Geometry>(scene.model));
   write_back(state, body);  // what a run that fails at once is read from
@@ -168,11 +169,19 @@ Outcome run_explicit_in(const Scene& scene, const Law& law, const Observer& obse
           [&] {
             energy.see(test_run::energy_of<Geometry>(body.points, body.mix.K), bool{wall});
             return energy.ran_away();
+          },
+      .state =
+          [&](Archive& archive) {
+            bool walled{wall};
+            archive(walled, energy, limits, outcome.series, outcome.results.through_the_cone);
+            visit_explicit(archive, body, state);
+            if (!walled) wall = {};
           }};
-  const auto stopped_at = test_run::run_loop(flow,
-                                             {observer.on_frame, observer.interrupted, scene.frame_interval,
-                                              test_run::frame_after(0.0, scene.frame_interval)},
-                                             outcome.status, outcome.checks, outcome.cost);
+  const auto stopped_at =
+      test_run::run_loop(flow,
+                         {observer.on_frame, observer.interrupted, scene.frame_interval,
+                          test_run::frame_after(0.0, scene.frame_interval), observer.checkpoints},
+                         outcome.status, outcome.checks, outcome.cost);
 
   read_results(stopped_at, outcome);
   limits.tell(outcome.cost.steps, outcome.checks);

@@ -179,6 +179,7 @@ std::vector<std::string> lines_for(const slump_flow::Results& r) {
 slump_flow::Observer observe(const slump_flow::Scene& scene, bool all_frames, const Observer& observer) {
   slump_flow::Observer result;
   result.interrupted = observer.interrupted;
+  result.checkpoints = observer.checkpoints;
   if (all_frames) result.on_frame = observer.on_frame;
   if (observer.on_progress) {
     result.on_step = [&scene, &observer](const slump_flow::Sample& s) {

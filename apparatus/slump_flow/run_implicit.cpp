@@ -7,6 +7,7 @@
 #include "apparatus/slump_flow/checks.hpp"
 #include "apparatus/slump_flow/series.hpp"
 #include "apparatus/slump_flow/set_up.hpp"
+#include "libmpm/implicit/archived_state.hpp"
 
 namespace tremie::slump_flow {
 namespace {
@@ -27,7 +28,7 @@ Outcome run_implicit_in(const Scene& scene, const Observer& observer) {
 
   Outcome outcome;
   outcome.series.push_back(read(scene, body, {}));
-  if (observer.on_frame) observer.on_frame(test_run::frame_of(body));
+  if (observer.on_frame && !goes_on(observer.checkpoints)) observer.on_frame(test_run::frame_of(body));
   test_run::EnergyWatch energy(test_run::energy_of<Geometry>(body.points, body.mix.K));
   bool flows = true, cone_gone = false;
   const test_run::Flow flow{
@@ -62,11 +63,16 @@ Outcome run_implicit_in(const Scene& scene, const Observer& observer) {
                               : test_run::energy_of_motion<Geometry>(body.points),
                        pushed);
             return energy.ran_away();
+          },
+      .state =
+          [&](Archive& archive) {
+            archive(body, energy, flows, outcome.series, outcome.results.through_the_cone);
           }};
-  const auto stopped_at = test_run::run_loop(flow,
-                                             {observer.on_frame, observer.interrupted, scene.frame_interval,
-                                              test_run::frame_after(0.0, scene.frame_interval)},
-                                             outcome.status, outcome.checks, outcome.cost);
+  const auto stopped_at =
+      test_run::run_loop(flow,
+                         {observer.on_frame, observer.interrupted, scene.frame_interval,
+                          test_run::frame_after(0.0, scene.frame_interval), observer.checkpoints},
+                         outcome.status, outcome.checks, outcome.cost);
 
   read_results(stopped_at, outcome);
   energy.tell(outcome.checks);

@@ -7,6 +7,7 @@
 #include <functional>
 #include <optional>
 
+#include "apparatus/common/checkpoints.hpp"
 #include "apparatus/common/model.hpp"
 #include "libmpm/constitutive/mix.hpp"
 
@@ -72,6 +73,7 @@ struct Observer {
   std::function<void(const Sample&)> on_step;
   std::function<void(const Frame&)> on_frame;  ///< at the start, every frame_interval and at the end
   const std::atomic<bool>* interrupted = nullptr;
+  const Checkpoints* checkpoints = nullptr;
 };
 
 /// What a run of this scene would carry: for `tremie check`.

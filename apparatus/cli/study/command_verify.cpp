@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/process/stop_signals.hpp"
 #include "apparatus/cli/program.hpp"
 #include "apparatus/report/run_folder.hpp"
 #include "apparatus/scene/input_error.hpp"
@@ -58,7 +59,12 @@ int verify(const Options& options) {
   report::RunFolder folder(options.out, options.force);
   const auto depth = options.full ? verification::Depth::full : verification::Depth::quick;
   std::vector<verification::CaseGroup> groups;
+  stop_on_interrupt();
   for (const auto& step : steps) {
+    if (stop_requested) {
+      fmt::print("interrupted: nothing written\n");
+      return interrupted;
+    }
     fmt::print("rung {}: {}\n", step.number, step.what);
     std::fflush(stdout);
     const double start = verification::cpu_seconds();

@@ -1,0 +1,73 @@
+// tremie resume DIR: goes on with a run that was interrupted or killed.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <fstream>
+#include <iterator>
+#include <memory>
+
+#include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/process/brief_spin.hpp"
+#include "apparatus/cli/process/stop_signals.hpp"
+#include "apparatus/cli/run/run_and_write.hpp"
+#include "apparatus/registry/registry.hpp"
+#include "apparatus/report/run_folder.hpp"
+
+namespace tremie::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string folder;
+  bool quiet = false;
+};
+
+/// The scene that lies beside a checkpoint is the one that it was written for.
+void check_scene_beside(const report::Checkpoint& checkpoint) {
+  const fs::path file = checkpoint.folder.parent_path() / "scene.toml";
+  std::error_code error;
+  if (!fs::exists(file, error)) return;
+  std::ifstream stream(file, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (text != checkpoint.request.resolved)
+    throw scene::InputError(fmt::format("{}: the checkpoint beside it is of another scene", file.string()));
+}
+
+/// Reads and checks all before anything is touched.
+report::Checkpoint checked(const std::string& folder) {
+  const fs::path at = report::find_checkpoint(folder);
+  if (at.empty())
+    throw scene::InputError(fmt::format(
+        "{}: holds no unfinished run (a run keeps its first checkpoint after output.checkpoint_interval)",
+        folder));
+  auto checkpoint = report::read_checkpoint(at);
+  check_scene_beside(checkpoint);
+  return checkpoint;
+}
+
+int resume(const Options& options) {
+  auto checkpoint = checked(options.folder);
+  const report::RunRequest& request = checkpoint.request;
+  auto scene = scene::read_text(request.resolved, request.name);
+  scene.resolved = request.resolved;
+  spin_briefly(request.threads);
+  scene::set_threads(scene, request.threads);
+  report::RunFolder folder(options.folder, report::Resumed{});
+  checkpoint = report::read_checkpoint(folder.checkpoint());  // none may have gone on meanwhile
+  stop_on_interrupt();
+  return run_and_publish(scene, request, options.quiet, folder, checkpoint);
+}
+
+}  // namespace
+
+void add_command_resume(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  auto* command = app.add_subcommand("resume", "Go on with a run that was interrupted or killed");
+  command->add_option("folder", options->folder, "Folder of the run's result (tremie run --out)")->required();
+  command->add_flag("--quiet", options->quiet, "Print nothing but errors");
+  command->callback([options, &exit_code] { exit_code = resume(*options); });
+}
+
+}  // namespace tremie::cli

@@ -1,0 +1,93 @@
+// tremie run S.toml: runs a scene and fills a folder with its result.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/process/brief_spin.hpp"
+#include "apparatus/cli/process/stop_signals.hpp"
+#include "apparatus/cli/run/run_and_write.hpp"
+#include "apparatus/cli/set_option.hpp"
+#include "apparatus/registry/error_estimate.hpp"
+#include "apparatus/registry/registry.hpp"
+#include "apparatus/report/run_folder.hpp"
+
+namespace tremie::cli {
+namespace {
+
+struct Options {
+  std::string scene, out;
+  std::vector<std::string> overrides;
+  int threads = 0;  ///< 0: as many as pay
+  bool quiet = false, force = false, with_error = false;
+  std::string accuracy;  ///< "1 %"; empty: the scene's own cells
+};
+
+/// The scene with the cells that the accuracy wants; says the price first.
+scene::Scene with_cells_for(const scene::Scene& scene, const Options& options) {
+  scene::Observer observer;
+  observer.interrupted = &stop_requested;
+  const auto choice = scene::choose_cells(scene, accuracy_of(options.accuracy), observer);
+  auto overrides = options.overrides;
+  overrides.push_back(scene::cells_override(scene, choice.factor));
+  if (!options.quiet)
+    fmt::print("accuracy        {} wants {}, about {:.1f} s of CPU\n", options.accuracy, overrides.back(),
+               choice.cpu);
+  std::fflush(stdout);
+  return scene::read(options.scene, overrides);
+}
+
+/// What repeats the run, to be typed where it was.
+std::string command_of(const Options& options) {
+  std::string text = "tremie run " + options.scene;
+  for (const auto& change : options.overrides) text += " --set '" + change + "'";
+  if (!options.accuracy.empty()) return text + " --accuracy '" + options.accuracy + "'";
+  return options.with_error ? text + " --with-error" : text;
+}
+
+int threads_for(const scene::Scene& scene, const Options& options) {
+  return options.threads > 0 ? options.threads : scene::default_threads(scene);
+}
+
+int run(const Options& options) {
+  auto scene = scene::read(options.scene, options.overrides);
+  if (!options.accuracy.empty()) accuracy_of(options.accuracy);
+  const int threads = threads_for(scene, options);
+  spin_briefly(threads);
+  report::RunFolder folder(options.out.empty() ? "runs/" + scene.name : options.out, options.force);
+  stop_on_interrupt();
+  if (!options.accuracy.empty()) scene = with_cells_for(scene, options);
+  scene::set_threads(scene, threads);
+  return run_and_publish(scene,
+                         {.name = scene.name,
+                          .resolved = scene.resolved,
+                          .command = command_of(options),
+                          .accuracy = options.accuracy,
+                          .with_error = options.with_error,
+                          .threads = threads},
+                         options.quiet, folder);
+}
+
+}  // namespace
+
+void add_command_run(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  auto* command = app.add_subcommand("run", "Run a scene and write its result");
+  command->add_option("scene", options->scene, "Scene file (TOML)")->required();
+  command->add_option("--out", options->out, "Folder for the result (default: runs/<scene name>)");
+  add_set_option(*command, options->overrides);
+  command->add_option("--threads", options->threads, "Threads (default: as many as pay for the scene's size)")
+      ->check(CLI::Range(1, 1024));
+  command->add_flag("--with-error", options->with_error,
+                    "Also run coarser cells, and state the discretisation error of the result");
+  command->add_option(
+      "--accuracy", options->accuracy,
+      "Choose the cells for this accuracy, \"1 %\"; says the price first, implies --with-error");
+  command->add_flag("--quiet", options->quiet, "Print nothing but errors");
+  command->add_flag("--force", options->force, "Replace an earlier result in the folder");
+  command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace tremie::cli

@@ -1,0 +1,66 @@
+#include "apparatus/cli/run/keeper.hpp"
+
+#include <algorithm>
+#include <ctime>
+
+#include "libmpm/io/write_error.hpp"
+
+namespace tremie::cli {
+namespace {
+
+/// A large body's checkpoint may take seconds: of a run it takes no more than one part in so many.
+constexpr double least_share = 100.0;
+
+double seconds(std::chrono::steady_clock::duration d) { return std::chrono::duration<double>(d).count(); }
+
+double cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+}  // namespace
+
+Keeper::Keeper(const std::filesystem::path& folder, double interval, const report::RunRequest& request,
+               const std::optional<report::Checkpoint>& from)
+    : interval_(interval), request_(request), start_(Clock::now()), last_(start_) {
+  attempt([&] {
+    writer_ = from ? std::make_unique<report::CheckpointWriter>(folder, from->frames_length, from->frames_sum)
+                   : std::make_unique<report::CheckpointWriter>(folder);
+  });
+  checkpoints_.due = [this] { return is_due(); };
+  checkpoints_.keep = [this](const VisitState& state) { keep(state); };
+  if (from) checkpoints_.restore = [from = *from](const VisitState& state) { report::restore(from, state); };
+}
+
+template <class Write>
+void Keeper::attempt(Write write) {
+  try {
+    write();
+  } catch (const io::WriteError& error) {
+    trouble_ = std::string("no further checkpoint: ") + error.what();
+    writer_.reset();
+  }
+}
+
+void Keeper::frame(const Frame& frame) {
+  if (writer_) attempt([&] { writer_->frame(frame); });
+}
+
+bool Keeper::is_due() const {
+  const double wait = interval_ < 1.0 ? interval_ : std::max(interval_, least_share * cost_);
+  return writer_ && seconds(Clock::now() - last_) >= wait;
+}
+
+void Keeper::keep(const VisitState& state) {
+  if (!writer_) return;
+  const auto begin = Clock::now();
+  report::RunRequest request = request_;
+  request.wall += seconds(begin - start_);
+  request.cpu += cpu_seconds();
+  attempt([&] { writer_->state(request, state); });
+  last_ = Clock::now();
+  cost_ = seconds(last_ - begin);
+}
+
+}  // namespace tremie::cli

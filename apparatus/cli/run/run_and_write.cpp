@@ -1,0 +1,130 @@
+#include "apparatus/cli/run/run_and_write.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <sstream>
+
+#include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/process/stop_signals.hpp"
+#include "apparatus/cli/progress.hpp"
+#include "apparatus/cli/run/keeper.hpp"
+#include "apparatus/registry/error_estimate.hpp"
+#include "apparatus/report/run_files/html.hpp"
+#include "apparatus/report/run_files/result_files.hpp"
+
+namespace tremie::cli {
+namespace {
+
+int exit_code_of(const scene::Outcome& outcome) {
+  if (outcome.status == Status::interrupted) return interrupted;
+  return outcome.checks.reasons.empty() && outcome.status == Status::completed ? done : not_to_be_trusted;
+}
+
+void print_outcome(const scene::Scene& scene, const scene::Outcome& outcome) {
+  for (const auto& line : outcome.lines) fmt::print("{}\n", line);
+  if (const std::string line = report::measured_line(outcome); !line.empty())
+    fmt::print("measured        {}\n", line);
+  for (const auto& line : scene::error_lines(scene, outcome)) fmt::print("error           {}\n", line);
+  const Checks& c = outcome.checks;
+  fmt::print("checks          volume {:+.3g} %, mass {:.1e}, {} unconverged steps, {} points lost\n",
+             100.0 * c.volume_change, c.mass_error, c.unconverged_steps, c.points_lost);
+  const Cost& cost = outcome.cost;
+  fmt::print("cost            {:.2f} s of CPU, {:.2f} s by the clock, {} steps, {} points, {:.0f} MB\n",
+             cost.cpu, cost.wall, cost.steps, cost.points, static_cast<double>(cost.peak_rss_bytes) / 1e6);
+  if (outcome.status == Status::interrupted) fmt::print("interrupted at {:.2f} s\n", cost.simulated);
+}
+
+void print_reasons(const scene::Outcome& outcome) {
+  for (const auto& reason : outcome.checks.reasons) fmt::print(stderr, "not to be trusted: {}\n", reason);
+}
+
+/// An accuracy that was not reached is said.
+void note_accuracy(const report::RunRequest& request, scene::Outcome& outcome) {
+  if (request.accuracy.empty() || outcome.status != Status::completed) return;
+  const auto& error = *outcome.error;
+  if (error.bars.empty()) {
+    outcome.checks.reasons.push_back("the accuracy cannot be judged: " + error.basis);
+    return;
+  }
+  const auto* value = std::get_if<double>(scene::find_result(outcome, error.bars.front().name));
+  const double reached = error.bars.front().error / std::abs(*value);
+  if (reached > accuracy_of(request.accuracy))
+    outcome.checks.reasons.push_back(fmt::format("the accuracy of {} was not reached: {} is good to {:.2g} %",
+                                                 request.accuracy, error.bars.front().name, 100.0 * reached));
+}
+
+report::FramesWritten frames_written(const scene::Output& output) {
+  if (!output.frames) return report::FramesWritten::none;
+  return output.frame_interval > 0.0 ? report::FramesWritten::all : report::FramesWritten::some;
+}
+
+/// Who keeps this run's checkpoints; nobody where the scene wants none.
+std::optional<Keeper> keeper_of(const scene::Scene& scene, const report::RunRequest& request,
+                                const report::RunFolder& folder,
+                                const std::optional<report::Checkpoint>& from) {
+  if (!scene.output.checkpoint_interval) return std::nullopt;
+  return std::optional<Keeper>(std::in_place, folder.checkpoint(), *scene.output.checkpoint_interval, request,
+                               from);
+}
+
+scene::Outcome run_and_write(const scene::Scene& scene, const report::RunRequest& request, bool quiet,
+                             const report::RunFolder& folder, const std::optional<report::Checkpoint>& from,
+                             std::vector<std::string>& notes) {
+  report::ResultFiles files(folder.staging(), scene.resolved, request.command, frames_written(scene.output));
+  if (from) report::for_each_frame(*from, [&](const Frame& frame) { files.frame(frame); });
+  auto keeper = keeper_of(scene, request, folder, from);
+  scene::Observer observer;
+  observer.interrupted = &stop_requested;
+  if (keeper) observer.checkpoints = keeper->checkpoints();
+  observer.on_frame = [&](const Frame& frame) {
+    files.frame(frame);
+    if (keeper) keeper->frame(frame);
+  };
+  scene::Outcome outcome;
+  {
+    ProgressLine line;
+    if (!quiet) observer.on_progress = [&](const scene::Progress& progress) { line.show(progress); };
+    outcome = scene::run(scene, observer);
+    if (request.with_error || !request.accuracy.empty())
+      outcome.error = scene::estimate_error(scene, outcome, observer);
+  }
+  outcome.cost.wall += request.wall, outcome.cost.cpu += request.cpu;
+  note_accuracy(request, outcome);
+  notes = files.finish(outcome);
+  if (keeper && !keeper->trouble().empty()) notes.push_back(keeper->trouble());
+  return outcome;
+}
+
+}  // namespace
+
+/// The relative accuracy that was asked for: "1 %".
+double accuracy_of(const std::string& text) {
+  std::istringstream in(text);
+  double percent = 0.0;
+  std::string unit;
+  const bool understood = (in >> percent >> unit) && unit == "%" && in.eof();
+  if (!understood || !(percent >= 0.01 && percent <= 50.0))
+    throw scene::InputError(fmt::format(
+        "--accuracy: \"{}\" is not understood; it takes a percentage of 0.01 % to 50 %: \"1 %\"", text));
+  return 0.01 * percent;
+}
+
+int run_and_publish(const scene::Scene& scene, const report::RunRequest& request, bool quiet,
+                    report::RunFolder& folder, const std::optional<report::Checkpoint>& from) {
+  std::vector<std::string> notes;
+  const auto outcome = run_and_write(scene, request, quiet, folder, from, notes);
+  if (outcome.status != Status::interrupted) std::filesystem::remove_all(folder.checkpoint());
+  folder.publish();
+  print_reasons(outcome);
+  if (!quiet) {
+    print_outcome(scene, outcome);
+    for (const auto& note : notes) fmt::print("note            {}\n", note);
+    fmt::print("written to      {}\n", folder.target().string());
+    if (outcome.status == Status::interrupted && scene.output.checkpoint_interval)
+      fmt::print("to go on        tremie resume {}\n", folder.target().string());
+  }
+  return exit_code_of(outcome);
+}
+
+}  // namespace tremie::cli

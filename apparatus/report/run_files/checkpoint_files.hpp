@@ -1,0 +1,65 @@
+#pragma once
+
+// The checkpoint of a run in a folder of its own: `frames`, every frame that came so far, and `state`, all else. From
+// both the files of a run are written anew as if it had never stopped.
+//
+// `state` appears whole or not at all: it is written beside, brought to the disk and renamed. It names the bytes of
+// `frames` that belong to it and their sum, so that what came later is cut off. Both are for the program that wrote
+// them and no other.
+
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "apparatus/common/model.hpp"
+#include "libmpm/body/archive.hpp"
+
+namespace tremie::report {
+
+/// What a run was asked, and what it took before it was stopped.
+struct RunRequest {
+  std::string name, resolved, command;  ///< of the scene; the scene in SI; what repeats the run
+  std::string accuracy;                 ///< --accuracy; empty: none
+  bool with_error = false;
+  int threads = 1;
+  double wall = 0.0, cpu = 0.0;  ///< so far [s]
+};
+
+/// Writes a run's checkpoints. Throws io::WriteError.
+class CheckpointWriter {
+ public:
+  /// Goes on after the first `length` bytes of frames, whose sum is `sum`; the folder is made where it is missing.
+  CheckpointWriter(const std::filesystem::path& folder, std::uint64_t length = 0, std::uint32_t sum = 0);
+  ~CheckpointWriter();
+  CheckpointWriter(const CheckpointWriter&) = delete;
+  CheckpointWriter& operator=(const CheckpointWriter&) = delete;
+
+  void frame(const Frame& frame);
+  void state(const RunRequest& request, const VisitState& state);
+
+ private:
+  std::filesystem::path folder_;
+  std::uint64_t length_;
+  std::uint32_t sum_;
+  std::FILE* frames_;
+};
+
+/// A checkpoint that was read and found to be whole.
+struct Checkpoint {
+  std::filesystem::path folder;
+  RunRequest request;
+  std::uint64_t frames_length = 0;
+  std::uint32_t frames_sum = 0;
+  std::uint64_t state_at = 0;  ///< where the state begins in its file
+};
+
+/// Throws scene::InputError where it is damaged, cut, or of another version of tremie.
+Checkpoint read_checkpoint(const std::filesystem::path& folder);
+/// Fills the state that it was written from.
+void restore(const Checkpoint& checkpoint, const VisitState& state);
+/// The frames that came before it, one after the other.
+void for_each_frame(const Checkpoint& checkpoint, const std::function<void(const Frame&)>& use);
+
+}  // namespace tremie::report

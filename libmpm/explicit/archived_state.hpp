@@ -1,0 +1,44 @@
+#pragma once
+
+// What goes on from one explicit step to the next: a body that is read back steps to the same bits.
+
+#include "libmpm/body/archive.hpp"
+#include "libmpm/explicit/parts.hpp"
+
+namespace tremie {
+
+template <int D>
+void visit(Archive& archive, LanePoints<D>& points) {
+  for (auto* arrays : {&points.x, &points.v})
+    for (std::vector<f64x8>& array : *arrays) archive(array);
+  for (std::vector<f64x8>& array : points.C) archive(array);
+  archive(points.mass, points.V0, points.ln_J, points.lambda, points.gamma_dot, points.id, points.n);
+}
+
+/// The axes are the scene's.
+template <int D>
+void visit(Archive& archive, TileGrid<D>& grid) {
+  archive(grid.tiles, grid.blocks, grid.v, grid.v_start, grid.sums, grid.forces, grid.single_sums, grid.rows);
+}
+
+template <int D>
+void visit(Archive& archive, Holding<D>& holding) {
+  archive(holding.of_tile, holding.cells, holding.drift);
+}
+
+template <class Geometry>
+void visit(Archive& archive, ExplicitState<Geometry>& state) {
+  archive(state.points, state.grid, state.next_dt, state.drift, state.max_speed, state.lambda_max,
+          state.limits);
+  archive(state.holding, state.near_wall, state.wall_drift, state.sorts, state.mixed_groups,
+          state.mixed_since);
+}
+
+/// The body's points are those on the tiles.
+template <class Geometry>
+void visit_explicit(Archive& archive, Body<Geometry>& body, ExplicitState<Geometry>& state) {
+  archive(body.time, body.dt, state);
+  if (archive.reads()) write_back(state, body);
+}
+
+}  // namespace tremie
