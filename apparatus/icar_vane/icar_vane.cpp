@@ -123,6 +123,7 @@ Outcome run_section(const Scene& scene, const Section& section, const Observer& 
           [&] {
             const double left = schedule.stage_end() - body.time;
             settings.dt_max = left / std::ceil(left / (scene.model.step_scale * largest_dt) - 1e-9);
+            settings.fixed_dt = test_run::fixed_step(scene.model, left);
             speed = schedule.speed(body.time);
             section.turn(body, angular(speed));
           },

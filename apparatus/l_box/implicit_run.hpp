@@ -107,6 +107,7 @@ Outcome run_in(const Scene& scene, const Observer& observer) {
       .prepare =
           [&] {
             settings.dt_max = std::min(longest_dt<Geometry>(scene, body.time), scene.duration - body.time);
+            settings.fixed_dt = test_run::fixed_step(scene.model, scene.duration - body.time);
             body.boundary = walls_inside<Geometry>(scene, body.grid.axes, body.time);
           },
       .advance =

@@ -92,6 +92,14 @@ Lock lock_folder(const fs::path& folder, int& file) {
   return Lock::taken_by_another;
 }
 
+/// A run that goes on has a checkpoint, too.
+void refuse_what_another_writes(const fs::path& target, const fs::path& staging) {
+  int file = -1;
+  if (lock_folder(staging, file) == Lock::taken_by_another)
+    refuse(target, "another process writes its result there at this moment");
+  if (file >= 0) close(file);
+}
+
 /// Whether the open folder is still the one of this name.
 bool is_named(int file, const fs::path& folder) {
   struct stat open_one = {}, named = {};
@@ -156,6 +164,7 @@ fs::path find_checkpoint(const fs::path& folder) {
 RunFolder::RunFolder(const fs::path& folder, bool replace) : target_(tidy(folder)), replace_(replace) {
   finish_publishing(target_);
   const fs::path unfinished = find_checkpoint(target_);
+  if (!unfinished.empty()) refuse_what_another_writes(target_, unfinished.parent_path());
   if (!replace && !unfinished.empty() && unfinished.parent_path() != target_)
     refuse(target_,
            fmt::format("there is an unfinished run: `tremie resume {}` goes on with it, --force begins anew",

@@ -60,6 +60,12 @@ void judge(const Body<Geometry>& body, double start_mass, Checks& checks, Cost& 
   if (checks.unconverged_steps > 0)
     checks.reasons.push_back(std::to_string(checks.unconverged_steps) + " of " + std::to_string(cost.steps) +
                              " steps did not converge to the tolerance");
+  const auto infinite = std::count_if(body.points.lambda.begin(), body.points.lambda.end(),
+                                      [](double lambda) { return !std::isfinite(lambda * lambda); });
+  if (infinite > 0)
+    checks.reasons.push_back(
+        "the flocculation state is infinite in " + std::to_string(infinite) +
+        " points: a smaller mix.thixotropy.structuration_rate over mix.yield_stress, or a shorter test.rest");
   if (checks.points_lost > 0)
     checks.reasons.push_back(std::to_string(checks.points_lost) +
                              " points left the domain or are not finite");

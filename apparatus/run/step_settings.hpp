@@ -2,6 +2,7 @@
 
 // From the model that a scene chooses to the settings of a step: what every apparatus does the same way.
 
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -29,6 +30,12 @@ inline StepSettings step_settings(const Model& model) {
   settings.fixed_dt = model.time_step;
   settings.dt_max *= model.step_scale;
   return settings;
+}
+
+/// A step that the scene fixes, or what is left of its time [s]: the test ends when it says, with no sliver of a step.
+inline std::optional<double> fixed_step(const Model& model, double left) {
+  if (!model.time_step) return std::nullopt;
+  return left < *model.time_step * (1.0 + 1e-6) ? left : *model.time_step;
 }
 
 /// Throws std::invalid_argument for a scheme or shape that has no engine.

@@ -2,6 +2,7 @@
 
 // Reasons of the slump flow itself why a result is not to be trusted.
 
+#include <algorithm>
 #include <cstdio>
 #include <numbers>
 
@@ -19,18 +20,36 @@ inline bool slides(const Scene& scene, double depth) {
   return scene.floor.coefficient * scene.mix.density * gravity * depth <= shears;
 }
 
-/// Between the floor that holds it and its free surface a body thinner than a cell has no rows of cells to
-/// shear: its spread is up to 20 % off (explicit.md). One that slides need not shear: 6 % from half a cell
-/// on.
+/// Between the floor that holds it and its free surface a body of a cell has no rows of cells to shear: its spread is
+/// up to 20 % off (explicit.md), of one without a yield stress, which nothing else holds, still at its last cell but one.
+/// One that slides need not shear: 6 % from half a cell on.
 inline void judge_depth(const Scene& scene, Outcome& outcome) {
   const double R = 0.5 * outcome.results.spread, depth = volume(scene.cone) / (std::numbers::pi * R * R);
   const bool sliding = slides(scene, depth);
-  const double least = (sliding ? 0.5 : 1.0) * scene.model.cell[1];
+  const double rows = sliding ? 0.5 : scene.mix.tau_0 > 0.0 ? 1.0 : 2.0;
+  const double least = rows * scene.model.cell[1];
   if (depth >= least) return;
   char text[160];
   std::snprintf(text, sizeof text,
                 "the concrete is thinner than %s, %.3g mm on average: a smaller model.cell upwards",
-                sliding ? "half a cell" : "a cell", 1e3 * depth);
+                sliding      ? "half a cell"
+                : rows > 1.0 ? "two cells"
+                             : "a cell",
+                1e3 * depth);
+  outcome.checks.reasons.push_back(text);
+}
+
+/// Nothing lifts the concrete but a cone that it sticks to, in cells that are as large as the gap under its rim.
+inline void judge_height(const Scene& scene, Outcome& outcome) {
+  double highest = 0.0;
+  for (const Sample& s : outcome.series) highest = std::max(highest, s.height);
+  if (highest <= 1.05 * scene.cone.height + 0.5 * scene.model.cell[1]) return;
+  char text[200];
+  std::snprintf(
+      text, sizeof text,
+      "the concrete stood %.3g mm high, higher than the cone that it came from, which lifted it: a smaller "
+      "model.cell, or another test.lift_speed",
+      1e3 * highest);
   outcome.checks.reasons.push_back(text);
 }
 

@@ -37,6 +37,7 @@ Outcome run_implicit_in(const Scene& scene, const Observer& observer) {
       .prepare =
           [&] {
             settings.time_left = scene.duration - body.time;
+            settings.fixed_dt = test_run::fixed_step(scene.model, settings.time_left);
             if constexpr (D == 3)
               settings.admm.tolerance = flows ? flowing_tolerance : StepSettings{}.admm.tolerance;
             cone_gone = cone_is_gone(scene, body.time, outcome.series.back());
@@ -80,6 +81,7 @@ Outcome run_implicit_in(const Scene& scene, const Observer& observer) {
   test_run::judge_volume(outcome.series.front().volume_change, outcome.checks);
   judge_depth(scene, outcome);
   judge_lift(outcome);
+  judge_height(scene, outcome);
   outcome.final_frame = test_run::frame_of(body);
   if (observer.on_frame) observer.on_frame(outcome.final_frame);
   return outcome;

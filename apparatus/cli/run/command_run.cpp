@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
+#include <thread>
 
 #include "apparatus/cli/commands.hpp"
 #include "apparatus/cli/process/brief_spin.hpp"
@@ -47,7 +49,19 @@ std::string command_of(const Options& options) {
   return options.with_error ? text + " --with-error" : text;
 }
 
+/// Threads beyond the processors only wait for each other; many more there cannot be.
+void check_threads(int threads) {
+  const int processors = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  if (threads > std::max(64, 4 * processors))
+    throw scene::InputError(fmt::format("--threads {}: this machine has {} processors; allowed: at most {}",
+                                        threads, processors, std::max(64, 4 * processors)));
+  if (threads > processors)
+    fmt::print(stderr, "note: --threads {} on {} processors: slower than --threads {}\n", threads, processors,
+               processors);
+}
+
 int threads_for(const scene::Scene& scene, const Options& options) {
+  check_threads(options.threads);
   return options.threads > 0 ? options.threads : scene::default_threads(scene);
 }
 
