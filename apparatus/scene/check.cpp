@@ -43,7 +43,7 @@ std::string allowed_text(const Key& key) {
 Range sizes_of(Dimension dimension) {
   switch (dimension) {
     case Dimension::length:
-      return between(1e-6, 1e2);
+      return between(1e-9, 1e2);
     case Dimension::time:
       return between(1e-9, 1e9);
     case Dimension::speed:

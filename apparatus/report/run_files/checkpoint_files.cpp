@@ -16,15 +16,6 @@
 #include "libmpm/io/write_error.hpp"
 #include "tremie_version.hpp"
 
-namespace tremie {
-
-void visit(Archive& archive, Frame& frame) {
-  archive(frame.time, frame.position, frame.velocity, frame.volume, frame.pressure, frame.shear_rate,
-          frame.flocculation);
-}
-
-}  // namespace tremie
-
 namespace tremie::report {
 
 void visit(Archive& archive, RunRequest& request) {
@@ -35,6 +26,43 @@ void visit(Archive& archive, RunRequest& request) {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// A frame in single precision, as results.h5 and the frames for ParaView have it: half of the bytes.
+struct SingleFrame {
+  double time = 0.0;
+  std::vector<std::array<float, 3>> position, velocity;
+  std::vector<float> volume, pressure, shear_rate, flocculation;
+};
+
+void visit(Archive& archive, SingleFrame& frame) {
+  archive(frame.time, frame.position, frame.velocity, frame.volume, frame.pressure, frame.shear_rate,
+          frame.flocculation);
+}
+
+template <class To, class From>
+std::vector<std::array<To, 3>> converted(const std::vector<std::array<From, 3>>& from) {
+  std::vector<std::array<To, 3>> to;
+  to.reserve(from.size());
+  for (const auto& x : from)
+    to.push_back({static_cast<To>(x[0]), static_cast<To>(x[1]), static_cast<To>(x[2])});
+  return to;
+}
+template <class To, class From>
+std::vector<To> converted(const std::vector<From>& from) {
+  std::vector<To> to(from.size());
+  std::transform(from.begin(), from.end(), to.begin(), [](From x) { return static_cast<To>(x); });
+  return to;
+}
+template <class To, class Number, class From>
+To frame_as(const From& from) {
+  return {from.time,
+          converted<Number>(from.position),
+          converted<Number>(from.velocity),
+          converted<Number>(from.volume),
+          converted<Number>(from.pressure),
+          converted<Number>(from.shear_rate),
+          converted<Number>(from.flocculation)};
+}
 
 constexpr std::array<char, 8> magic{'T', 'R', 'E', 'M', 'I', 'E', 'C', '1'};
 
@@ -142,7 +170,8 @@ CheckpointWriter::~CheckpointWriter() {
 void CheckpointWriter::frame(const Frame& frame) {
   const fs::path path = folder_ / "frames";
   Archive archive = writer(frames_, path, length_, sum_);
-  archive(const_cast<Frame&>(frame));  // is only read
+  auto single = frame_as<SingleFrame, float>(frame);
+  archive(single);
 }
 
 void CheckpointWriter::state(const RunRequest& request, const VisitState& state) {
@@ -205,9 +234,9 @@ void for_each_frame(const Checkpoint& checkpoint, const std::function<void(const
   while (static_cast<std::uint64_t>(std::ftell(file.get())) < checkpoint.frames_length) {
     Archive archive =
         reader(file.get(), checkpoint.frames_length - static_cast<std::uint64_t>(std::ftell(file.get())));
-    Frame frame;
+    SingleFrame frame;
     archive(frame);
-    use(frame);
+    use(frame_as<Frame, double>(frame));
   }
 }
 
