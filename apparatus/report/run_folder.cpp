@@ -218,8 +218,11 @@ void RunFolder::take_over_checkpoint() {
   const fs::path from = find_checkpoint(target_);
   std::error_code error;
   if (from.parent_path() != staging_) {
+    const fs::path copy = staging_ / "checkpoint.copy";  // which is none until all of it is there
+    fs::copy(from, copy, error);
+    if (lock_ >= 0) syncfs(lock_);
     fs::remove_all(checkpoint());
-    fs::copy(from, checkpoint(), error);
+    if (!error) fs::rename(copy, checkpoint(), error);
   }
   if (error) refuse(target_, "its checkpoint cannot be copied: " + error.message());
 }
@@ -251,6 +254,7 @@ void RunFolder::put_in_place() {
   if (!is_there(target_)) return fs::rename(staging_, target_);
   const fs::path old = staging_.string() + ".old";
   if (renameat2(AT_FDCWD, staging_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) == 0) {
+    fs::remove(staging_ / "checkpoint/state");  // of the earlier result: nobody goes on from it any more
     fs::remove_all(staging_);
     return;
   }

@@ -108,7 +108,8 @@ class KilledRuns {
     for (int i = 0; i < kills; ++i) killed += kill_one(folder.path(), wall) ? 1 : 0;
     while (next(folder.path()).front() == "resume") {
       if (const int end = wait(start(next(folder.path()), folder.path())); end != code) {
-        ADD_FAILURE() << scene.name << ": resumed run ended with " << end;
+        ADD_FAILURE() << scene.name << ": resumed run ended with " << end << ": "
+                      << read_file(folder / "errors.txt");
         break;
       }
     }
@@ -134,7 +135,7 @@ class KilledRuns {
     argv.push_back(nullptr);
     const pid_t child = fork();
     if (child != 0) return child;
-    if (chdir(folder.c_str()) == 0 && freopen("/dev/null", "w", stderr)) execv(argv[0], argv.data());
+    if (chdir(folder.c_str()) == 0 && freopen("errors.txt", "a", stderr)) execv(argv[0], argv.data());
     _exit(127);
   }
   static int wait(pid_t child) {

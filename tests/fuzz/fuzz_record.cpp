@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <string_view>
 
-#include "rheometer/records/shear_history.hpp"
 #include "rheometer/records/table.hpp"
 #include "rheometer/records/torque_record.hpp"
 
@@ -11,10 +10,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   try {
     tremie::parse_torque_record(text, "fuzzed.csv");
-  } catch (const tremie::RecordError&) {
-  }
-  try {
-    tremie::parse_shear_history(text, "fuzzed.csv");
   } catch (const tremie::RecordError&) {
   }
   return 0;

@@ -1,5 +1,6 @@
 // Whatever a scene holds, it is read or refused; what was read is written so that it reads back to the same.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstdlib>
@@ -20,8 +21,9 @@ std::string without_comments(const std::string& text) {
   std::string bare;
   for (std::size_t at = 0; at < text.size();) {
     const auto end = std::min(text.find('\n', at), text.size());
-    const std::string line = text.substr(at, end - at);
-    bare += line.substr(0, line.rfind("  # ")) + '\n';
+    std::string line = text.substr(at, end - at);
+    line = line.substr(0, line.rfind(" # "));
+    bare += line.substr(0, line.find_last_not_of(' ') + 1) + '\n';
     at = end + 1;
   }
   return bare;

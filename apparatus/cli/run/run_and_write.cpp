@@ -114,8 +114,8 @@ int run_and_publish(const scene::Scene& scene, const report::RunRequest& request
                     report::RunFolder& folder, const std::optional<report::Checkpoint>& from) {
   std::vector<std::string> notes;
   const auto outcome = run_and_write(scene, request, quiet, folder, from, notes);
-  if (outcome.status != Status::interrupted) std::filesystem::remove_all(folder.checkpoint());
   folder.publish();
+  if (outcome.status != Status::interrupted) report::remove_checkpoint(folder.target() / "checkpoint");
   print_reasons(outcome);
   if (!quiet) {
     print_outcome(scene, outcome);

@@ -219,6 +219,12 @@ Checkpoint read_checkpoint(const fs::path& folder) {
   return checkpoint;
 }
 
+void remove_checkpoint(const fs::path& folder) {
+  std::error_code ignored;
+  fs::remove(folder / "state", ignored);
+  fs::remove_all(folder, ignored);
+}
+
 void restore(const Checkpoint& checkpoint, const VisitState& state) {
   const fs::path path = checkpoint.folder / "state";
   const File file = open_file(path, "rb");

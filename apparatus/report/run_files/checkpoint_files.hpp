@@ -57,6 +57,8 @@ struct Checkpoint {
 
 /// Throws scene::InputError where it is damaged, cut, or of another version of tremie.
 Checkpoint read_checkpoint(const std::filesystem::path& folder);
+/// Removes a checkpoint that nobody needs any more; one that is half removed is none.
+void remove_checkpoint(const std::filesystem::path& folder);
 /// Fills the state that it was written from.
 void restore(const Checkpoint& checkpoint, const VisitState& state);
 /// The frames that came before it, one after the other.
