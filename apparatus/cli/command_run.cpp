@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/options/json_option.hpp"
 #include "apparatus/cli/process/brief_spin.hpp"
 #include "apparatus/cli/progress.hpp"
 #include "apparatus/cli/set_option.hpp"
@@ -26,7 +27,7 @@ struct Options {
   std::string scene, out;
   std::vector<std::string> overrides;
   int threads = 0;  ///< 0: as many as pay
-  bool quiet = false, force = false, with_error = false;
+  bool quiet = false, json = false, force = false, with_error = false;
   std::string accuracy;  ///< "1 %"; empty: the scene's own cells
 };
 
@@ -173,6 +174,7 @@ int run(const Options& options) {
   const auto outcome = run_and_write(scene, options, folder, notes);
   folder.publish();
   print_reasons(outcome);
+  if (options.json) print_result_as_json(folder.target(), notes);
   if (!options.quiet) {
     print_outcome(scene, outcome);
     for (const auto& note : notes) fmt::print("note            {}\n", note);
@@ -196,9 +198,13 @@ void add_command_run(CLI::App& app, int& exit_code) {
   command->add_option(
       "--accuracy", options->accuracy,
       "Choose the cells for this accuracy, \"1 %\"; says the price first, implies --with-error");
+  add_json_option(*command, options->json);
   command->add_flag("--quiet", options->quiet, "Print nothing but errors");
   command->add_flag("--force", options->force, "Replace an earlier result in the folder");
-  command->callback([options, &exit_code] { exit_code = run(*options); });
+  command->callback([options, &exit_code] {
+    options->quiet = options->quiet || options->json;
+    exit_code = run(*options);
+  });
 }
 
 }  // namespace tremie::cli

@@ -19,6 +19,7 @@ inline constexpr int interrupted = 130;
 void add_command_run(CLI::App& app, int& exit_code);
 void add_command_check(CLI::App& app, int& exit_code);
 void add_command_new(CLI::App& app, int& exit_code);
+void add_command_compare(CLI::App& app, int& exit_code);
 void add_command_estimate(CLI::App& app, int& exit_code);
 void add_command_verify(CLI::App& app, int& exit_code);
 

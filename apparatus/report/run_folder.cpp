@@ -13,11 +13,11 @@ namespace fs = std::filesystem;
 
 bool is_earlier_result(const fs::path& folder) {
   std::error_code error;
-  // a run leaves its scene, a fit its readings, a calibration its mix, a verification its document
+  // a run leaves its scene, a fit its readings, a calibration its mix, a comparison its table, a verification its document
   if (fs::exists(folder / "VERIFICATION.md", error)) return true;
   return fs::exists(folder / "summary.json", error) &&
          (fs::exists(folder / "scene.toml", error) || fs::exists(folder / "fit.csv", error) ||
-          fs::exists(folder / "mix.toml", error));
+          fs::exists(folder / "mix.toml", error) || fs::exists(folder / "compare.csv", error));
 }
 
 [[noreturn]] void refuse(const fs::path& folder, const std::string& why) {
