@@ -69,6 +69,8 @@ void add_command_cell(CLI::App& app, int& exit_code) {
   add_json_option(*command, options->json);
   command->add_flag("--quiet", options->quiet, "Print nothing but errors");
   command->add_flag("--force", options->force, "Replace an earlier result in the folder");
+  command->footer(
+      "tremie new cell > cell.toml writes a history to start from; tremie cell cell.toml runs it.");
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 

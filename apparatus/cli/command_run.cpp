@@ -201,6 +201,10 @@ void add_command_run(CLI::App& app, int& exit_code) {
   add_json_option(*command, options->json);
   command->add_flag("--quiet", options->quiet, "Print nothing but errors");
   command->add_flag("--force", options->force, "Replace an earlier result in the folder");
+  command->footer(
+      "tremie new slump_flow > slump.toml writes a scene to start from; tremie run slump.toml runs it,\n"
+      "with --set test.rest=\"240 s\" after four minutes of rest. Bundled mixes: mix = \"mix_a\", mix_b, "
+      "mix_c.");
   command->callback([options, &exit_code] {
     options->quiet = options->quiet || options->json;
     exit_code = run(*options);

@@ -82,6 +82,7 @@ void add_command_compare(CLI::App& app, int& exit_code) {
   add_json_option(*command, options->json);
   command->add_flag("--quiet", options->quiet, "Print nothing but errors");
   command->add_flag("--force", options->force, "Replace an earlier result in the folder");
+  command->footer("tremie compare runs/fresh runs/rested");
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 

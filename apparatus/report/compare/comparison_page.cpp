@@ -17,9 +17,9 @@ namespace tremie::report {
 namespace {
 
 /// Columns about the method rather than the concrete: in the files, not among the curves.
-constexpr std::array<std::string_view, 8> about_the_method{
-    "time_step_s",       "iterations",      "volume_change",     "kinetic_energy_J",
-    "max_speed_m_per_s", "torque_wall_N_m", "momentum_rate_N_m", "torque_power_N_m"};
+constexpr std::array<std::string_view, 9> about_the_method{
+    "spread_max_point_mm", "time_step_s",     "iterations",        "volume_change",   "kinetic_energy_J",
+    "max_speed_m_per_s",   "torque_wall_N_m", "momentum_rate_N_m", "torque_power_N_m"};
 
 std::string with_unit(const std::string& name) {
   const std::string unit = unit_for_people(name);
@@ -51,7 +51,7 @@ void add_overlay(const Comparison& comparison, const std::string& file, const st
     chart.curves.push_back(std::move(curve));
   }
   const std::string stem = file.substr(0, file.find('.'));
-  if (can_be_drawn(chart)) page.figures.push_back({fmt::format("{}-{}", stem, y), "", chart_svg(chart)});
+  if (can_be_drawn(chart)) page.figures.push_back({fmt::format("{}-{}-over-{}", stem, y, x), "", chart_svg(chart)});
 }
 
 /// The columns that any run has in the file, in order.
@@ -80,6 +80,7 @@ void add_curves(const Comparison& comparison, Page& page) {
 }
 
 std::string cell_text(const ComparedRow& row, std::size_t i) {
+  if (row.texts[i] == "true" || row.texts[i] == "false") return row.texts[i] == "true" ? "yes" : "no";
   return row.numbers[i] ? person_number(*row.numbers[i], row.key) : row.texts[i];
 }
 

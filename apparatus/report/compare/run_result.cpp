@@ -123,6 +123,12 @@ const Entry* find_entry(const std::vector<Entry>& entries, const std::string& ke
   return found == entries.end() ? nullptr : &*found;
 }
 
+std::vector<Entry> scene_entries(const std::string& text, const std::string& name) {
+  std::vector<Entry> entries;
+  flatten(scene::parse_text(text, name, scene::Layer::scene), "", entries);
+  return entries;
+}
+
 RunResult read_run_result(const std::string& given) {
   const fs::path folder = fs::path(given).has_filename() ? fs::path(given) : fs::path(given).parent_path();
   const Json summary = read_summary(folder);

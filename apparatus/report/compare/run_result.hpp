@@ -36,6 +36,9 @@ struct RunResult {
   std::vector<FileColumns> tables;  ///< over something else than time
 };
 
+/// The values of a scene under their dotted keys; `text` is TOML, `name` stands for it in messages.
+std::vector<Entry> scene_entries(const std::string& text, const std::string& name);
+
 /// The entry of a key; nullptr where there is none.
 const Entry* find_entry(const std::vector<Entry>& entries, const std::string& key);
 

@@ -122,6 +122,22 @@ void add_shape(const scene::Outcome& o, const MovingPicture& moving, Page& page)
   page.figures.push_back({"shape", "The concrete at the end, from the computed points.", shape_svg(shape)});
 }
 
+/// A shear rate over the radius as a section from above, where a table has one.
+void add_disc(const scene::Outcome& o, Page& page) {
+  for (const auto& table : o.tables) {
+    if (table.columns.empty() || table.columns.front().name != "radius_mm") continue;
+    for (const auto& column : table.columns) {
+      if (column.name != "shear_rate_per_s") continue;
+      Disc disc{
+          .title = "Section at the end", .words = "shear rate (1/s)", .radius = {}, .values = column.values};
+      for (const double r : table.columns.front().values) disc.radius.push_back(1e-3 * r);
+      if (std::string svg = disc_svg(disc); !svg.empty())
+        page.figures.push_back(
+            {"section", "The concrete between vane and container, by its shear rate.", svg});
+    }
+  }
+}
+
 }  // namespace
 
 std::string headline_of(const scene::Outcome& o) {
@@ -157,6 +173,7 @@ std::string report_html(const scene::Outcome& o, const std::string& resolved, co
   page.trust = trust_of(o);
   page.remarks = o.remarks;
   add_shape(o, moving, page);
+  if (!o.stage) add_disc(o, page);
   for (const auto& chart : o.charts)
     if (const LineChart drawn = line_chart(chart, o); can_be_drawn(drawn))
       page.figures.push_back({chart.file.substr(0, chart.file.find('.')), "", chart_svg(drawn)});
