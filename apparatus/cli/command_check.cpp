@@ -27,11 +27,11 @@ struct Options {
 using Json = nlohmann::ordered_json;
 
 std::string duration_text(double s) {
-  if (s < 120.0) return fmt::format("{:.2g} s", s);
+  if (s < 300.0) return s < 100.0 ? fmt::format("{:.2g} s", s) : fmt::format("{:.0f} s", s);
   if (s < 7200.0) return fmt::format("{:.0f} min", s / 60.0);
   if (s < 2e5) return fmt::format("{:.0f} h", s / 3600.0);
   if (s < 3.2e7) return fmt::format("{:.0f} days", s / 86400.0);
-  return "years";
+  return "more than a year";
 }
 
 std::string megabytes_text(double bytes) {

@@ -124,7 +124,8 @@ What matters, and which concrete is this? Many runs, with intervals
 How wrong is it, and what differs?
   tremie run slump.toml --with-error --out runs/a; tremie compare runs/slump runs/a; tremie verify
 
-A run leaves report.html, curves and frames in runs/NAME. tremie COMMAND --help explains each command.)";
+A run leaves report.html, curves and frames in runs/NAME. tremie COMMAND --help explains each command.
+)";
 
 int parse_and_run(int argc, char** argv, const std::function<void(CLI::App&, int&)>& add) {
   CLI::App app{invitation, "tremie"};

@@ -148,7 +148,7 @@ std::string write_template(const ApparatusKeys& apparatus) {
     for (const Key& key : section.keys) {
       const std::string value = template_value(key);
       if (value.empty() || value == "\"\"") {
-        text += with_comment(fmt::format("# {} = …", key.name), allowed_comment(key));
+        text += with_comment(fmt::format("# {} = ...", key.name), allowed_comment(key));
         continue;
       }
       const bool active = applies_by_default(section, key) && (!key.fallback.empty() || key.required);

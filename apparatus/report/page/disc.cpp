@@ -36,8 +36,10 @@ std::string scale_svg(const Disc& disc, double y) {
   std::string text;
   constexpr int pieces = 44;
   for (int i = 0; i < pieces; ++i)
-    text += fmt::format("<rect fill=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"5.2\" height=\"10\"/>",
-                        colour_at((i + 0.5) / pieces), 130.0 + 5.0 * i, y);
+    text += fmt::format(
+        "<rect fill=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"5.6\" height=\"10\" "
+        "shape-rendering=\"crispEdges\"/>",
+        colour_at((i + 0.5) / pieces), 130.0 + 5.0 * i, y);
   return text +
          fmt::format(
              "<text x=\"124\" y=\"{0:.1f}\" text-anchor=\"end\">{1:.2g}</text><text x=\"356\" "

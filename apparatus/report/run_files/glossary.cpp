@@ -71,6 +71,7 @@ const std::map<std::string, std::string>& glossary() {
       {"icar_vane", "vane"},
       {"cell", "material cell"},
       {"measured.t500_s", "measured t500"},
+      {"reiner_riwlin", "yield stress and viscosity by Reiner-Riwlin (of several speeds)"},
       {"reiner_riwlin.yield_stress_Pa", "yield stress by Reiner-Riwlin, as the instrument reports"},
       {"reiner_riwlin.plastic_viscosity_Pa_s",
        "plastic viscosity by Reiner-Riwlin, as the instrument reports"},

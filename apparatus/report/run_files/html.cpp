@@ -94,7 +94,7 @@ void add_rows(const scene::Outcome& o, const std::vector<scene::Result>& results
     }
     std::string text = value_text(value, name);
     if (const auto error = error_of(o, name); error && prefix.empty())
-      text += " ± " + person_number(*error, name);
+      text += fmt::format(" ± {:.2g}", *error);
     const bool number = std::holds_alternative<double>(value);
     table.rows.push_back({words_of(prefix + name), text, number ? unit_for_people(name) : "", prefix + name});
   }
@@ -117,6 +117,10 @@ void add_shape(const scene::Outcome& o, const MovingPicture& moving, Page& page)
               .walls = moving.fixed,
               .mirrored = moving.mirrored,
               .ring_diameter = o.stage->ring_diameter};
+  // What is shown is thinned: a point stands for more than its own size, the more so the more were left out.
+  const double left_out = static_cast<double>(o.cost.points) /
+                          static_cast<double>(std::max<std::size_t>(moving.frames.back().places.size(), 1));
+  shape.point_size *= std::sqrt(std::clamp(left_out, 1.0, 4.0));
   for (const auto& p : moving.frames.back().places) shape.places.push_back({p[0], p[1]});
   if (!o.stage->plan.empty()) shape.plan_diameter = 1e-3 * number_in(o, o.stage->plan).value_or(0.0);
   page.figures.push_back({"shape", "The concrete at the end, from the computed points.", shape_svg(shape)});
