@@ -51,7 +51,8 @@ void add_overlay(const Comparison& comparison, const std::string& file, const st
     chart.curves.push_back(std::move(curve));
   }
   const std::string stem = file.substr(0, file.find('.'));
-  if (can_be_drawn(chart)) page.figures.push_back({fmt::format("{}-{}-over-{}", stem, y, x), "", chart_svg(chart)});
+  if (can_be_drawn(chart))
+    page.figures.push_back({fmt::format("{}-{}-over-{}", stem, y, x), "", chart_svg(chart)});
 }
 
 /// The columns that any run has in the file, in order.

@@ -28,12 +28,32 @@ std::string below(const std::string& place, const std::string& key) {
   return place.empty() ? key : place + "." + key;
 }
 
+/// "52.54 to 64.84" of an interval, else the items after each other.
+std::string list_text(const Json& list) {
+  std::vector<std::string> items;
+  for (const auto& item : list)
+    items.push_back(item.is_number()   ? fmt::format("{:.4g}", item.get<double>())
+                    : item.is_string() ? item.get<std::string>()
+                                       : item.dump());
+  const bool interval = list.size() == 2 && list.front().is_number();
+  return fmt::format("{}", fmt::join(items, interval ? " to " : "; "));
+}
+
+/// Of a value with its interval, {"value", "ci95"}, the value stands under the key itself. Lists of tables are left
+/// out: they have no columns in common.
 void flatten(const Json& json, const std::string& place, std::vector<Entry>& entries) {
   if (json.is_object()) {
-    for (const auto& [key, value] : json.items()) flatten(value, below(place, key), entries);
+    for (const auto& [key, value] : json.items())
+      flatten(value, key == "value" && json.contains("ci95") ? place : below(place, key), entries);
     return;
   }
-  Entry entry{place, json.is_null() ? "–" : json.is_string() ? json.get<std::string>() : json.dump(), {}};
+  if (json.is_array() && !json.empty() && json.front().is_object()) return;
+  Entry entry{place,
+              json.is_null()     ? "–"
+              : json.is_string() ? json.get<std::string>()
+              : json.is_array()  ? list_text(json)
+                                 : json.dump(),
+              {}};
   if (json.is_number()) entry.number = json.get<double>();
   entries.push_back(std::move(entry));
 }
