@@ -161,15 +161,21 @@ std::vector<std::string> comparison_reasons(const Comparison& comparison) {
 
 std::string scene_sentence(const Comparison& comparison) {
   if (comparison.scene.empty()) return {};
-  constexpr std::size_t most = 6;
+  constexpr std::size_t most = 6, longest = 80;
   std::vector<std::string> parts;
   std::size_t n = 0;
   for (const auto& row : comparison.scene)
-    if (row.differs && ++n <= most)
-      parts.push_back(fmt::format("{}: {}", row.key, fmt::join(row.texts, " | ")));
+    if (row.differs) {
+      const std::string values = fmt::format("{}", fmt::join(row.texts, " | "));
+      if (parts.size() < most && values.size() <= longest)
+        parts.push_back(fmt::format("{}: {}", row.key, values));
+      ++n;
+    }
   if (n == 0) return "The scenes are the same.";
+  if (parts.empty()) return fmt::format("The scenes differ in {} keys.", n);
+  const std::size_t more = n - parts.size();
   return fmt::format("The scenes differ in {}{}.", fmt::join(parts, "; "),
-                     n > most ? fmt::format("; and {} more keys", n - most) : "");
+                     more > 0 ? fmt::format("; and {} more", more) : "");
 }
 
 }  // namespace tremie::report
