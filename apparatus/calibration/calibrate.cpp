@@ -173,6 +173,15 @@ void report_parameters(State& s) {
   }
 }
 
+std::vector<std::array<double, 2>> left_out_of(const State& s, const Emulated& e) {
+  std::vector<std::array<double, 2>> pairs;
+  for (std::size_t k = 0; k < e.trials.size(); ++k) {
+    const double run = numeric(s.result.trials[e.trials[k]].rows[e.test], e.reading);
+    pairs.push_back({run, run + e.emulator.left_out[k]});
+  }
+  return pairs;
+}
+
 void report_readings(State& s) {
   for (const Emulated& e : s.emulated) {
     const Measurement& m = reading_of(s, e);
@@ -188,7 +197,8 @@ void report_readings(State& s) {
     const double deviation = (m.value - best.mean) / std::sqrt(variance_of(s, e, best));
     s.result.chi_square += deviation * deviation;
     s.result.readings.push_back({label, m.result, m.value, m.error, error_near_posterior(s, e),
-                                 s.discretisation[e.test][e.reading], best.mean, deviation});
+                                 s.discretisation[e.test][e.reading], best.mean, deviation,
+                                 left_out_of(s, e)});
   }
 }
 

@@ -3,6 +3,7 @@
 // From measurements to the mix: emulators of every reading, trained where the posterior lies, and the
 // posterior over the unknowns.
 
+#include <array>
 #include <atomic>
 #include <functional>
 #include <optional>
@@ -29,6 +30,8 @@ struct ReadingReport {
   double discretisation_error = 0.0;   ///< of the runs' cells and steps, one standard error
   double best_fit = 0.0;               ///< at the posterior's best point
   double deviation = 0.0;              ///< measured - best_fit over the standard error of all of it
+  /// Of each run: what it gave, and what the emulator through the others predicts there.
+  std::vector<std::array<double, 2>> left_out = {};
 };
 
 struct Estimated {

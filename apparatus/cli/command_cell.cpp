@@ -8,6 +8,7 @@
 
 #include "apparatus/cell/cell.hpp"
 #include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/options/json_option.hpp"
 #include "apparatus/cli/set_option.hpp"
 #include "apparatus/registry/registry.hpp"
 #include "apparatus/report/rheometer_files.hpp"
@@ -22,7 +23,7 @@ struct Options {
   std::string scene, out;
   std::vector<std::string> overrides;
   int threads = 1;
-  bool quiet = false, force = false;
+  bool quiet = false, json = false, force = false;
 };
 
 std::vector<std::string> write(const cell::Scene& scene, const scene::Outcome& outcome,
@@ -46,7 +47,8 @@ int run(const Options& options) {
       write(scene, outcome, "tremie cell " + options.scene, folder.staging());
   folder.publish();
   for (const auto& reason : outcome.checks.reasons) fmt::print(stderr, "not to be trusted: {}\n", reason);
-  if (!options.quiet) {
+  if (options.json) print_result_as_json(folder.target(), notes);
+  if (!options.quiet && !options.json) {
     for (const auto& line : outcome.lines) fmt::print("{}\n", line);
     for (const auto& note : notes) fmt::print("note                 {}\n", note);
     fmt::print("written to           {}\n", folder.target().string());
@@ -64,8 +66,11 @@ void add_command_cell(CLI::App& app, int& exit_code) {
   command->add_option("--out", options->out, "Folder for the result (default: runs/<scene name>)");
   add_set_option(*command, options->overrides);
   command->add_option("--threads", options->threads, "Threads; a cell needs one")->check(CLI::Range(1, 1024));
+  add_json_option(*command, options->json);
   command->add_flag("--quiet", options->quiet, "Print nothing but errors");
   command->add_flag("--force", options->force, "Replace an earlier result in the folder");
+  command->footer(
+      "tremie new cell > cell.toml writes a history to start from; tremie cell cell.toml runs it.");
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 

@@ -3,11 +3,17 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <iostream>
+#include <iterator>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/options/json_option.hpp"
 #include "apparatus/cli/set_option.hpp"
+#include "apparatus/registry/cost_estimate.hpp"
 #include "apparatus/registry/registry.hpp"
+#include "apparatus/report/compare/run_result.hpp"
 
 namespace tremie::cli {
 namespace {
@@ -15,23 +21,94 @@ namespace {
 struct Options {
   std::string scene;
   std::vector<std::string> overrides;
+  bool json = false;
 };
 
-void print_estimate(const scene::Estimate& e) {
-  fmt::print(
-      "\n# cost, estimated\n#   {} points, {} bytes a point\n#   {} active cells at the start\n#   about {} "
-      "steps\n",
-      e.points, e.bytes_per_point, e.cells_active, e.steps);
+using Json = nlohmann::ordered_json;
+
+std::string duration_text(double s) {
+  if (s < 300.0) return s < 100.0 ? fmt::format("{:.2g} s", s) : fmt::format("{:.0f} s", s);
+  if (s < 7200.0) return fmt::format("{:.0f} min", s / 60.0);
+  if (s < 2e5) return fmt::format("{:.0f} h", s / 3600.0);
+  if (s < 3.2e7) return fmt::format("{:.0f} days", s / 86400.0);
+  return "more than a year";
 }
 
-void check(const Options& options) {
-  const auto scene = scene::read(options.scene, options.overrides, "");
-  const auto estimate = scene::estimate(scene);  // refuses what the apparatus cannot run
-  fmt::print("# {}: valid. Every value that it uses, in SI:\n\n{}", options.scene, scene.resolved);
+std::string megabytes_text(double bytes) {
+  return bytes < 1e10 ? fmt::format("{:.2g} MB", bytes / 1e6) : fmt::format("{:.3g} GB", bytes / 1e9);
+}
+
+std::string count_text(std::int64_t n) {
+  return n < 1000000000 ? fmt::format("{}", n) : fmt::format("{:.1e}", static_cast<double>(n));
+}
+
+void print_estimate(const scene::Scene& scene, const scene::Estimate& e) {
+  const auto cost = scene::cost_of(scene, e);
+  fmt::print("\n# cost, estimated\n#   {} points, {} bytes a point\n#   {} active cells at the start\n",
+             e.points, e.bytes_per_point, e.cells_active);
+  fmt::print("#   about {} steps, at most some {}\n", count_text(e.steps_expected), count_text(e.steps));
+  fmt::print("#   about {} of CPU ({} to {}", duration_text(cost.cpu), duration_text(cost.cpu_low),
+             duration_text(cost.cpu_high));
+  if (e.steps > e.steps_expected)
+    fmt::print("; up to {} if it flows on for all of test.duration", duration_text(cost.cpu_most));
+  fmt::print(")\n");
+  fmt::print("#   about {} of memory, {} of files (each to a factor of two)\n", megabytes_text(cost.memory),
+             megabytes_text(cost.disk));
+}
+
+Json cost_json(const scene::Scene& scene, const std::optional<scene::Estimate>& e) {
+  if (!e) return nullptr;
+  const auto cost = scene::cost_of(scene, *e);
+  return {{"points", e->points},
+          {"bytes_per_point", e->bytes_per_point},
+          {"cells_active", e->cells_active},
+          {"steps", e->steps_expected},
+          {"steps_at_most", e->steps},
+          {"cpu_s", {{"value", cost.cpu}, {"low", cost.cpu_low}, {"high", cost.cpu_high}}},
+          {"cpu_at_most_s", cost.cpu_most},
+          {"memory_MB", cost.memory / 1e6},
+          {"files_MB", cost.disk / 1e6}};
+}
+
+/// A scene's values as numbers, truths and words.
+Json scene_json(const scene::Scene& scene) {
+  Json json = Json::object();
+  for (const auto& entry : report::scene_entries(scene.resolved, scene.path)) json[entry.key] = entry.text;
+  return json;
+}
+
+void print_json(const scene::Scene& scene, const std::optional<scene::Estimate>& estimate) {
+  const Json json{{"schema", 1},
+                  {"apparatus", scene.apparatus},
+                  {"valid", true},
+                  {"scene", scene_json(scene)},
+                  {"uses", scene::uses(scene)},
+                  {"notes", scene.notes},
+                  {"cost", cost_json(scene, estimate)}};
+  fmt::print("{}\n", json.dump(2));
+}
+
+void print_text(const Options& options, const scene::Scene& scene,
+                const std::optional<scene::Estimate>& estimate) {
+  fmt::print("# {}: valid. Every value that it uses, in SI:\n\n{}",
+             options.scene == "-" ? "the scene" : options.scene, scene.resolved);
   fmt::print("\n# used and left out\n");
   for (const auto& line : scene::uses(scene)) fmt::print("#   {}\n", line);
   for (const auto& note : scene.notes) fmt::print("# note: {}\n", note);
-  if (estimate) print_estimate(*estimate);
+  if (estimate) print_estimate(scene, *estimate);
+}
+
+/// "-" stands for the standard input.
+scene::Scene read(const Options& options) {
+  if (options.scene != "-") return scene::read(options.scene, options.overrides, "");
+  const std::string text{std::istreambuf_iterator<char>(std::cin), {}};
+  return scene::read_text(text, "standard input", options.overrides, "");
+}
+
+void check(const Options& options) {
+  const auto scene = read(options);
+  const auto estimate = scene::estimate(scene);  // refuses what the apparatus cannot run
+  options.json ? print_json(scene, estimate) : print_text(options, scene, estimate);
 }
 
 }  // namespace
@@ -40,8 +117,10 @@ void add_command_check(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   auto* command =
       app.add_subcommand("check", "Validate a scene; print it resolved, what it uses and what it costs");
-  command->add_option("scene", options->scene, "Scene file (TOML)")->required();
+  command->add_option("scene", options->scene, "Scene file (TOML), or - for the standard input")->required();
   add_set_option(*command, options->overrides);
+  add_json_option(*command, options->json);
+  command->footer("tremie check slump.toml, or tremie new slump_flow | tremie check -");
   command->callback([options, &exit_code] {
     check(*options);
     exit_code = done;

@@ -28,6 +28,8 @@ void add_command_new(CLI::App& app, int& exit_code) {
   auto name = std::make_shared<std::string>();
   auto* command = app.add_subcommand("new", "Print a commented scene to start from");
   command->add_option("apparatus", *name, "slump_flow, l_box, icar_vane or cell")->required();
+  command->footer(
+      "tremie new slump_flow > slump.toml; also l_box, icar_vane, cell. Then tremie run slump.toml.");
   command->callback([name, &exit_code] {
     fmt::print("{}", template_of(*name));
     exit_code = done;

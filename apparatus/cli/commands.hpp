@@ -20,6 +20,7 @@ void add_command_run(CLI::App& app, int& exit_code);
 void add_command_resume(CLI::App& app, int& exit_code);
 void add_command_check(CLI::App& app, int& exit_code);
 void add_command_new(CLI::App& app, int& exit_code);
+void add_command_compare(CLI::App& app, int& exit_code);
 void add_command_estimate(CLI::App& app, int& exit_code);
 void add_command_verify(CLI::App& app, int& exit_code);
 

@@ -50,6 +50,7 @@ int main(int argc, char** argv) {
     add_command_check(app, exit_code);
     add_command_new(app, exit_code);
     add_command_cell(app, exit_code);
+    add_command_compare(app, exit_code);
     add_command_estimate(app, exit_code);
     name_study_commands(app);
   });

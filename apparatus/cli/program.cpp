@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -30,11 +31,52 @@ std::string unknown(const std::string& what, const std::string& given,
                      joined(known));
 }
 
+struct Asked {
+  const char *word, *answer;
+};
+
+/// What people ask for under another name: the command that does it.
+constexpr std::array<Asked, 12> commands_asked{{
+    {"invert",
+     "tremie estimate goes from a slump flow to a mix, tremie calibrate from any measurements, tremie fit "
+     "from a torque record"},
+    {"sweep", "tremie study runs a scene over ranges of its keys"},
+    {"scan", "tremie study runs a scene over ranges of its keys"},
+    {"batch", "tremie study runs a scene many times"},
+    {"optimise", "tremie calibrate finds the mix that meets measurements"},
+    {"optimize", "tremie calibrate finds the mix that meets measurements"},
+    {"plot", "every run leaves its charts as SVG, and report.html"},
+    {"report", "every run leaves report.html; tremie compare makes one of several runs"},
+    {"validate", "tremie check validates a scene; tremie verify measures the error"},
+    {"diff", "tremie compare sets results side by side"},
+    {"init", "tremie new prints a scene to start from"},
+    {"help", "tremie --help, tremie COMMAND --help"},
+}};
+constexpr std::array<Asked, 6> options_asked{{
+    {"--pdf", "report.html prints to two pages: open it in a browser and print it to a PDF"},
+    {"--spread",
+     "tremie estimate --spread \"590 mm\" goes from a slump flow to a mix, tremie calibrate from several"},
+    {"--sweep", "tremie study runs a scene over ranges of its keys"},
+    {"--range", "tremie study runs a scene over ranges of its keys"},
+    {"--plot", "every run leaves its charts as SVG, and report.html"},
+    {"--vtk", "every run leaves frames.pvd for ParaView (output.frames)"},
+}};
+
+template <std::size_t n>
+std::string answer_to(const std::array<Asked, n>& asked, const std::string& word) {
+  for (const auto& [name, answer] : asked)
+    if (word == name) return fmt::format("; {}", answer);
+  return {};
+}
+
 /// A first word that is no command.
 void check_command(const CLI::App& app, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return;
   std::vector<std::string> commands;
   for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());
+  if (std::find(commands.begin(), commands.end(), argv[1]) == commands.end())
+    if (const std::string answer = answer_to(commands_asked, argv[1]); !answer.empty())
+      throw scene::InputError(fmt::format("tremie: there is no command \"{}\"{}", argv[1], answer));
   if (std::find(commands.begin(), commands.end(), argv[1]) == commands.end())
     throw scene::InputError(unknown("tremie: there is no command", argv[1], commands));
 }
@@ -45,10 +87,21 @@ void check_options(const CLI::App& app) {
   std::vector<std::string> options;
   for (const CLI::Option* option : at.get_options())
     for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+  const std::string command = &at == &app ? "tremie" : "tremie " + at.get_name();
+  for (const std::string& given : app.remaining(true)) {
+    const std::string word = given.substr(0, given.find('='));
+    if (!word.starts_with('-') || word == "-") continue;
+    const std::string answer = answer_to(options_asked, word);
+    if (answer.empty()) throw scene::InputError(unknown(command + ": there is no option", word, options));
+    throw scene::InputError(fmt::format("{}: there is no option \"{}\"{}", command, word, answer));
+  }
   for (const std::string& word : app.remaining(true))
-    if (word.starts_with('-') && word != "-")
-      throw scene::InputError(unknown(
-          (&at == &app ? "tremie" : "tremie " + at.get_name()) + ": there is no option", word, options));
+    if (!word.starts_with('-') && at.get_name() != "tremie")
+      throw scene::InputError(
+          fmt::format("{}: \"{}\" is one argument too many; for several scenes call it for each and set the "
+                      "results side by "
+                      "side by tremie compare, or have tremie study run one scene over ranges",
+                      command, word));
 }
 
 /// What was printed has arrived.
@@ -77,8 +130,26 @@ std::string message(std::string_view text) {
   return visible(text.substr(0, most)) + (text.size() > most ? " …" : "");
 }
 
+constexpr const char* invitation =
+    R"(Tremie: virtual test apparatus for thixotropic fresh concrete
+
+From a mix to a slump flow, at once or after four minutes of rest
+  tremie new slump_flow > slump.toml; tremie run slump.toml --set test.rest="240 s"
+From a slump flow, or a torque record, to the mix
+  tremie estimate --spread "590 mm" --t500 "2.5 s"
+  tremie fit torque.csv
+Will it pass the bars? The L-box; the vane rheometer likewise
+  tremie new l_box | tremie check -; tremie new l_box > box.toml; tremie run box.toml
+What matters, and which concrete is this? Many runs, with intervals
+  tremie study study.toml; tremie calibrate lab.toml
+How wrong is it, and what differs?
+  tremie run slump.toml --with-error --out runs/a; tremie compare runs/slump runs/a; tremie verify
+
+A run leaves report.html, curves and frames in runs/NAME. tremie COMMAND --help explains each command.
+)";
+
 int parse_and_run(int argc, char** argv, const std::function<void(CLI::App&, int&)>& add) {
-  CLI::App app{"Virtual test apparatus for thixotropic fresh concrete", "tremie"};
+  CLI::App app{invitation, "tremie"};
   app.set_version_flag("--version", fmt::format("tremie {} ({})", version, commit));
   app.require_subcommand(1);
   int exit_code = done;
@@ -86,6 +157,12 @@ int parse_and_run(int argc, char** argv, const std::function<void(CLI::App&, int
   check_command(app, argc, argv);
   try {
     app.parse(argc, argv);
+  } catch (const CLI::RequiredError& error) {
+    const CLI::App& at = app.get_subcommands().empty() ? app : *app.get_subcommands().front();
+    check_options(app);
+    fmt::print(stderr, "tremie{}{}: {}\n{}\n", &at == &app ? "" : " ", &at == &app ? "" : at.get_name(),
+               error.what(), &at == &app ? "tremie --help shows what there is." : at.get_footer());
+    return bad_input;
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() != 0) check_options(app);
     return app.exit(error) == 0 ? done : bad_input;

@@ -192,7 +192,14 @@ Estimate estimate(const Scene& scene) {
     e.cells_active = body.grid.n_cells();
     e.bytes_per_point =
         bytes_per_point<std::decay_t<decltype(section)>::Geometry::dim>(scene.mix.thixotropy.has_value());
-    for (const Stage& stage : stages_of(scene)) e.steps += std::llround(stage.duration / largest_dt) + 15;
+    for (const Stage& stage : stages_of(scene)) {
+      e.steps += test_run::whole_steps(stage.duration / largest_dt) + 15;
+      e.time_expected += stage.duration;
+    }
+    e.steps_expected = e.steps;
+    // Steady flows of the couette section converge at once, a decay does not.
+    const double couette = scene.mix.thixotropy ? 0.9e-6 : 0.2e-6;
+    e.point_step = scene.model.space == SpaceKind::couette ? couette : 1.9e-6;
     return e;
   });
 }

@@ -8,6 +8,18 @@
 namespace tremie::l_box {
 namespace {
 
+/// When the run is expected to end at rest [s]: as Mix A does with and without rest, and a plain Bingham concrete, to
+/// a factor of two for others.
+double expected_time(const Scene& scene) {
+  double lambda = 0.0;
+  if (scene.mix.thixotropy)
+    lambda = flocculation_after_rest(scene.mix.thixotropy->initial_flocculation, *scene.mix.thixotropy,
+                                     scene.mix.tau_0, scene.rest);
+  const double viscous = scene.mix.mu / static_yield_stress(lambda, scene.mix.tau_0);
+  const double time = 40.0 + (scene.mix.thixotropy ? 45.0 : 150.0) * viscous;
+  return time < scene.duration ? time : scene.duration;
+}
+
 template <class Geometry>
 Estimate estimate_in(const Scene& scene) {
   Body<Geometry> body = filled_column<Geometry>(scene);
@@ -17,10 +29,16 @@ Estimate estimate_in(const Scene& scene) {
   e.cells_active = body.grid.n_cells();
   e.bytes_per_point = bytes_per_point<Geometry::dim>(body.points.thixotropic());
   const StepSettings settings = test_run::step_settings(scene.model);
-  const double collapse = std::sqrt(test_run::gravity * scene.box.column_height) /
+  const double collapse = 0.5 * std::sqrt(test_run::gravity * scene.box.column_height) /
                           (settings.cfl * std::min(scene.model.cell[0], scene.model.cell[1]));
-  e.steps = scene.model.time_step ? std::llround(scene.duration / *scene.model.time_step)
-                                  : std::llround(0.5 * collapse + scene.duration / settings.dt_max);
+  const auto steps = [&](double share, double time, double dt) {
+    return test_run::whole_steps(scene.model.time_step ? time / *scene.model.time_step
+                                                       : share * collapse + time / dt);
+  };
+  e.time_expected = expected_time(scene);
+  e.point_step = in_space(scene) ? 4.0e-6 : 0.75e-6;
+  e.steps = steps(1.0, scene.duration, settings.dt_max);
+  e.steps_expected = std::min(e.steps, steps(0.8, e.time_expected, 2.3 * settings.dt_max));
   return e;
 }
 

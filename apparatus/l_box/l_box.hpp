@@ -86,7 +86,10 @@ struct Observer {
 };
 
 struct Estimate {
-  std::int64_t points = 0, cells_active = 0, bytes_per_point = 0, steps = 0;
+  std::int64_t points = 0, cells_active = 0, bytes_per_point = 0;
+  std::int64_t steps = 0, steps_expected = 0;  ///< at most; and where the flow is expected to come to rest
+  double time_expected = 0.0;                  ///< [s] of the test until then
+  double point_step = 0.0;                     ///< CPU of a step by the point, measured [s]
 };
 
 /// Runs the test; as slump_flow::run.

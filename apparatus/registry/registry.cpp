@@ -77,8 +77,9 @@ Scene read(const std::filesystem::path& path, const std::vector<std::string>& ov
   return build(load({path, overrides}, all_keys(), command));
 }
 
-Scene read_text(const std::string& text, const std::string& name, const std::vector<std::string>& overrides) {
-  return build(load({name, overrides, text}, all_keys()));
+Scene read_text(const std::string& text, const std::string& name, const std::vector<std::string>& overrides,
+                const std::string& command) {
+  return build(load({name, overrides, text}, all_keys(), command));
 }
 
 void set_threads(Scene& scene, int threads) { scene.functions->threads(scene.test) = threads; }

@@ -44,7 +44,7 @@ Scene read(const std::filesystem::path& path, const std::vector<std::string>& ov
 
 /// A scene from the text of one, for programs and tests. `name` stands for the file in messages.
 Scene read_text(const std::string& text, const std::string& name,
-                const std::vector<std::string>& overrides = {});
+                const std::vector<std::string>& overrides = {}, const std::string& command = "run");
 
 void set_threads(Scene& scene, int threads);
 

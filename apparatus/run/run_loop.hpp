@@ -9,6 +9,7 @@
 
 #include "apparatus/common/checkpoints.hpp"
 #include "apparatus/common/model.hpp"
+#include "apparatus/run/frame_times.hpp"
 #include "libmpm/implicit/step.hpp"
 
 namespace tremie::test_run {
@@ -46,12 +47,6 @@ struct Flow {
   /// All that goes on from one step to the next: body, schedule and series. Empty: the test keeps no checkpoints.
   VisitState state = {};
 };
-
-/// When the frame after that of time t is due [s]. An interval of 0 is chosen: a fifth of a second at first, a
-/// fourth of the time that has gone by later, since a flow slows down as it spreads.
-inline double frame_after(double t, double interval) {
-  return interval > 0.0 ? t + interval : std::max(t + 0.2, 1.25 * t);
-}
 
 /// Who looks on. Frames come at `next_frame` and every `frame_interval` after it [s]; 0: chosen.
 struct Onlooker {

@@ -2,6 +2,9 @@
 
 // From the model that a scene chooses to the settings of a step: what every apparatus does the same way.
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -18,6 +21,9 @@ inline FaceKind face_of(ContactKind contact) {
          : contact == ContactKind::friction ? FaceKind::friction
                                             : FaceKind::free_slip;
 }
+
+/// A number of steps as a whole number; what no program could count is 1e15.
+inline std::int64_t whole_steps(double steps) { return std::llround(std::clamp(steps, 0.0, 1e15)); }
 
 inline StepSettings step_settings(const Model& model) {
   StepSettings settings;

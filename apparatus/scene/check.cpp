@@ -88,6 +88,18 @@ void check_range(const Key& key, double value, const std::string& written) {
   check_size(key, value, written);
 }
 
+/// A range where one value is asked for: what runs over ranges.
+std::string range_hint(const Key& key, const std::string& text) {
+  for (const char* mark : {"..", "±", "+-", "+/-", " to ", "…"})
+    if (text.find(mark) != std::string::npos)
+      return fmt::format(
+          "; a scene has one value, tremie study runs it over a range: [[factor]] with key = \"….{}\" and "
+          "range = "
+          "[\"…\", \"…\"]",
+          key.name);
+  return {};
+}
+
 bool is_word(const Key& key, const std::string& text) {
   return std::find(key.words.begin(), key.words.end(), text) != key.words.end();
 }
@@ -104,7 +116,7 @@ void read_text(const Key& key, const std::string& text, Value& into) {
     try {
       value = parse_quantity(text, key.dimension);
     } catch (const std::invalid_argument& error) {
-      throw Problem(error.what() + words);
+      throw Problem(error.what() + words + range_hint(key, text));
     }
     check_range(key, value, "\"" + text + "\"");
     into.numbers.push_back(value);

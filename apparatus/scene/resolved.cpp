@@ -82,15 +82,24 @@ std::string section_text(const Section& section, const std::string& place, const
   return text;
 }
 
-std::string allowed_comment(const Key& key) {
-  std::string text;
-  for (const auto& word : key.words) text += (text.empty() ? "" : " | ") + quoted(word);
-  if (!key.words.empty() && key.kind == Kind::quantity) text += " | a quantity";
+/// What may stand there: words, a range, units.
+std::string allowed_text(const Key& key) {
+  std::vector<std::string> parts;
+  std::string words;
+  for (const auto& word : key.words) words += (words.empty() ? "" : " | ") + quoted(word);
+  if (!words.empty()) parts.push_back(words + (key.kind == Kind::quantity ? " | a quantity" : ""));
+  if (const std::string range = range_text(key); !range.empty()) parts.push_back(range);
+  if (key.kind == Kind::quantity) parts.push_back("in " + units_text(key.dimension));
   if (key.only_with)
-    text += fmt::format("{}with {} = \"{}\"", text.empty() ? "" : ", ", key.only_with->key,
-                        fmt::join(key.only_with->words, "\" or \""));
-  if (!text.empty() && !key.help.empty()) text = ": " + text;
-  return (key.required ? "needed: " : "") + key.help + text;
+    parts.push_back(
+        fmt::format("with {} = \"{}\"", key.only_with->key, fmt::join(key.only_with->words, "\" or \"")));
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::string allowed_comment(const Key& key) {
+  const std::string allowed = allowed_text(key);
+  return (key.required ? "needed: " : "") + key.help + (allowed.empty() || key.help.empty() ? "" : ": ") +
+         allowed;
 }
 
 std::string template_value(const Key& key) {
@@ -124,8 +133,13 @@ std::string write_resolved(const Schema& schema, const Values& values) {
 
 std::string write_template(const ApparatusKeys& apparatus) {
   std::string text = fmt::format(
-      "# {}\n# Every line shows its default and may be left out, but for those marked \"needed\".\n\n",
-      apparatus.help);
+      "# {}\n# Every line shows its default and may be left out, but for those marked \"needed\"; lines that "
+      "begin with "
+      "# are\n# off. tremie check FILE validates it and tells what it will cost; tremie {} FILE runs it.\n# "
+      "In place "
+      "of the table [mix] one line may name a mix: mix = \"mix_a\" (mix_b, mix_c, or a path to a .toml "
+      "file).\n\n",
+      apparatus.help, apparatus.name == "cell" ? "cell" : "run");
   text += fmt::format("apparatus = \"{}\"\n", apparatus.name);
   for (const Section& section : apparatus.schema) {
     if (!section.name.empty())
@@ -133,7 +147,10 @@ std::string write_template(const ApparatusKeys& apparatus) {
                           section.repeated ? "]]" : "]");
     for (const Key& key : section.keys) {
       const std::string value = template_value(key);
-      if (value.empty() || value == "\"\"") continue;
+      if (value.empty() || value == "\"\"") {
+        text += with_comment(fmt::format("# {} = ...", key.name), allowed_comment(key));
+        continue;
+      }
       const bool active = applies_by_default(section, key) && (!key.fallback.empty() || key.required);
       text +=
           with_comment(fmt::format("{}{} = {}", active ? "" : "# ", key.name, value), allowed_comment(key));

@@ -33,19 +33,38 @@ void count(const Scene& scene, Estimate& e) {
                                                : bytes_per_point<Geometry::dim>(thixotropic);
 }
 
-/// Longest step of an explicit scheme at the start [s].
-double first_explicit_step(const Scene& scene) {
-  const Model& model = scene.model;
+double static_yield_stress_at_start(const Scene& scene) {
   double lambda = 0.0;
   if (scene.mix.thixotropy) {
     const Thixotropy& t = *scene.mix.thixotropy;
     lambda = flocculation_after_rest(t.initial_flocculation, t, scene.mix.tau_0, scene.rest);
   }
+  return static_yield_stress(lambda, scene.mix.tau_0);
+}
+
+/// Longest step of an explicit scheme at the start [s].
+double first_explicit_step(const Scene& scene) {
+  const Model& model = scene.model;
   const ExplicitSettings settings = explicit_settings(scene);
-  const auto limits = stability_limits(scene.mix, model.law, static_yield_stress(lambda, scene.mix.tau_0),
+  const auto limits = stability_limits(scene.mix, model.law, static_yield_stress_at_start(scene),
                                        largest_eigenvalues(shape_of<ThreeD>(model).kind),
                                        std::min(model.cell[0], model.cell[1]));
   return settings.safety * limits.together;
+}
+
+/// When the flow is expected to have come to rest and the run to end [s]: by the viscous time mu/tau_y, as Mixes A
+/// to C do with and without rest, to a third; longer where no build-up ends the creep.
+double expected_time(const Scene& scene) {
+  const double viscous = scene.mix.mu / static_yield_stress_at_start(scene);
+  const bool space = scene.model.space != SpaceKind::axisymmetric;  // its larger steps creep longer
+  const double time = 1.2 + (space ? 33.0 : scene.mix.thixotropy ? 16.5 : 27.0) * viscous;
+  return is_explicit(scene.model) || !(time < scene.duration) ? scene.duration : time;
+}
+
+double cpu_of_a_point(const Scene& scene) {
+  if (is_explicit(scene.model)) return 0.045e-6;
+  if (scene.model.space != SpaceKind::axisymmetric) return 4.0e-6;
+  return scene.floor.contact == ContactKind::friction ? 1.2e-6 : 0.75e-6;
 }
 
 }  // namespace
@@ -63,18 +82,26 @@ Estimate estimate(const Scene& scene) {
     count<Axisymmetric>(scene, e);
   else
     count<ThreeD>(scene, e);
+  e.time_expected = expected_time(scene);
+  e.point_step = cpu_of_a_point(scene);
   if (is_explicit(scene.model)) {
-    e.steps = std::llround(scene.duration / scene.model.time_step.value_or(first_explicit_step(scene)));
+    const double dt = scene.model.time_step.value_or(first_explicit_step(scene));
+    e.steps = test_run::whole_steps(scene.duration / dt);
+    e.steps_expected = test_run::whole_steps(e.time_expected / dt);
     return e;
   }
   const StepSettings settings = step_settings(scene);
   // The collapse runs at about sqrt(g H) for 0.4 s at the CFL limit, the rest of the flow at the largest
   // step, or 2.5 times that on average where the local error lets it grow.
   const double speed = std::sqrt(gravity * scene.cone.height);
-  const double collapse = 0.4 * speed / (settings.cfl * std::min(scene.model.cell[0], scene.model.cell[1]));
+  const double collapse = 0.2 * speed / (settings.cfl * std::min(scene.model.cell[0], scene.model.cell[1]));
   const double later = (settings.time_error > 0.0 ? 2.5 : 1.0) * settings.dt_max;
-  e.steps = scene.model.time_step ? std::llround(scene.duration / *scene.model.time_step)
-                                  : std::llround(0.5 * collapse + scene.duration / later);
+  const auto steps = [&](double share, double time) {
+    return test_run::whole_steps(scene.model.time_step ? time / *scene.model.time_step
+                                                       : share * collapse + time / later);
+  };
+  e.steps = steps(1.0, scene.duration);
+  e.steps_expected = std::min(e.steps, steps(0.35, e.time_expected));
   return e;
 }
 

@@ -1,6 +1,7 @@
 #include "libmpm/io/hdf5_file.hpp"
 
 #include <hdf5.h>
+#include <hdf5_hl.h>
 
 #include <array>
 #include <cerrno>
@@ -118,6 +119,32 @@ void Hdf5File::array(const std::string& path, std::span<const double> values, st
   }
   attribute(path, "unit", unit);
   if (!description.empty()) attribute(path, "description", description);
+}
+
+void Hdf5File::scale(const std::string& path, const std::vector<std::string>& along, unsigned axis) {
+  const Handle made(open(path), H5Oclose);
+  if (H5DSis_scale(made) <= 0) check(H5DSset_scale(made, path.substr(path.rfind('/') + 1).c_str()));
+  for (const std::string& array : along) {
+    const Handle data(open(array), H5Oclose);
+    check(H5DSattach_scale(data, made, axis));
+  }
+}
+
+void Hdf5File::dimension(const std::string& path, std::size_t size, const std::vector<std::string>& along,
+                         unsigned axis) {
+  errno = 0;
+  const hsize_t places = size;
+  const Handle space(H5Screate_simple(1, &places, nullptr), H5Sclose);
+  const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  H5Pset_obj_track_times(creation, false);
+  {
+    const Handle made(
+        H5Dcreate2(file_, path.c_str(), H5T_IEEE_F32BE, space, H5P_DEFAULT, creation, H5P_DEFAULT), H5Dclose);
+    check(made);
+    // netCDF's own words for an axis that is no variable.
+    check(H5DSset_scale(made, "This is a netCDF dimension but not a netCDF variable."));
+  }
+  scale(path, along, axis);
 }
 
 }  // namespace tremie::io

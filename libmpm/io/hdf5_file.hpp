@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace tremie::io {
 
@@ -30,6 +31,14 @@ class Hdf5File {
   /// single precision and compressed, for what is large and looked at.
   void array(const std::string& path, std::span<const double> values, std::size_t columns,
              const std::string& unit, const std::string& description = "", bool packed = false);
+
+  /// The array `path` holds the places along the given axis (0: rows) of the arrays `along`: a dimension scale, by
+  /// which netCDF readers (xarray) name the axis.
+  void scale(const std::string& path, const std::vector<std::string>& along, unsigned axis = 0);
+
+  /// An axis of `size` places without values of their own, for the arrays `along`: takes no room.
+  void dimension(const std::string& path, std::size_t size, const std::vector<std::string>& along,
+                 unsigned axis = 0);
 
   void close();
 

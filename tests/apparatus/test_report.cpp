@@ -116,6 +116,12 @@ TEST(ResultsH5, HoldsSeriesFramesAndProvenance) {
   for (const char* name :
        {"schema", "tremie_version", "tremie_commit", "compiler", "scene", "apparatus", "status"})
     EXPECT_GT(H5Aexists(file, name), 0) << name;
+  // netCDF readers find their axes by these: the time of a series, the points of a frame.
+  for (const char* axis : {"/series/time_s", "/frames/00001/point", "/frames/00001/component"})
+    EXPECT_GT(H5Aexists_by_name(file, axis, "CLASS", H5P_DEFAULT), 0) << axis;
+  for (const char* data : {"/series/spread_mm", "/frames/00001/position"})
+    for (const char* about : {"DIMENSION_LIST", "unit", "description", "source"})
+      EXPECT_GT(H5Aexists_by_name(file, data, about, H5P_DEFAULT), 0) << data << ": " << about;
   H5Fclose(file);
 }
 

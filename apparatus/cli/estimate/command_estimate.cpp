@@ -97,6 +97,7 @@ void add_command_estimate(CLI::App& app, int& exit_code) {
   command->add_option("--spread-error", o->spread_error, "One standard error, \"15 mm\" by default");
   command->add_option("--t500-error", o->t500_error, "One standard error, \"0.2 s\" by default");
   command->add_flag("--json", o->json, "Print one JSON object");
+  command->footer("tremie estimate --spread \"590 mm\" --t500 \"2.5 s\"");
   command->callback([o, &exit_code] { exit_code = run(*o); });
 }
 

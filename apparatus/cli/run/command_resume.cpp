@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/options/json_option.hpp"
 #include "apparatus/cli/process/brief_spin.hpp"
 #include "apparatus/cli/process/stop_signals.hpp"
 #include "apparatus/cli/run/run_and_write.hpp"
@@ -21,7 +22,7 @@ namespace fs = std::filesystem;
 
 struct Options {
   std::string folder;
-  bool quiet = false;
+  bool quiet = false, json = false;
 };
 
 /// The scene that lies beside a checkpoint is the one that it was written for.
@@ -57,7 +58,7 @@ int resume(const Options& options) {
   report::RunFolder folder(options.folder, report::Resumed{});
   checkpoint = report::read_checkpoint(folder.checkpoint());  // none may have gone on meanwhile
   stop_on_interrupt();
-  return run_and_publish(scene, request, options.quiet, folder, checkpoint);
+  return run_and_publish(scene, request, screen_of(options.quiet, options.json), folder, checkpoint);
 }
 
 }  // namespace
@@ -66,6 +67,7 @@ void add_command_resume(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("resume", "Go on with a run that was interrupted or killed");
   command->add_option("folder", options->folder, "Folder of the run's result (tremie run --out)")->required();
+  add_json_option(*command, options->json);
   command->add_flag("--quiet", options->quiet, "Print nothing but errors");
   command->callback([options, &exit_code] { exit_code = resume(*options); });
 }

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/options/json_option.hpp"
 #include "apparatus/cli/process/brief_spin.hpp"
 #include "apparatus/cli/process/stop_signals.hpp"
 #include "apparatus/cli/run/run_and_write.hpp"
@@ -23,7 +24,7 @@ struct Options {
   std::string scene, out;
   std::vector<std::string> overrides;
   int threads = 0;  ///< 0: as many as pay
-  bool quiet = false, force = false, with_error = false;
+  bool quiet = false, json = false, force = false, with_error = false;
   std::string accuracy;  ///< "1 %"; empty: the scene's own cells
 };
 
@@ -34,7 +35,7 @@ scene::Scene with_cells_for(const scene::Scene& scene, const Options& options) {
   const auto choice = scene::choose_cells(scene, accuracy_of(options.accuracy), observer);
   auto overrides = options.overrides;
   overrides.push_back(scene::cells_override(scene, choice.factor));
-  if (!options.quiet)
+  if (!options.quiet && !options.json)
     fmt::print("accuracy        {} wants {}, about {:.1f} s of CPU\n", options.accuracy, overrides.back(),
                choice.cpu);
   std::fflush(stdout);
@@ -81,7 +82,7 @@ int run(const Options& options) {
                           .accuracy = options.accuracy,
                           .with_error = options.with_error,
                           .threads = threads},
-                         options.quiet, folder);
+                         screen_of(options.quiet, options.json), folder);
 }
 
 }  // namespace
@@ -99,8 +100,13 @@ void add_command_run(CLI::App& app, int& exit_code) {
   command->add_option(
       "--accuracy", options->accuracy,
       "Choose the cells for this accuracy, \"1 %\"; says the price first, implies --with-error");
+  add_json_option(*command, options->json);
   command->add_flag("--quiet", options->quiet, "Print nothing but errors");
   command->add_flag("--force", options->force, "Replace an earlier result in the folder");
+  command->footer(
+      "tremie new slump_flow > slump.toml writes a scene to start from; tremie run slump.toml runs it,\n"
+      "with --set test.rest=\"240 s\" after four minutes of rest. Bundled mixes: mix = \"mix_a\", mix_b, "
+      "mix_c.");
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 

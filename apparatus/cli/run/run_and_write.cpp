@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/options/json_option.hpp"
 #include "apparatus/cli/process/stop_signals.hpp"
 #include "apparatus/cli/progress.hpp"
 #include "apparatus/cli/run/keeper.hpp"
@@ -110,14 +111,15 @@ double accuracy_of(const std::string& text) {
   return 0.01 * percent;
 }
 
-int run_and_publish(const scene::Scene& scene, const report::RunRequest& request, bool quiet,
+int run_and_publish(const scene::Scene& scene, const report::RunRequest& request, Screen screen,
                     report::RunFolder& folder, const std::optional<report::Checkpoint>& from) {
   std::vector<std::string> notes;
-  const auto outcome = run_and_write(scene, request, quiet, folder, from, notes);
+  const auto outcome = run_and_write(scene, request, screen != Screen::everything, folder, from, notes);
   folder.publish();
   if (outcome.status != Status::interrupted) report::remove_checkpoint(folder.target() / "checkpoint");
   print_reasons(outcome);
-  if (!quiet) {
+  if (screen == Screen::one_json_object) print_result_as_json(folder.target(), notes);
+  if (screen == Screen::everything) {
     print_outcome(scene, outcome);
     for (const auto& note : notes) fmt::print("note            {}\n", note);
     fmt::print("written to      {}\n", folder.target().string());

@@ -12,9 +12,15 @@ namespace tremie::cli {
 /// The relative accuracy that was asked for: "1 %". Throws scene::InputError.
 double accuracy_of(const std::string& text);
 
+/// What goes to the screen beside errors.
+enum class Screen { nothing, one_json_object, everything };
+inline Screen screen_of(bool quiet, bool json) {
+  return json ? Screen::one_json_object : quiet ? Screen::nothing : Screen::everything;
+}
+
 /// Runs a scene from its start, or from a checkpoint in folder.checkpoint(); fills the folder, puts it in its place,
 /// and says what came out. Returns an exit code.
-int run_and_publish(const scene::Scene& scene, const report::RunRequest& request, bool quiet,
+int run_and_publish(const scene::Scene& scene, const report::RunRequest& request, Screen screen,
                     report::RunFolder& folder, const std::optional<report::Checkpoint>& from = {});
 
 }  // namespace tremie::cli

@@ -9,12 +9,16 @@
 #include <algorithm>
 #include <atomic>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "apparatus/calibration/calibrate.hpp"
+#include "apparatus/calibration/calibration_page.hpp"
 #include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/options/json_option.hpp"
 #include "apparatus/cli/program.hpp"
 #include "apparatus/report/rheometer_files.hpp"
 #include "apparatus/report/run_folder.hpp"
@@ -32,7 +36,7 @@ struct Options {
   std::string file, out;
   int jobs = 0;
   std::size_t runs = 0;
-  bool quiet = false, force = false;
+  bool quiet = false, json = false, force = false;
 };
 
 std::atomic<bool> stop_requested{false};
@@ -150,6 +154,11 @@ void print_result(const Lab& lab, const Calibration& c) {
                    *f.value, f.low, f.high);
 }
 
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
 void write_result(const Lab& lab, const Calibration& c, const Stopwatch& watch,
                   const std::filesystem::path& folder) {
   scene::Outcome outcome;
@@ -160,6 +169,9 @@ void write_result(const Lab& lab, const Calibration& c, const Stopwatch& watch,
   summary["results"] = results_json(lab, c);
   io::write_text(folder / "mix.toml", mix_toml(lab, c));
   io::write_text(folder / "trials.csv", trials_csv(lab, c));
+  io::write_text(
+      folder / "report.html",
+      calibration::calibration_html(lab, c, text_of(lab.file), "tremie calibrate " + lab.file.string()));
   io::write_text(folder / "summary.json", summary.dump(2) + "\n");
 }
 
@@ -183,6 +195,7 @@ int run(const Options& options) {
   write_result(lab, result, watch, folder.staging());
   folder.publish();
   for (const auto& reason : result.reasons) fmt::print(stderr, "not to be trusted: {}\n", reason);
+  if (options.json) print_result_as_json(folder.target());
   if (!options.quiet) {
     print_result(lab, result);
     fmt::print("{:<36} {}\n", "written to", folder.target().string());
@@ -203,9 +216,16 @@ void add_command_calibrate(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(1, 4096));
   command->add_option("--runs", o->runs, "Runs of each test at most (default: 20 for each unknown)")
       ->check(CLI::Range(10, 100000));
+  add_json_option(*command, o->json);
   command->add_flag("--quiet", o->quiet, "Print nothing but errors");
   command->add_flag("--force", o->force, "Replace an earlier result in the folder");
-  command->callback([o, &exit_code] { exit_code = run(*o); });
+  command->footer(
+      "tremie calibrate lab.toml, which has [[measured]] tests with their errors, and [unknown] keys with "
+      "ranges.");
+  command->callback([o, &exit_code] {
+    o->quiet = o->quiet || o->json;
+    exit_code = run(*o);
+  });
 }
 
 }  // namespace tremie::cli

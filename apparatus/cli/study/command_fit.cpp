@@ -9,9 +9,11 @@
 #include <nlohmann/json.hpp>
 
 #include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/options/json_option.hpp"
 #include "apparatus/cli/options/quantity.hpp"
 #include "apparatus/cli/program.hpp"
 #include "apparatus/cli/study/charts.hpp"
+#include "apparatus/cli/study/fit_report.hpp"
 #include "apparatus/report/rheometer_files.hpp"
 #include "apparatus/report/run_folder.hpp"
 #include "apparatus/scene/input_error.hpp"
@@ -30,7 +32,7 @@ struct Options {
   std::string data, out;
   std::string vane_radius, vane_height, container_radius, speed, rest, yield_stress, plastic_viscosity;
   std::string kinetics = "gated", critical_shear_rate;
-  bool quiet = false, force = false;
+  bool quiet = false, json = false, force = false;
 };
 
 // --- in
@@ -196,6 +198,8 @@ int run(const Options& options) {
   outcome.checks.reasons = result.reasons;
   io::write_text(folder.staging() / "fit.csv", fit_csv(result, in.instrument));
   const std::string note = draw(folder.staging(), fit_charts(result, in.instrument));
+  io::write_text(folder.staging() / "report.html",
+                 report::fit_html(fit_report(result, in.instrument, name, "tremie fit " + options.data)));
   watch.stop(outcome.cost);
   Json summary = summary_of(outcome);
   summary["results"] = results_json(result);
@@ -203,7 +207,8 @@ int run(const Options& options) {
   io::write_text(folder.staging() / "summary.json", summary.dump(2) + "\n");
   folder.publish();
   for (const auto& reason : result.reasons) fmt::print(stderr, "not to be trusted: {}\n", reason);
-  if (!options.quiet) {
+  if (options.json) print_result_as_json(folder.target());
+  if (!options.quiet && !options.json) {
     print_result(result);
     if (!note.empty()) fmt::print("{:<22} {}\n", "note", note);
     fmt::print("{:<22} {}\n", "written to", folder.target().string());
@@ -232,8 +237,10 @@ void add_command_fit(CLI::App& app, int& exit_code) {
   command->add_option("--critical-shear-rate", o->critical_shear_rate,
                       "of the gated kinetics, \"0.1 1/s\" by default");
   command->add_option("--out", o->out, "Folder for the result (default: runs/<record's name>)");
+  add_json_option(*command, o->json);
   command->add_flag("--quiet", o->quiet, "Print nothing but errors");
   command->add_flag("--force", o->force, "Replace an earlier result in the folder");
+  command->footer("tremie fit torque.csv, with --speed \"0.25 rev/s\" --rest \"240 s\" for a torque decay");
   command->callback([o, &exit_code] { exit_code = run(*o); });
 }
 

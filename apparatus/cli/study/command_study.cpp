@@ -17,11 +17,13 @@
 
 #include "apparatus/cli/commands.hpp"
 #include "apparatus/cli/hand_over.hpp"
+#include "apparatus/cli/options/json_option.hpp"
 #include "apparatus/cli/program.hpp"
 #include "apparatus/cli/study/study_progress.hpp"
 #include "apparatus/report/process.hpp"
 #include "apparatus/report/rheometer_files.hpp"
 #include "apparatus/scene/input_error.hpp"
+#include "apparatus/study/page/study_page.hpp"
 #include "apparatus/study/rows/engines.hpp"
 #include "apparatus/study/rows/files.hpp"
 #include "apparatus/study/rows/pool.hpp"
@@ -40,7 +42,7 @@ struct Options {
   std::string file, out, engine;
   int jobs = 0;
   std::int64_t row = -1;
-  bool resume = false, collect = false, submit = false, quiet = false, force = false;
+  bool resume = false, collect = false, submit = false, quiet = false, json = false, force = false;
 };
 
 std::atomic<bool> stop_requested{false};
@@ -160,8 +162,15 @@ int finish(const Job& job, const Options& options, const study::RowFiles& files,
   rows.insert(rows.end(), files.rows.begin(), files.rows.end());
   auto collected = study::collect(job.design.size(), std::move(rows));
   collected.problems.insert(collected.problems.end(), files.problems.begin(), files.problems.end());
-  const auto reasons = study::write_results(job.definition, job.design, collected, job.folder, watch);
+  std::string note;
+  const auto indices = study::sobol_indices(job.definition, job.design, collected, note);
+  const auto reasons =
+      study::write_results(job.definition, job.design, collected, indices, note, job.folder, watch);
+  study::write_whole(job.folder / "report.html",
+                     study::study_html(job.definition, job.design, collected, indices, note, reasons,
+                                       "tremie study " + options.file));
   for (const auto& reason : reasons) fmt::print(stderr, "not to be trusted: {}\n", reason);
+  if (options.json) print_result_as_json(job.folder);
   if (!options.quiet) fmt::print("written to      {}\n", job.folder.string());
   return reasons.empty() ? done : not_to_be_trusted;
 }
@@ -265,9 +274,16 @@ void add_command_study(CLI::App& app, int& exit_code) {
   command->add_option("--engine", o->engine, "Write what runs the rows elsewhere: slurm, snakemake, parallel")
       ->check(CLI::IsMember({"slurm", "snakemake", "parallel"}));
   command->add_flag("--submit", o->submit, "Start it, too");
+  add_json_option(*command, o->json);
   command->add_flag("--quiet", o->quiet, "Print nothing but errors");
   command->add_flag("--force", o->force, "Replace an earlier study in the folder");
-  command->callback([o, &exit_code] { exit_code = run(*o); });
+  command->footer(
+      "tremie study study.toml, which names a base scene, each [[factor]] with its range, and [design] "
+      "runs.");
+  command->callback([o, &exit_code] {
+    o->quiet = o->quiet || o->json;
+    exit_code = run(*o);
+  });
 }
 
 }  // namespace tremie::cli

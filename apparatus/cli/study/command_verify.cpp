@@ -4,9 +4,12 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/options/json_option.hpp"
 #include "apparatus/cli/process/stop_signals.hpp"
 #include "apparatus/cli/program.hpp"
 #include "apparatus/report/run_folder.hpp"
@@ -20,7 +23,7 @@ namespace {
 struct Options {
   std::vector<std::string> groups;
   std::string out = "runs/verification";
-  bool quick = false, full = false, force = false;
+  bool quick = false, full = false, force = false, json = false;
 };
 
 std::string known_groups() {
@@ -54,31 +57,51 @@ std::string command_line(const Options& options) {
   return text + (options.full ? " --full" : " --quick");
 }
 
+/// One object: whether every bound is kept, which are not, and what each case cost.
+nlohmann::ordered_json summary_of_cases(const std::vector<verification::Step>& steps,
+                                        const std::vector<verification::CaseGroup>& groups,
+                                        const std::vector<double>& cpu) {
+  nlohmann::ordered_json cases = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < steps.size(); ++i)
+    cases.push_back({{"number", steps[i].number},
+                     {"name", steps[i].name},
+                     {"what", steps[i].what},
+                     {"kept", verification::all_kept({groups[i]})},
+                     {"cpu_s", cpu[i]}});
+  return {{"schema", 1},
+          {"results", {{"cases", cases}, {"kept", verification::all_kept(groups)}}},
+          {"checks", {{"reasons", verification::broken_bounds(groups)}}}};
+}
+
 int verify(const Options& options) {
   const auto steps = chosen(options.groups);
   report::RunFolder folder(options.out, options.force);
   const auto depth = options.full ? verification::Depth::full : verification::Depth::quick;
+  FILE* const screen = options.json ? stderr : stdout;
   std::vector<verification::CaseGroup> groups;
+  std::vector<double> cpu;
   stop_on_interrupt();
   for (const auto& step : steps) {
     if (stop_requested) {
-      fmt::print("interrupted: nothing written\n");
+      fmt::print(screen, "interrupted: nothing written\n");
       return interrupted;
     }
-    fmt::print("rung {}: {}\n", step.number, step.what);
-    std::fflush(stdout);
+    fmt::print(screen, "rung {}: {}\n", step.number, step.what);
+    std::fflush(screen);
     const double start = verification::cpu_seconds();
     groups.push_back(step.run(depth));
+    cpu.push_back(verification::cpu_seconds() - start);
     const bool kept = verification::all_kept({groups.back()});
-    fmt::print("        {} in {:.1f} s of CPU\n", kept ? "all bounds kept" : "a bound is broken",
-               verification::cpu_seconds() - start);
-    std::fflush(stdout);
+    fmt::print(screen, "        {} in {:.1f} s of CPU\n", kept ? "all bounds kept" : "a bound is broken",
+               cpu.back());
+    std::fflush(screen);
   }
   const std::string note = verification::write_document(groups, command_line(options), folder.staging());
   folder.publish();
   for (const auto& line : verification::broken_bounds(groups)) fmt::print(stderr, "not kept: {}\n", line);
-  if (!note.empty()) fmt::print("note: {}\n", note);
-  fmt::print("written to {}\n", (folder.target() / "VERIFICATION.md").string());
+  if (!note.empty()) fmt::print(screen, "note: {}\n", note);
+  fmt::print(screen, "written to {}\n", (folder.target() / "VERIFICATION.md").string());
+  if (options.json) fmt::print("{}\n", summary_of_cases(steps, groups, cpu).dump(2));
   return verification::all_kept(groups) ? done : not_to_be_trusted;
 }
 
@@ -92,6 +115,7 @@ void add_command_verify(CLI::App& app, int& exit_code) {
       command->add_flag("--quick", options->quick, "Coarser cells, under five minutes (the default)");
   command->add_flag("--full", options->full, "All cells, under an hour")->excludes(quick);
   command->add_option("--out", options->out, "Folder for the result")->capture_default_str();
+  add_json_option(*command, options->json);
   command->add_flag("--force", options->force, "Replace an earlier result in the folder");
   command->callback([options, &exit_code] { exit_code = verify(*options); });
 }

@@ -49,7 +49,11 @@ void widen(Axis& axis, bool from_zero) {
 std::string number_text(double v, double step) {
   if (std::abs(v) < 1e-9 * step) return "0";
   const double size = std::abs(v);
-  if (size >= 1e5 || size < 1e-3) return fmt::format("{:.2g}", v);
+  if (size >= 1e5) return fmt::format("{:.2g}", v);
+  if (size < 1e-3) {
+    const double power = std::floor(std::log10(size) + 1e-9);
+    return fmt::format("{:.2g}e{:.0f}", v / std::pow(10.0, power), power);
+  }
   const int digits = std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 0, 6);
   std::string text = fmt::format("{:.{}f}", v, digits);
   return text;
@@ -161,6 +165,27 @@ std::string bar_svg(const EndBar& bar, const Axis& x, const Axis& y) {
       at - 5, low, at + 5, at, high);
 }
 
+std::string patches_svg(const LineChart& chart, const Axis& x, const Axis& y) {
+  std::string text;
+  for (const Patch& p : chart.patches)
+    text += fmt::format(
+        "<rect class=\"f0\" fill=\"{}\" fill-opacity=\"{:.2f}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" "
+        "height=\"{:.1f}\"/>",
+        colours[0], p.share, x.at(p.x0), y.at(p.y1), x.at(p.x1) - x.at(p.x0) + 0.2,
+        y.at(p.y0) - y.at(p.y1) + 0.2);
+  return text;
+}
+
+/// A title that is too long for its place is set smaller and further to the left.
+std::string title_svg(const std::string& title) {
+  constexpr double letter = 0.6, size = 15.0;  // width of a letter over the size of the font
+  const double wanted = letter * size * static_cast<double>(title.size());
+  const double from = wanted > width - left - right ? 8.0 : left;
+  const double fits = std::min(size, size * (width - from - 4.0) / std::max(wanted, 1.0));
+  return text_at(from, 16, "start", title,
+                 fmt::format(" font-weight=\"600\" font-size=\"{:.1f}\"", fits).c_str());
+}
+
 /// The legend stands above the curves, a line an entry, so that it never covers one.
 struct Entry {
   std::string label;
@@ -243,6 +268,7 @@ std::string chart_svg(const LineChart& chart) {
   for (const Band& band : chart.bands)
     for (const auto* side : {&band.low, &band.high})
       for (const double v : *side) y.include(v);
+  for (const Patch& p : chart.patches) x.include(p.x0), x.include(p.x1), y.include(p.y0), y.include(p.y1);
   for (const Level& level : chart.levels)
     y.include(level.value - level.tolerance), y.include(level.value + level.tolerance);
   for (const EndBar& bar : chart.bars) y.include(bar.y - bar.half), y.include(bar.y + bar.half);
@@ -252,10 +278,10 @@ std::string chart_svg(const LineChart& chart) {
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" role=\"img\" aria-label=\"{2}\" "
       "font-family=\"sans-serif\" font-size=\"15\" fill=\"#1c2126\">",
       width, height, escaped(chart.title));
-  text += text_at(left, 16, "start", chart.title, " font-weight=\"600\"") + legend(entries, title + 18);
+  text += title_svg(chart.title) + legend(entries, title + 18);
   for (const Band& band : chart.bands) text += band_svg(band, x, y);
   for (const Level& level : chart.levels) text += level_svg(level, x, y);
-  text += grid_and_axes(chart, x, y);
+  text += grid_and_axes(chart, x, y) + patches_svg(chart, x, y);
   for (std::size_t i = 0; i < chart.curves.size(); ++i) text += curve_svg(chart.curves[i], i, x, y);
   for (const EndBar& bar : chart.bars) text += bar_svg(bar, x, y);
   return text + "</svg>\n";

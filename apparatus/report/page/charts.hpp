@@ -33,12 +33,18 @@ struct EndBar {
   double x = 0.0, y = 0.0, half = 0.0;
 };
 
+/// A filled rectangle of a map: `share` of the full colour, 0 to 1.
+struct Patch {
+  double x0 = 0.0, x1 = 0.0, y0 = 0.0, y1 = 0.0, share = 1.0;
+};
+
 struct LineChart {
   std::string title, x_label, y_label;  ///< with units as people write them: "time (s)"
   std::vector<Curve> curves;
   std::vector<Level> levels = {};
   std::vector<Band> bands = {};
   std::vector<EndBar> bars = {};
+  std::vector<Patch> patches = {};
   bool log_x = false, log_y = false;
   bool y_from_zero = false;
 };
@@ -48,6 +54,15 @@ bool can_be_drawn(const LineChart& chart);
 
 /// One <svg> element. Values that are not finite are left out.
 std::string chart_svg(const LineChart& chart);
+
+/// Bars of several series over names, 0 to 1, each with half of its error: shares of a variance.
+struct BarChart {
+  std::string title, x_label;
+  std::vector<std::string> names;                   ///< a group each
+  std::vector<std::string> series;                  ///< a colour each
+  std::vector<std::vector<double>> values, errors;  ///< by name, then series
+};
+std::string bars_svg(const BarChart& chart);
 
 /// Round numbers that divide [low, high] into about `n` parts.
 std::vector<double> round_ticks(double low, double high, int n);

@@ -150,21 +150,36 @@ const get=id=>document.getElementById(id),m=JSON.parse(get("moving-data").textCo
 const canvas=get("moving-canvas"),slider=get("moving-time"),field=get("moving-field"),play=get("moving-play"),now=get("moving-now");
 const [bx0,bx1,y0,y1]=m.box,x0=m.mirrored?-Math.max(Math.abs(bx0),Math.abs(bx1)):bx0,x1=m.mirrored?-x0:bx1;
 const stops=[[0,103,165],[90,130,165],[165,150,130],[225,150,60],[250,170,20]];
-const shades=Array.from({length:256},(_,i)=>{const s=i/255*4,k=Math.min(3,Math.floor(s)),f=s-k;
-return "rgb("+stops[k].map((c,j)=>Math.round(c+f*(stops[k+1][j]-c)))+")";});
+const rgb=Array.from({length:256},(_,i)=>{const s=i/255*4,k=Math.min(3,Math.floor(s)),f=s-k;
+return stops[k].map((c,j)=>Math.round(c+f*(stops[k+1][j]-c)));}),shades=rgb.map(c=>"rgb("+c+")");
 const frames=m.frames.map(f=>{const raw=atob(f.d),b=Uint8Array.from(raw,c=>c.charCodeAt(0)),n=f.n,x=new Float32Array(n),y=new Float32Array(n);
 for(let i=0;i<n;i++){x[i]=bx0+(b[2*i]+256*b[2*i+1])/65535*(bx1-bx0);y[i]=y0+(b[2*n+2*i]+256*b[2*n+2*i+1])/65535*(y1-y0);}
 return {t:f.t,n,x,y,shade:b.subarray(4*n)};});
+// Thinned points stand for all: what lies within reach of one has its colour, and the outline is drawn back by as
+// much as the reach goes beyond a point's own half-width.
+function fill(c,f,k,css,h,X,Y,scale){
+const g=2,W=Math.ceil(css/g),H=Math.ceil(h/g),far=1e9,d2=new Float32Array(W*H).fill(far),shade=new Uint8Array(W*H),sides=m.mirrored?[1,-1]:[1];
+const q=Math.max(g,Math.sqrt((bx1-bx0)*(y1-y0)/f.n)*scale*1.5),seen=new Set();
+for(let i=0;i<f.n;i++)seen.add(Math.floor(X(f.x[i])/q)*8192+Math.floor(Y(f.y[i])/q));
+const space=Math.sqrt(seen.size/f.n)*q,R=Math.min(24,Math.max(3,2.5*space))/g,back=Math.max(0,R-.55*space/g);
+for(let i=0;i<f.n;i++)for(const s of sides){const x=X(s*f.x[i])/g,y=Y(f.y[i])/g,col=f.shade.length?f.shade[k*f.n+i]:0;
+for(let b=Math.max(0,Math.ceil(y-R));b<=Math.min(H-1,y+R);b++)for(let a=Math.max(0,Math.ceil(x-R));a<=Math.min(W-1,x+R);a++){
+const d=(a-x)*(a-x)+(b-y)*(b-y),at=b*W+a;if(d<=R*R&&d<d2[at]){d2[at]=d;shade[at]=col;}}}
+const off=new Float32Array(W*H);for(let i=0;i<off.length;i++)off[i]=d2[i]<far?far:0;
+const near=(at,to,w)=>{if(off[to]+w<off[at])off[at]=off[to]+w;},r2=Math.SQRT2;
+for(let b=1;b<H;b++)for(let a=1;a<W-1;a++){const at=b*W+a;near(at,at-1,1);near(at,at-W,1);near(at,at-W-1,r2);near(at,at-W+1,r2);}
+for(let b=H-2;b>=0;b--)for(let a=W-2;a>0;a--){const at=b*W+a;near(at,at+1,1);near(at,at+W,1);near(at,at+W+1,r2);near(at,at+W-1,r2);}
+const image=new ImageData(W,H),to=document.createElement("canvas");
+for(let i=0;i<off.length;i++)if(off[i]>back&&d2[i]<far){const [r,gr,bl]=rgb[shade[i]];image.data.set([r,gr,bl,255],4*i);}
+to.width=W;to.height=H;to.getContext("2d").putImageData(image,0,0);c.imageSmoothingEnabled=false;c.drawImage(to,0,0,W*g,H*g);}
 function draw(){
 const f=frames[+slider.value],css=canvas.clientWidth||600,dpr=window.devicePixelRatio||1,pad=14,bar=34;
 const scale=Math.min((css-2*pad)/(x1-x0),Math.max(260,.42*css)/(y1-y0)),h=Math.ceil((y1-y0)*scale)+2*pad+bar;
 canvas.width=css*dpr;canvas.height=h*dpr;canvas.style.height=h+"px";
 const c=canvas.getContext("2d");c.scale(dpr,dpr);c.clearRect(0,0,css,h);
 const ox=css/2-(x0+x1)/2*scale,oy=pad+y1*scale,X=v=>ox+v*scale,Y=v=>oy-v*scale,ink=getComputedStyle(document.body).color;
-const size=Math.max(1.6,Math.min(6,1.25*Math.sqrt((x1-x0)*(y1-y0)*scale*scale*(m.mirrored?.12:.2)/Math.max(f.n,1)))),k=+field.value||0;
-for(let i=0;i<f.n;i++){c.fillStyle=f.shade.length?shades[f.shade[k*f.n+i]]:shades[0];
-c.fillRect(X(f.x[i])-size/2,Y(f.y[i])-size/2,size,size);
-if(m.mirrored)c.fillRect(X(-f.x[i])-size/2,Y(f.y[i])-size/2,size,size);}
+const k=+field.value||0;
+if(f.n)fill(c,f,k,css,h,X,Y,scale);
 c.strokeStyle=ink;c.lineWidth=2;
 const wall=(w,up,s)=>{c.beginPath();w.forEach((p,i)=>i?c.lineTo(X(s*p[0]),Y(p[1]+up)):c.moveTo(X(s*p[0]),Y(p[1]+up)));c.stroke();};
 for(const s of m.mirrored?[1,-1]:[1]){for(const w of m.fixed)wall(w,0,s);for(const w of m.lifted)wall(w,m.speed*f.t,s);}

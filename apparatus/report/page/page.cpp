@@ -74,10 +74,10 @@ std::string made_html(const std::vector<Fact>& made) {
   return text + "</table></section>\n";
 }
 
-std::string scene_html(const std::string& scene) {
-  if (scene.empty()) return {};
-  return "<details><summary>The scene, every value in SI</summary>\n<pre>" + escaped(scene) +
-         "</pre></details>\n";
+std::string scene_html(const Page& page) {
+  if (page.scene.empty()) return {};
+  return fmt::format("<details><summary>{}</summary>\n<pre>{}</pre></details>\n", escaped(page.scene_words),
+                     escaped(page.scene));
 }
 
 std::string body_of(const Page& page) {
@@ -88,11 +88,12 @@ std::string body_of(const Page& page) {
   if (page.moving) text += moving_html(*page.moving);
   text += "<div class=\"figures\">\n";
   for (const Figure& figure : page.figures) text += figure_html(figure);
-  text += "</div>\n<div class=\"tables\">\n";
+  text += "</div>\n";
+  for (const GridTable& table : page.grids) text += grid_html(table);
+  text += "<div class=\"tables\">\n";
   for (const NumberTable& table : page.numbers) text += numbers_html(table);
   text += words_html(page.words) + made_html(page.made) + "</div>\n";
-  for (const GridTable& table : page.grids) text += grid_html(table);
-  return text + scene_html(page.scene);
+  return text + scene_html(page);
 }
 
 }  // namespace

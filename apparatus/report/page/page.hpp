@@ -68,6 +68,7 @@ struct Page {
   std::vector<std::string> words;  ///< what a word means: "λ: …", a line each
   std::vector<Fact> made;
   std::string scene;  ///< the resolved scene, or what else stands for the input; folded on the screen
+  std::string scene_words = "The scene, every value in SI";
 };
 
 /// The page as one file.

@@ -20,6 +20,16 @@ struct Shape {
   double ring_diameter = 0.0;  ///< a circle on the plate to compare it with [m]; 0: none
 };
 
+/// A quantity over the radius, as a section from above: rings of its colour on a logarithmic scale.
+struct Disc {
+  std::string title, words;            ///< "shear rate (1/s)"
+  std::vector<double> radius, values;  ///< [m], increasing; above 0 where there is something
+  double low = 0.01, high = 10.0;      ///< ends of the colours
+};
+
+/// One <svg> element: the disc with its inner and outer radius and the scale of colours.
+std::string disc_svg(const Disc& disc);
+
 /// One <svg> element: true proportions, with its measures.
 std::string shape_svg(const Shape& shape);
 

@@ -29,6 +29,7 @@ svg .grid{stroke:var(--line)!important}svg .axis{stroke:var(--soft)!important}sv
 svg .l0{stroke:var(--c0)!important}svg .l1{stroke:var(--c1)!important}svg .l2{stroke:var(--c2)!important}
 svg .l3{stroke:var(--c3)!important}svg .f0{fill:var(--c0)!important}svg .f1{fill:var(--c1)!important}
 svg .f2{fill:var(--c2)!important}svg .f3{fill:var(--c3)!important}svg .level{stroke:var(--ink)!important}
+svg .hole{fill:var(--paper)!important}
 svg .body{fill:var(--c0)!important}svg .wall{stroke:var(--ink)!important}
 .tables{columns:27rem 2;column-gap:2.4rem}
 .tables>section{break-inside:avoid}
@@ -37,7 +38,8 @@ table{border-collapse:collapse;width:100%;font-size:.94rem}
 td,th{padding:.22rem .5rem .22rem 0;border-bottom:1px solid var(--line);text-align:left;vertical-align:top}td:last-child:not(.n){overflow-wrap:anywhere}
 td.n,th.n{text-align:right;font-variant-numeric:tabular-nums;white-space:nowrap;padding-right:0}
 .key{font-size:.76rem;display:block;overflow-wrap:anywhere;font-family:ui-monospace,"DejaVu Sans Mono",monospace}
-.wide{overflow-x:auto}.wide td,.wide th{padding-right:1.1rem}
+.wide{overflow-x:auto}.wide td,.wide th{padding-right:1.1rem}.wide td.n{white-space:normal}.wide td:first-child{min-width:8rem}
+.wide th{white-space:normal;overflow-wrap:anywhere;min-width:4.5rem}
 pre{background:var(--panel);padding:.7rem .9rem;overflow-x:auto;font-size:.82rem;white-space:pre-wrap;overflow-wrap:anywhere}
 .controls{display:flex;flex-wrap:wrap;gap:.4rem .8rem;align-items:center;margin:.4rem 0}
 .controls input[type=range]{flex:1 1 10rem;min-width:8rem;accent-color:var(--c0)}

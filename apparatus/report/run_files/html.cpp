@@ -94,7 +94,7 @@ void add_rows(const scene::Outcome& o, const std::vector<scene::Result>& results
     }
     std::string text = value_text(value, name);
     if (const auto error = error_of(o, name); error && prefix.empty())
-      text += " ± " + person_number(*error, name);
+      text += fmt::format(" ± {:.2g}", *error);
     const bool number = std::holds_alternative<double>(value);
     table.rows.push_back({words_of(prefix + name), text, number ? unit_for_people(name) : "", prefix + name});
   }
@@ -117,9 +117,29 @@ void add_shape(const scene::Outcome& o, const MovingPicture& moving, Page& page)
               .walls = moving.fixed,
               .mirrored = moving.mirrored,
               .ring_diameter = o.stage->ring_diameter};
+  // What is shown is thinned: a point stands for more than its own size, the more so the more were left out.
+  const double left_out = static_cast<double>(o.cost.points) /
+                          static_cast<double>(std::max<std::size_t>(moving.frames.back().places.size(), 1));
+  shape.point_size *= std::sqrt(std::clamp(left_out, 1.0, 4.0));
   for (const auto& p : moving.frames.back().places) shape.places.push_back({p[0], p[1]});
   if (!o.stage->plan.empty()) shape.plan_diameter = 1e-3 * number_in(o, o.stage->plan).value_or(0.0);
   page.figures.push_back({"shape", "The concrete at the end, from the computed points.", shape_svg(shape)});
+}
+
+/// A shear rate over the radius as a section from above, where a table has one.
+void add_disc(const scene::Outcome& o, Page& page) {
+  for (const auto& table : o.tables) {
+    if (table.columns.empty() || table.columns.front().name != "radius_mm") continue;
+    for (const auto& column : table.columns) {
+      if (column.name != "shear_rate_per_s") continue;
+      Disc disc{
+          .title = "Section at the end", .words = "shear rate (1/s)", .radius = {}, .values = column.values};
+      for (const double r : table.columns.front().values) disc.radius.push_back(1e-3 * r);
+      if (std::string svg = disc_svg(disc); !svg.empty())
+        page.figures.push_back(
+            {"section", "The concrete between vane and container, by its shear rate.", svg});
+    }
+  }
 }
 
 }  // namespace
@@ -157,6 +177,7 @@ std::string report_html(const scene::Outcome& o, const std::string& resolved, co
   page.trust = trust_of(o);
   page.remarks = o.remarks;
   add_shape(o, moving, page);
+  if (!o.stage) add_disc(o, page);
   for (const auto& chart : o.charts)
     if (const LineChart drawn = line_chart(chart, o); can_be_drawn(drawn))
       page.figures.push_back({chart.file.substr(0, chart.file.find('.')), "", chart_svg(drawn)});

@@ -19,6 +19,8 @@
 namespace tremie::report {
 namespace {
 
+constexpr const char* computed_source = "computed by Tremie from the scene in the file's attribute \"scene\"";
+
 struct Field {
   const char* name;
   int components;
@@ -46,9 +48,39 @@ void write_frame_h5(io::Hdf5File& h5, const std::string& group, const Frame& fra
   h5.attribute(group, "time_s", frame.time);
   h5.array(group + "/position", flat(frame.position), 3, "m",
            "x, y, z of the points; a section of a body of revolution lies at y = 0, x its radius", true);
-  for (const Field& field : fields_of(frame))
+  std::vector<std::string> fields{group + "/position"}, vectors{group + "/position"};
+  for (const Field& field : fields_of(frame)) {
     h5.array(group + "/" + field.name, field.values, static_cast<std::size_t>(field.components), field.unit,
              words_of(field.name), true);
+    fields.push_back(group + "/" + field.name);
+    if (field.components == 3) vectors.push_back(fields.back());
+  }
+  for (const auto& field : fields) h5.attribute(field, "source", std::string(computed_source));
+  h5.dimension(group + "/point", frame.position.size(), fields);
+  h5.dimension(group + "/component", 3, vectors, 1);
+}
+
+/// Columns of one length over the first of them.
+void write_columns_h5(io::Hdf5File& h5, const std::string& group, const std::vector<scene::Column>& columns) {
+  h5.group(group);
+  std::vector<std::string> along;
+  for (const auto& column : columns) {
+    const std::string path = group + "/" + column.name;
+    h5.array(path, column.values, 1, unit_of(column.name), words_of(column.name));
+    h5.attribute(path, "source", std::string(computed_source));
+    if (&column != &columns.front()) along.push_back(path);
+  }
+  if (!columns.empty() && !columns.front().values.empty())
+    h5.scale(group + "/" + columns.front().name, along);
+}
+
+/// The errors of cells and steps, by the results' names, and how they were found.
+void write_errors_h5(io::Hdf5File& h5, const scene::ErrorEstimate& error) {
+  h5.group("/errors");
+  h5.attribute("/errors", "description",
+               std::string("half the width of a bar about a result, by cells and steps"));
+  h5.attribute("/errors", "basis", error.basis);
+  for (const auto& bar : error.bars) h5.attribute("/errors", bar.name, bar.error);
 }
 
 void write_frame_vtp(const std::filesystem::path& file, const Frame& frame) {
@@ -105,15 +137,11 @@ void ResultFiles::write_frame(const Frame& frame) {
 void ResultFiles::write_results_h5(const scene::Outcome& outcome) {
   h5_.attribute("/", "apparatus", outcome.apparatus);
   h5_.attribute("/", "status", std::string(status_name(outcome.status)));
-  h5_.group("/series");
-  for (const auto& column : outcome.series)
-    h5_.array("/series/" + column.name, column.values, 1, unit_of(column.name), words_of(column.name));
-  for (const auto& table : outcome.tables) {
-    const std::string group = fmt::format("/{}", std::filesystem::path(table.file).stem().string());
-    h5_.group(group);
-    for (const auto& column : table.columns)
-      h5_.array(group + "/" + column.name, column.values, 1, unit_of(column.name), words_of(column.name));
-  }
+  write_columns_h5(h5_, "/series", outcome.series);
+  for (const auto& table : outcome.tables)
+    write_columns_h5(h5_, fmt::format("/{}", std::filesystem::path(table.file).stem().string()),
+                     table.columns);
+  if (outcome.error) write_errors_h5(h5_, *outcome.error);
   write_results(h5_, "/results", outcome.results);
   h5_.close();
 }

@@ -72,26 +72,24 @@ Json json_of(const Definition& study, const ResultIndices& one) {
   return json;
 }
 
-Json sobol_json(const Definition& study, const Design& design, const Collected& collected) {
-  std::string note;
+Json sobol_json(const Definition& study, const std::vector<ResultIndices>& indices, const std::string& note) {
   Json json = Json::object();
-  for (const auto& one : sobol_indices(study, design, collected, note))
-    json[one.result] = json_of(study, one);
+  for (const auto& one : indices) json[one.result] = json_of(study, one);
   if (!note.empty()) json["note"] = note;
   return json;
 }
 
-/// A reader never meets half a file.
+}  // namespace
+
 void write_whole(const fs::path& file, const std::string& text) {
   const fs::path part = file.parent_path() / fmt::format(".{}.{}.part", file.filename().string(), getpid());
   io::write_text(part, text);
   fs::rename(part, file);
 }
 
-}  // namespace
-
 std::vector<std::string> write_results(const Definition& study, const Design& design,
-                                       const Collected& collected, const fs::path& folder,
+                                       const Collected& collected, const std::vector<ResultIndices>& indices,
+                                       const std::string& note, const fs::path& folder,
                                        const cli::Stopwatch& watch) {
   write_whole(folder / "study.csv", study_csv(study, design, collected));
   const fs::path h5 = folder / fmt::format(".study.{}.part", getpid());
@@ -101,7 +99,7 @@ std::vector<std::string> write_results(const Definition& study, const Design& de
   outcome.apparatus = "study";
   outcome.checks.reasons = reasons_of(design, collected);
   Json results = results_json(design, collected);
-  results["sobol"] = sobol_json(study, design, collected);
+  results["sobol"] = sobol_json(study, indices, note);
   watch.stop(outcome.cost);
   Json summary = cli::summary_of(outcome);
   summary["results"] = results;

@@ -1,0 +1,89 @@
+// tremie compare DIR DIR…: results side by side.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/options/json_option.hpp"
+#include "apparatus/report/compare/comparison.hpp"
+#include "apparatus/report/rheometer_files.hpp"
+#include "apparatus/report/run_folder.hpp"
+#include "libmpm/io/write_error.hpp"
+
+namespace tremie::cli {
+namespace {
+
+struct Options {
+  std::vector<std::string> folders;
+  std::string out = "runs/compare";
+  bool quiet = false, force = false, json = false;
+};
+
+std::string command_of(const Options& options) {
+  std::string text = "tremie compare";
+  for (const auto& folder : options.folders) text += " " + folder;
+  return text;
+}
+
+void write(const report::Comparison& comparison, const Options& options, const Stopwatch& watch,
+           const std::filesystem::path& folder) {
+  scene::Outcome outcome;
+  outcome.apparatus = "compare";
+  outcome.checks.reasons = report::comparison_reasons(comparison);
+  watch.stop(outcome.cost);
+  auto summary = summary_of(outcome);
+  summary["results"] = nlohmann::ordered_json::parse(report::comparison_json(comparison));
+  io::write_text(folder / "compare.csv", report::comparison_csv(comparison));
+  io::write_text(folder / "report.html", report::comparison_html(comparison, command_of(options)));
+  io::write_text(folder / "summary.json", summary.dump(2) + "\n");
+}
+
+void print_text(const report::Comparison& comparison) {
+  fmt::print("{}\n", report::comparison_headline(comparison));
+  if (const auto text = report::scene_sentence(comparison); !text.empty()) fmt::print("{}\n", text);
+  std::size_t longest = 0;
+  for (const auto& row : comparison.results) longest = std::max(longest, row.key.size());
+  for (const auto& row : comparison.results) {
+    if (!row.differs) continue;
+    std::vector<std::string> values;
+    for (std::size_t i = 0; i < row.texts.size(); ++i)
+      values.push_back(row.numbers[i] ? fmt::format("{:.6g}", *row.numbers[i]) : row.texts[i]);
+    fmt::print("{:<{}}  {}\n", row.key, longest, fmt::join(values, " | "));
+  }
+}
+
+int run(const Options& options) {
+  const Stopwatch watch;
+  const auto comparison = report::compare(options.folders);
+  const HeldInterrupts held;  // outlives the folder
+  report::RunFolder folder(options.out, options.force);
+  write(comparison, options, watch, folder.staging());
+  folder.publish();
+  const auto reasons = report::comparison_reasons(comparison);
+  for (const auto& reason : reasons) fmt::print(stderr, "not to be trusted: {}\n", reason);
+  if (options.json) print_result_as_json(folder.target());
+  if (!options.quiet && !options.json) {
+    print_text(comparison);
+    fmt::print("written to {}\n", folder.target().string());
+  }
+  return reasons.empty() ? done : not_to_be_trusted;
+}
+
+}  // namespace
+
+void add_command_compare(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  auto* command = app.add_subcommand("compare", "Set results side by side: curves, and what differs");
+  command->add_option("folders", options->folders, "Folders of results, two to eight")->required();
+  command->add_option("--out", options->out, "Folder for the comparison")->capture_default_str();
+  add_json_option(*command, options->json);
+  command->add_flag("--quiet", options->quiet, "Print nothing but errors");
+  command->add_flag("--force", options->force, "Replace an earlier result in the folder");
+  command->footer("tremie compare runs/fresh runs/rested");
+  command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace tremie::cli

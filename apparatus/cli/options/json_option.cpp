@@ -1,0 +1,23 @@
+#include "apparatus/cli/options/json_option.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+
+namespace tremie::cli {
+
+void add_json_option(CLI::App& command, bool& json) {
+  command.add_flag("--json", json, "Print one JSON object, the result's summary, and nothing else");
+}
+
+void print_result_as_json(const std::filesystem::path& folder, const std::vector<std::string>& notes) {
+  std::ifstream stream(folder / "summary.json", std::ios::binary);
+  fmt::print("{}", std::string(std::istreambuf_iterator<char>(stream), {}));
+  for (const auto& note : notes) fmt::print(stderr, "note: {}\n", note);
+  fmt::print(stderr, "written to {}\n", folder.string());
+}
+
+}  // namespace tremie::cli

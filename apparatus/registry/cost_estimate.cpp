@@ -1,0 +1,47 @@
+#include "apparatus/registry/cost_estimate.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "apparatus/run/frame_times.hpp"
+#include "apparatus/run/threads.hpp"
+
+namespace tremie::scene {
+namespace {
+
+constexpr double factor = 2.0;           ///< that the seconds are good to
+constexpr double start_and_end = 0.12;   ///< CPU of reading, charts and files [s]
+constexpr double program = 21e6;         ///< memory without points [bytes]
+constexpr double page = 0.5e6;           ///< of files without frames [bytes]
+constexpr double frame_of_point = 85.0;  ///< in frames/ and results.h5 [bytes]
+constexpr double most_counted = 1e6;     ///< frames
+
+/// Frames that are written over a time, as run_loop takes them and the files thin them.
+double frames_over(const Scene& scene, double time, double points) {
+  if (!scene.output.frames) return 0.0;
+  const double interval = scene.output.frame_interval;
+  if (interval > 0.0) return std::floor(time / interval) + 2.0;
+  double n = 1.0;
+  for (double t = 0.0; t < time && n < most_counted; t = test_run::frame_after(t, 0.0)) n += 1.0;
+  return std::ceil(n / (points > 20000.0 ? 3.0 : 2.0)) + 1.0;
+}
+
+}  // namespace
+
+CostEstimate cost_of(const Scene& scene, const Estimate& e) {
+  const auto points = static_cast<double>(e.points);
+  const double per_step = points * e.point_step;
+  CostEstimate cost;
+  cost.cpu = start_and_end + per_step * static_cast<double>(e.steps_expected);
+  cost.cpu_low = cost.cpu / factor, cost.cpu_high = cost.cpu * factor;
+  cost.cpu_most = factor * (start_and_end + per_step * static_cast<double>(e.steps));
+  const bool explicit_scheme = model_of(scene).scheme != SchemeKind::implicit;
+  const double shown_and_solver = explicit_scheme                          ? 320.0
+                                  : test_run::is_3d(model_of(scene).space) ? 1500.0
+                                                                           : 500.0;
+  cost.memory = program + points * (static_cast<double>(e.bytes_per_point) + shown_and_solver);
+  cost.disk = page + frame_of_point * points * frames_over(scene, e.time_expected, points);
+  return cost;
+}
+
+}  // namespace tremie::scene

@@ -1,0 +1,130 @@
+#include "apparatus/report/fit_page/fit_page.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "apparatus/report/page/charts.hpp"
+#include "apparatus/report/page/page.hpp"
+
+namespace tremie::report {
+namespace {
+
+std::string value_text(const FitParameter& p) {
+  if (!p.value) return "not told by this record";
+  const std::string text = fmt::format("{:.4g}", *p.value);
+  if (p.given) return text + " (given)";
+  return p.low && p.high ? fmt::format("{} ({:.4g} to {:.4g})", text, *p.low, *p.high)
+                         : text + " (no interval)";
+}
+
+std::string x_label(const FitReport& fit) { return fit.decay ? "time (s)" : "speed (rev/s)"; }
+
+/// The 95 % band of the fitted torque, where its error is known.
+std::vector<Band> band_of(const FitReport& fit) {
+  if (fit.standard_error.size() != fit.x.size()) return {};
+  Band band{"95 % band of the fitted line", fit.x, fit.fitted, fit.fitted};
+  for (std::size_t i = 0; i < fit.x.size(); ++i)
+    band.low[i] -= 1.96 * fit.standard_error[i], band.high[i] += 1.96 * fit.standard_error[i];
+  return {band};
+}
+
+void add(const LineChart& chart, const char* id, const std::string& caption, Page& page) {
+  if (can_be_drawn(chart)) page.figures.push_back({id, caption, chart_svg(chart)});
+}
+
+void add_torque(const FitReport& fit, Page& page) {
+  const LineChart chart{
+      .title = fit.decay ? "Decay of the torque" : "Torque over speed",
+      .x_label = x_label(fit),
+      .y_label = "torque (N·m)",
+      .curves = {{"readings", fit.x, fit.observed, Mark::points},
+                 {fit.decay ? "thixotropic Couette model" : "Reiner-Riwlin", fit.x, fit.fitted}},
+      .bands = band_of(fit)};
+  add(chart, "torque", "", page);
+}
+
+void add_flow_curve(const FitReport& fit, Page& page) {
+  if (fit.rate.empty()) return;
+  const LineChart chart{.title = "Flow curve",
+                        .x_label = "shear rate at the vane (1/s)",
+                        .y_label = "shear stress at the vane (Pa)",
+                        .curves = {{"readings", fit.rate, fit.stress_observed, Mark::points},
+                                   {"fitted line", fit.rate, fit.stress_fitted}}};
+  add(chart, "flow_curve", "The rate of a reading is the fitted model's at its torque.", page);
+}
+
+void add_flocculation(const FitReport& fit, Page& page) {
+  if (fit.lambda_apparent.empty()) return;
+  const LineChart chart{.title = "Flocculation state λ, as read off the torque",
+                        .x_label = x_label(fit),
+                        .y_label = "apparent λ",
+                        .curves = {{"from the torque", fit.x, fit.lambda_apparent, Mark::points},
+                                   {"exponential through it", fit.x, fit.lambda_line}}};
+  add(chart, "flocculation", "", page);
+}
+
+void add_residuals(const FitReport& fit, Page& page) {
+  Curve residuals{.label = "", .x = fit.x, .y = {}, .mark = Mark::points};
+  for (std::size_t i = 0; i < fit.x.size(); ++i)
+    residuals.y.push_back(100.0 * (fit.observed[i] / fit.fitted[i] - 1.0));
+  const LineChart chart{.title = "Residuals",
+                        .x_label = x_label(fit),
+                        .y_label = "reading less fit (% of the fit)",
+                        .curves = {residuals},
+                        .levels = {{"no residual", 0.0, 0.0}}};
+  add(chart, "residuals", "Without a pattern where the model fits.", page);
+}
+
+std::string trust_text(const FitReport& fit) {
+  const bool pattern = std::abs(fit.correlation) >= 0.3 && fit.readings > 10;
+  return fmt::format(
+      "{} readings are used, {} are left out as outliers. They scatter by {:.2g} % about the fitted line{} "
+      "Intervals "
+      "hold 95 %.",
+      fit.readings, fit.dropped, 100.0 * fit.scatter,
+      pattern ? fmt::format(
+                    ", and successive ones go together (correlation {:.2f}): to that size the model leaves "
+                    "something out, or the record is smoothed.",
+                    fit.correlation)
+              : ".");
+}
+
+std::string headline(const FitReport& fit) {
+  std::string text;
+  for (const FitParameter& p : fit.parameters) {
+    if (!p.value || p.given) continue;
+    text += fmt::format("{}{} {:.3g}{}{}", text.empty() ? "" : ", ", p.words, *p.value,
+                        p.unit.empty() ? "" : " ", p.unit);
+  }
+  return fmt::format("{}, {}: {}", fit.record, fit.decay ? "a torque decay" : "a flow curve",
+                     text.empty() ? "tells no parameter" : text);
+}
+
+}  // namespace
+
+std::string fit_html(const FitReport& fit) {
+  Page page;
+  page.headline = headline(fit);
+  page.title = "Tremie: " + page.headline;
+  page.verdict = {fit.reasons.empty() ? VerdictKind::agrees : VerdictKind::differs,
+                  fit.reasons.empty()
+                      ? "The model fits the record."
+                      : "The model does not fit the record, or its parameters cannot be trusted."};
+  page.trust = {fit.reasons.empty(), trust_text(fit), fit.reasons};
+  add_torque(fit, page);
+  add_flow_curve(fit, page);
+  add_flocculation(fit, page);
+  add_residuals(fit, page);
+  NumberTable table{"Parameters, with their 95 % intervals", {}};
+  for (const FitParameter& p : fit.parameters)
+    table.rows.push_back({p.words, value_text(p), p.value ? p.unit : "", p.key});
+  page.numbers = {table};
+  page.remarks = fit.notes;
+  page.words = {"λ, the flocculation state: the yield stress is (1 + λ) times the dynamic one.",
+                "α: how fast shear breaks λ down; A_thix: how fast rest builds the yield stress up."};
+  page.made = facts_of_this_run(fit.command);
+  return to_html(page);
+}
+
+}  // namespace tremie::report

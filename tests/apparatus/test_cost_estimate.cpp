@@ -1,0 +1,54 @@
+// What `tremie check` says of the price: against CPU seconds measured for the shipped scenes, and for input that no
+// program can run.
+
+#include <gtest/gtest.h>
+
+#include "apparatus/registry/cost_estimate.hpp"
+
+namespace tremie {
+namespace {
+
+scene::CostEstimate cost_of(const std::string& name, const std::vector<std::string>& overrides = {}) {
+  const auto scene = scene::read(std::string(TREMIE_SCENES) + "/" + name + ".toml", overrides);
+  return scene::cost_of(scene, *scene::estimate(scene));
+}
+
+// CPU seconds, megabytes of memory and of files, one thread of an AMD EPYC of 2023; the estimate promises a factor of two.
+TEST(CostEstimate, WithinAFactorOfTwoOverTheShippedScenes) {
+  const struct {
+    const char* scene;
+    double cpu, memory, disk;
+  } measured[] = {{"slump_flow_mix_a", 1.09, 28.0, 6.8},
+                  {"slump_flow_mix_b", 0.94, 27.3, 6.1},
+                  {"slump_flow_mix_c_rest240", 0.49, 26.1, 3.3},
+                  {"slump_flow_mix_a_rest240", 0.63, 25.9, 3.4},
+                  {"icar_vane_mix_a", 0.31, 22.3, 0.87},
+                  {"icar_vane_flow_curve_mix_a", 0.15, 22.2, 1.1},
+                  {"l_box_mix_a", 13.2, 46.8, 32.1},
+                  {"l_box", 18.5, 44.6, 29.0},
+                  {"slump_flow_mix_a_quarter", 1.36, 29.9, 3.7},
+                  {"slump_flow_mix_a_full", 6.81, 44.0, 12.2}};
+  for (const auto& m : measured) {
+    const auto cost = cost_of(m.scene);
+    const auto within = [&](double estimated, double value, const char* what) {
+      EXPECT_GT(estimated, 0.5 * value) << m.scene << ", " << what;
+      EXPECT_LT(estimated, 2.0 * value) << m.scene << ", " << what;
+    };
+    within(cost.cpu, m.cpu, "CPU s");
+    within(cost.memory / 1e6, m.memory, "MB of memory");
+    within(cost.disk / 1e6, m.disk, "MB of files");
+  }
+}
+
+// 1e300 s of flow in steps of 1 ps: a number that is large, never a negative one.
+TEST(CostEstimate, ExtremesStayNumbers) {
+  const auto scene = scene::read(std::string(TREMIE_SCENES) + "/slump_flow_mix_a.toml",
+                                 {"test.duration=1e300 s", "model.time_step=1e-12 s"});
+  const auto estimate = *scene::estimate(scene);
+  EXPECT_GT(estimate.steps, 1000000000000);
+  EXPECT_LE(estimate.steps_expected, estimate.steps);
+  EXPECT_GT(scene::cost_of(scene, estimate).cpu_most, 1e9);
+}
+
+}  // namespace
+}  // namespace tremie
