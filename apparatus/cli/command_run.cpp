@@ -131,15 +131,10 @@ std::string command_of(const Options& options) {
   return options.with_error ? text + " --with-error" : text;
 }
 
-report::FramesWritten frames_written(const scene::Output& output) {
-  if (!output.frames) return report::FramesWritten::none;
-  return output.frame_interval > 0.0 ? report::FramesWritten::all : report::FramesWritten::some;
-}
-
 scene::Outcome run_and_write(const scene::Scene& scene, const Options& options,
                              const report::RunFolder& folder, std::vector<std::string>& notes) {
   report::ResultFiles files(folder.staging(), scene.resolved, command_of(options),
-                            frames_written(scene.output));
+                            report::frames_written(scene.output));
   scene::Observer observer;
   observer.interrupted = &stop_requested;
   observer.on_frame = [&](const Frame& frame) { files.frame(frame); };
