@@ -28,7 +28,8 @@ plastic_viscosity = "35.8 Pa.s"
 thixotropy = {structuration_rate = "1.3 Pa/s", destructuration = 0.01}
 [[history]]
 duration = "10 s"
-shear_rate = "5 1/s"
+from = "5 1/s"
+to = "5 1/s"
 """
 
 
@@ -93,7 +94,9 @@ class Scenes(Folder):
             tremie.run(COARSE, mix__yield_stress=60)
 
     def test_untrusted(self):
-        scene = self.file("cell.toml", CELL + '[model]\ntime_step = "5 s"\n')
+        # one step over a ramp that builds up and breaks down at once
+        ramp = CELL.replace('from = "5', 'from = "0').replace("0.01}", '0.1, kinetics = "roussel"}')
+        scene = self.file("cell.toml", ramp + '[model]\ntime_step = "10 s"\n')
         program("cell", scene, "--out", self.folder / "out", "--quiet", code=3)
         with self.assertWarns(tremie.UntrustedWarning):
             result = tremie.cell(scene)
