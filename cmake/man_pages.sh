@@ -12,6 +12,8 @@ page() {
     gzip -9n >"$folder/$2.1.gz"
 }
 page "$1" tremie "$2" "virtual test apparatus for thixotropic fresh concrete"
+# A command that is not in this build has no help, and no page.
 "$2" --commands | while IFS="$(printf '\t')" read -r command description; do
+  "$2" "$command" --help >/dev/null 2>&1 || continue
   page "$1" "tremie-$command" "$2 $command" "$description"
 done

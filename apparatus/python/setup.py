@@ -26,7 +26,7 @@ class BuildByCMake(build_ext):
         subprocess.run(
             ["cmake", "-S", SOURCES, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DTREMIE_NATIVE=OFF",
              "-DTREMIE_TESTS=OFF", "-DTREMIE_PICTURES=OFF", "-DTREMIE_PYTHON=ON", f"-DPython_EXECUTABLE={sys.executable}",
-             "-DTREMIE_PYTHON_FOLDER=python"],
+             "-DTREMIE_PYTHON_FOLDER=python", *os.environ.get("CMAKE_ARGS", "").split()],
             check=True)
         jobs = str(os.environ.get("CMAKE_BUILD_PARALLEL_LEVEL", os.cpu_count() or 1))
         subprocess.run(["cmake", "--build", build, "-j", jobs, "--target", "tremie", "tremie_python"], check=True)

@@ -110,7 +110,7 @@ py::array speeds(double tau_0, double mu, const Numbers& torque, const Instrumen
   return array_of(std::move(omega));
 }
 
-#ifdef TREMIE_WITH_FITS
+#ifdef TREMIE_WITH_SUNDIALS
 py::array flocculation(const Numbers& times, const std::vector<std::array<double, 3>>& history,
                        const Thixotropy& thixotropy, double tau_0, double lambda_0) {
   return array_of(unlocked([&] {
