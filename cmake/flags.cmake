@@ -1,8 +1,9 @@
 # One interface target carries every compile option, so that a target opts in with a single link line.
 add_library(tremie_flags INTERFACE)
-target_include_directories(tremie_flags INTERFACE ${PROJECT_SOURCE_DIR})
+target_include_directories(tremie_flags INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+                                                  $<INSTALL_INTERFACE:include/tremie>)
 target_compile_options(tremie_flags INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror
+  "$<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wshadow;-Wconversion;-Werror>"
   -fno-math-errno
   # Eight doubles are passed between inlined functions alone, never over a binary interface.
   -Wno-psabi
@@ -13,7 +14,7 @@ target_compile_options(tremie_flags INTERFACE
                              -Wno-aggressive-loop-optimizations>)
 
 if(TREMIE_NATIVE AND NOT TREMIE_SANITIZE)
-  target_compile_options(tremie_flags INTERFACE -march=native)
+  target_compile_options(tremie_flags INTERFACE -march=native)  # exported too: Eigen's alignment depends on it
 endif()
 
 if(TREMIE_SANITIZE)

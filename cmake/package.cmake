@@ -1,8 +1,28 @@
-# A Debian package of the program and its mixes: cpack in the build folder of the preset package, which compiles for
-# any x86-64 processor.
-install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION share/doc/tremie RENAME copyright)
+# Debian packages: tremie (program, libraries, headers, mixes, man pages, completions) and python3-tremie. cpack in the
+# build folder of the preset package, which compiles for any x86-64 processor.
+include(GNUInstallDirs)
+
+# Man pages from the program's help, completions that ask the program.
+find_program(TREMIE_HELP2MAN help2man)
+if(TREMIE_HELP2MAN)
+  set(stamp ${PROJECT_BINARY_DIR}/man/tremie.1.gz)
+  add_custom_command(OUTPUT ${stamp} DEPENDS tremie ${PROJECT_SOURCE_DIR}/cmake/man_pages.sh
+                     COMMAND ${PROJECT_SOURCE_DIR}/cmake/man_pages.sh ${TREMIE_HELP2MAN} $<TARGET_FILE:tremie>
+                             ${PROJECT_BINARY_DIR}/man VERBATIM)
+  add_custom_target(tremie_man ALL DEPENDS ${stamp})
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 OPTIONAL)
+else()
+  message(STATUS "Without help2man: no man pages")
+endif()
+install(FILES ${PROJECT_SOURCE_DIR}/cmake/completions/tremie.bash
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME tremie)
+install(FILES ${PROJECT_SOURCE_DIR}/cmake/completions/_tremie
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
+
 execute_process(COMMAND gzip -9nc ${PROJECT_SOURCE_DIR}/CHANGELOG.md OUTPUT_FILE ${PROJECT_BINARY_DIR}/changelog.gz)
-install(FILES ${PROJECT_BINARY_DIR}/changelog.gz DESTINATION share/doc/tremie)
+set(documents ${CMAKE_INSTALL_DATADIR}/doc)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${documents}/tremie RENAME copyright)
+install(FILES ${PROJECT_BINARY_DIR}/changelog.gz DESTINATION ${documents}/tremie)
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME tremie)
@@ -15,7 +35,23 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS gnuplot-nox)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_NAME tremie)
+set(CPACK_DEBIAN_UNSPECIFIED_DESCRIPTION ${CPACK_PACKAGE_DESCRIPTION})
+set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_RECOMMENDS gnuplot-nox)
+set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_SUGGESTS "libeigen3-dev, libfmt-dev, libsundials-dev, libceres-dev")
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE
                                                 WORLD_READ WORLD_EXECUTE)
+
+if(TREMIE_PYTHON_FOUND)
+  install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${documents}/python3-tremie RENAME copyright COMPONENT python)
+  install(FILES ${PROJECT_BINARY_DIR}/changelog.gz DESTINATION ${documents}/python3-tremie COMPONENT python)
+  math(EXPR next_minor "${Python_VERSION_MINOR} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-tremie)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_DESCRIPTION "The same in Python: scenes, fits and estimates in process, results as NumPy\n arrays.")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+      "tremie (= ${PROJECT_VERSION}), python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}), python3 (<< ${Python_VERSION_MAJOR}.${next_minor}), python3-numpy")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-h5py, python3-matplotlib")
+endif()
 include(CPack)

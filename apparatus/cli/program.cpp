@@ -148,9 +148,20 @@ How wrong is it, and what differs?
 A run leaves report.html, curves and frames in runs/NAME. tremie COMMAND --help explains each command.
 )";
 
+/// The commands, "name TAB description" a line: what completions and man pages are made of.
+void print_commands(const CLI::App& app) {
+  for (const CLI::App* command : app.get_subcommands({}))
+    fmt::print("{}\t{}\n", command->get_name(), command->get_description());
+}
+
 int parse_and_run(int argc, char** argv, const std::function<void(CLI::App&, int&)>& add) {
   CLI::App app{invitation, "tremie"};
   app.set_version_flag("--version", fmt::format("tremie {} ({})", version, commit));
+  const auto list = [&app] {
+    print_commands(app);
+    throw CLI::Success();
+  };
+  app.add_flag_callback("--commands", list, "List the commands for other programs")->group("");
   app.require_subcommand(1);
   int exit_code = done;
   add(app, exit_code);

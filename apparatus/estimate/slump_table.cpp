@@ -58,6 +58,16 @@ SlumpTable read_slump_table(const std::filesystem::path& file) {
   return table;
 }
 
+SlumpTable find_slump_table(std::span<const std::filesystem::path> data_folders) {
+  for (const auto& folder : data_folders) {
+    const auto file = folder / "slump_flow_table" / "table.csv";
+    std::error_code error;
+    if (std::filesystem::is_regular_file(file, error)) return read_slump_table(file);
+  }
+  throw std::runtime_error(
+      "reference_data/slump_flow_table/table.csv is not there ($TREMIE_DATA names its folder)");
+}
+
 TableReading interpolate(const SlumpTable& table, double tau_0, double mu, double density) {
   const double scale = table.density / density;
   const Place x = place_in(table.tau_0, tau_0 * scale), y = place_in(table.mu, mu * scale);

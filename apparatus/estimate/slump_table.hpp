@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace tremie::estimate {
@@ -29,6 +30,9 @@ struct TableReading {
 /// Reads the table's CSV (yield_stress_Pa,plastic_viscosity_Pa_s,spread_mm,t500_s; a full grid). Throws
 /// std::runtime_error.
 SlumpTable read_slump_table(const std::filesystem::path& file);
+
+/// The table in the first of these folders (reference_data) that has one. Throws std::runtime_error.
+SlumpTable find_slump_table(std::span<const std::filesystem::path> data_folders);
 
 /// Bilinear in ln(tau_0), ln(mu); ln(t500). Gravity and yield stress balance in tau_0/rho and mu/rho, so that
 /// one density serves all. Inside of the table alone.

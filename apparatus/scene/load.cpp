@@ -1,5 +1,6 @@
 #include "apparatus/scene/load.hpp"
 
+#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -108,12 +109,29 @@ Schema whole_schema(const ApparatusKeys& apparatus) {
   return schema;
 }
 
-/// The share folder that lies beside the program's own, wherever both were moved to; empty where the system
-/// does not say which program runs.
-fs::path data_beside_program() {
+/// The file that this code is in: the program, or Python's module; empty where the system does not say.
+fs::path own_file() {
+#ifdef __GLIBC__
+  Dl_info info;  // of the program it has the name that it was called by
+  if (dladdr(reinterpret_cast<const void*>(&own_file), &info) != 0) {
+    const fs::path file = info.dli_fname;
+    if (file.extension() == ".so") return file;
+  }
+#endif
   std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  return error ? fs::path{} : program.parent_path().parent_path() / TREMIE_SHARE / "reference_data";
+  return fs::read_symlink("/proc/self/exe", error);
+}
+
+/// The share folder in the nearest folder above that file that has one, wherever both were moved to: PREFIX of
+/// PREFIX/bin/tremie, or of PREFIX/lib/python3/dist-packages/tremie.
+fs::path data_of_installation() {
+  for (fs::path folder = own_file().parent_path(); folder.has_relative_path();
+       folder = folder.parent_path()) {
+    const fs::path data = folder / TREMIE_SHARE / "reference_data";
+    std::error_code error;
+    if (fs::is_directory(data, error)) return data;
+  }
+  return {};
 }
 
 }  // namespace
@@ -138,7 +156,7 @@ Section top_section(const ApparatusKeys& apparatus) {
 std::vector<fs::path> data_folders() {
   std::vector<fs::path> folders;
   if (const char* set = std::getenv("TREMIE_DATA")) folders.emplace_back(set);
-  folders.push_back(data_beside_program());
+  if (const fs::path data = data_of_installation(); !data.empty()) folders.push_back(data);
   folders.emplace_back(TREMIE_SOURCE_DATA);
   folders.emplace_back(TREMIE_INSTALLED_DATA);
   return folders;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -35,16 +34,6 @@ estimate::Measured measured_of(const Options& o) {
   m.t500_error = quantity("--t500-error", o.t500_error, Dimension::time).value_or(m.t500_error);
   if (!m.t500 && !o.t500_error.empty()) throw scene::InputError("--t500-error: goes with --t500");
   return m;
-}
-
-estimate::SlumpTable table() {
-  for (const auto& folder : scene::data_folders()) {
-    const auto file = folder / "slump_flow_table" / "table.csv";
-    std::error_code error;
-    if (std::filesystem::is_regular_file(file, error)) return estimate::read_slump_table(file);
-  }
-  throw std::runtime_error(
-      "reference_data/slump_flow_table/table.csv is not there ($TREMIE_DATA names its folder)");
 }
 
 Json json_of(const std::optional<estimate::Interval>& i) {
@@ -79,7 +68,8 @@ void print_text(const Options& o, const estimate::Estimate& e) {
 }
 
 int run(const Options& options) {
-  const auto result = estimate::estimate(table(), measured_of(options));
+  const auto result =
+      estimate::estimate(estimate::find_slump_table(scene::data_folders()), measured_of(options));
   options.json ? print_json(result) : print_text(options, result);
   for (const auto& reason : result.reasons) fmt::print(stderr, "not to be trusted: {}\n", reason);
   return result.reasons.empty() ? done : not_to_be_trusted;

@@ -55,11 +55,6 @@ void note_accuracy(const report::RunRequest& request, scene::Outcome& outcome) {
                                                  request.accuracy, error.bars.front().name, 100.0 * reached));
 }
 
-report::FramesWritten frames_written(const scene::Output& output) {
-  if (!output.frames) return report::FramesWritten::none;
-  return output.frame_interval > 0.0 ? report::FramesWritten::all : report::FramesWritten::some;
-}
-
 /// Who keeps this run's checkpoints; nobody where the scene wants none.
 std::optional<Keeper> keeper_of(const scene::Scene& scene, const report::RunRequest& request,
                                 const report::RunFolder& folder,
@@ -72,7 +67,8 @@ std::optional<Keeper> keeper_of(const scene::Scene& scene, const report::RunRequ
 scene::Outcome run_and_write(const scene::Scene& scene, const report::RunRequest& request, bool quiet,
                              const report::RunFolder& folder, const std::optional<report::Checkpoint>& from,
                              std::vector<std::string>& notes) {
-  report::ResultFiles files(folder.staging(), scene.resolved, request.command, frames_written(scene.output));
+  report::ResultFiles files(folder.staging(), scene.resolved, request.command,
+                            report::frames_written(scene.output));
   if (from) report::for_each_frame(*from, [&](const Frame& frame) { files.frame(frame); });
   auto keeper = keeper_of(scene, request, folder, from);
   scene::Observer observer;

@@ -14,6 +14,7 @@
 #include "apparatus/cli/program.hpp"
 #include "apparatus/cli/study/charts.hpp"
 #include "apparatus/cli/study/fit_report.hpp"
+#include "apparatus/report/fit_results.hpp"
 #include "apparatus/report/rheometer_files.hpp"
 #include "apparatus/report/run_folder.hpp"
 #include "apparatus/scene/input_error.hpp"
@@ -73,67 +74,9 @@ FitResult read_and_fit(const Options& o, FitInput& in) {
 // --- out
 // --------------------------------------------------------------------------------------------------------
 
-Json json_of(const std::optional<Estimate>& e) {
-  if (!e) return nullptr;
-  Json json{{"value", e->value}, {"ci95", nullptr}};
-  if (e->ci95) json["ci95"] = {e->ci95->low, e->ci95->high};
-  if (e->given) json["given"] = true;
-  return json;
-}
-
 template <class T>
 Json json_of(const std::optional<T>& value) {
   return value ? Json(*value) : Json(nullptr);
-}
-
-Json apparent_json(const FitResult& r) {
-  if (!r.apparent) return nullptr;
-  const ApparentReading& a = *r.apparent;
-  Json json{{"offset_torque_N_m", a.offset_torque},
-            {"offset", a.offset},
-            {"method", "least squares in ln(lambda)"},
-            {"shear_rate_newtonian_per_s", a.newtonian_rate},
-            {"shear_rate_at_vane_per_s", json_of(a.rate_at_vane)}};
-  for (const ApparentAlpha& w : a.windows)
-    json["windows"].push_back({{"window_s", w.window},
-                               {"coefficient_per_s", w.coefficient},
-                               {"alpha_newtonian_rate", w.alpha_newtonian_rate},
-                               {"alpha_rate_at_vane", json_of(w.alpha_rate_at_vane)}});
-  return json;
-}
-
-Json dropped_json(const FitResult& r) {
-  Json list = Json::array();
-  const bool decay = r.kind == RecordKind::torque_decay;
-  for (const DroppedPoint& p : r.dropped)
-    list.push_back({{"line", p.line},
-                    {decay ? "time_s" : "speed_rev_per_s", decay ? p.x : p.x / two_pi},
-                    {"torque_N_m", p.torque},
-                    {"reason", p.reason}});
-  return list;
-}
-
-Json results_json(const FitResult& r) {
-  Json j;
-  j["kind"] = r.kind == RecordKind::torque_decay ? "torque_decay" : "flow_curve";
-  j["yield_stress_Pa"] = json_of(r.tau_0);
-  j["plastic_viscosity_Pa_s"] = json_of(r.mu);
-  j["static_yield_stress_Pa"] = json_of(r.static_yield_stress);
-  j["flocculation_start"] = json_of(r.lambda_0);
-  j["alpha"] = json_of(r.alpha);
-  j["structuration_rate_Pa_per_s"] = json_of(r.A_thix);
-  j["alpha_apparent"] = r.apparent ? Json(r.apparent->windows.back().alpha_newtonian_rate) : Json(nullptr);
-  j["alpha_apparent_basis"] = apparent_json(r);
-  j["plug"] = json_of(r.plug);
-  j["plug_below_rev_per_s"] = r.plug_below ? Json(*r.plug_below / two_pi) : Json(nullptr);
-  j["sheared_radius_mm"] = r.sheared_radius ? Json(1e3 * *r.sheared_radius) : Json(nullptr);
-  j["points_dropped"] = dropped_json(r);
-  j["points_dropped_count"] = r.dropped_count;
-  j["points_used"] = r.readings;
-  j["relative_scatter"] = r.scatter;
-  j["residual_correlation"] = r.correlation;
-  j["notes"] = r.notes;
-  return j;
 }
 
 /// What the fit was told, the defaults included: a fit can be repeated from its summary.
@@ -202,7 +145,7 @@ int run(const Options& options) {
                  report::fit_html(fit_report(result, in.instrument, name, "tremie fit " + options.data)));
   watch.stop(outcome.cost);
   Json summary = summary_of(outcome);
-  summary["results"] = results_json(result);
+  summary["results"] = report::fit_results(result);
   summary["input"] = input_json(options, in);
   io::write_text(folder.staging() / "summary.json", summary.dump(2) + "\n");
   folder.publish();

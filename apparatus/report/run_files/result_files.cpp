@@ -103,6 +103,11 @@ void write_results(io::Hdf5File& h5, const std::string& group, const std::vector
 
 }  // namespace
 
+FramesWritten frames_written(const scene::Output& output) {
+  if (!output.frames) return FramesWritten::none;
+  return output.frame_interval > 0.0 ? FramesWritten::all : FramesWritten::some;
+}
+
 ResultFiles::ResultFiles(const std::filesystem::path& folder, const std::string& resolved,
                          const std::string& command, FramesWritten written)
     : folder_(folder), resolved_(resolved), command_(command), written_(written), h5_(folder / "results.h5") {

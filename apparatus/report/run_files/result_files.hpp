@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "apparatus/common/outcome.hpp"
+#include "apparatus/common/shared_keys.hpp"
 #include "apparatus/report/run_files/moving.hpp"
 #include "libmpm/io/hdf5_file.hpp"
 
@@ -18,6 +19,9 @@ namespace tremie::report {
 /// Which of the frames that come are written for ParaView and Python: some, so that a default run stays small
 /// (every second, every third of more than 20000 points, and the last), or all. The report shows them all.
 enum class FramesWritten { none, some, all };
+
+/// What the scene's [output] asks for.
+FramesWritten frames_written(const scene::Output& output);
 
 /// Every call throws io::WriteError where the folder cannot be written.
 class ResultFiles {

@@ -1,0 +1,203 @@
+"""The rheometer: parameters from torques and back, the flocculation state, a mix from its slump flow.
+
+Every quantity is a number in SI units, or text with a unit."""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import dataclass
+from typing import Any, Optional, Sequence, Union
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _tremie
+from ._result import Result, checked
+from ._values import Quantity, positive, si
+
+
+def _instrument(vane_radius: Quantity, vane_height: Quantity, container_radius: Quantity) -> Any:
+    return _tremie.Instrument(
+        vane_radius=positive("vane_radius", vane_radius, "m"),
+        vane_height=positive("vane_height", vane_height, "m"),
+        container_radius=positive("container_radius", container_radius, "m"),
+    )
+
+
+def _readings(name: str, values: ArrayLike, torque: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+    x, T = np.asarray(values, dtype=float), np.asarray(torque, dtype=float)
+    if x.ndim != 1 or x.shape != T.shape:
+        raise _tremie.InputError(f"{name} and torque: two arrays of one length; these have the shapes {x.shape}, {T.shape}")
+    for what, array in ((name, x), ("torque", T)):
+        if not (np.isfinite(array).all() and (array >= 0.0).all()):
+            raise _tremie.InputError(f"{what}: every value must be finite and not negative")
+    if name == "t" and (np.diff(x) < 0.0).any():
+        raise _tremie.InputError("t: the times must not run backwards")
+    return x, T
+
+
+def _optional(name: str, value: Optional[Quantity], unit: str) -> Optional[float]:
+    return None if value is None else positive(name, value, unit)
+
+
+def fit(
+    t: Union[ArrayLike, str, os.PathLike, None] = None,
+    torque: Optional[ArrayLike] = None,
+    *,
+    speeds: Optional[ArrayLike] = None,
+    vane_radius: Quantity = "63.5 mm",
+    vane_height: Quantity = "127 mm",
+    container_radius: Quantity = "143 mm",
+    speed: Optional[Quantity] = None,
+    rest: Optional[Quantity] = None,
+    yield_stress: Optional[Quantity] = None,
+    plastic_viscosity: Optional[Quantity] = None,
+    kinetics: str = "gated",
+    critical_shear_rate: Quantity = "0.1 1/s",
+) -> Result:
+    """Material parameters, each with its 95 % interval, from a torque record.
+
+    fit(t, torque, speed=…)         a decay at constant speed: times [s], torques [N m]
+    fit(speeds=…, torque=…)         a flow curve: speeds [rad/s], torques [N m]
+    fit("record.csv")               a file, as the program `tremie fit` reads it
+
+    vane_radius, vane_height, container_radius  [m]; the ICAR rheometer's by default
+    speed, rest                     of a decay [rad/s], [s]
+    yield_stress, plastic_viscosity where they are known [Pa], [Pa s]
+    kinetics                        "gated" or "roussel"; critical_shear_rate [1/s] of the gate
+
+    `.results` has the keys of the program's summary.json (yield_stress_Pa: value and ci95, or None where the record
+    does not tell it), `.tables["fit.csv"]` the readings beside the fitted torques."""
+    instrument = _instrument(vane_radius, vane_height, container_radius)
+    given = _tremie.FitInput(
+        instrument=instrument,
+        omega=_optional("speed", speed, "rad/s"),
+        rest=_optional("rest", rest, "s"),
+        tau_0=_optional("yield_stress", yield_stress, "Pa"),
+        mu=_optional("plastic_viscosity", plastic_viscosity, "Pa.s"),
+        kinetics=kinetics,
+        gamma_c=positive("critical_shear_rate", critical_shear_rate, "1/s"),
+    )
+    if isinstance(t, (str, os.PathLike)):
+        answer = _tremie.fit_file(os.fspath(t), given)
+    elif (t is None) == (speeds is None) or torque is None:
+        raise _tremie.InputError("fit: takes (t, torque), (speeds=…, torque=…) or a file")
+    elif t is not None:
+        answer = _tremie.fit(True, *_readings("t", t, torque), given)
+    else:
+        answer = _tremie.fit(False, *_readings("speeds", speeds, torque), given)
+    results = json.loads(answer["results"])
+    summary = {"apparatus": "fit", "status": "completed", "results": results, "checks": {"reasons": answer["reasons"]}}
+    return checked(Result(summary, tables={"fit.csv": answer["curve"]}, notes=results["notes"]))
+
+
+@dataclass
+class CouetteFlow:
+    """Torque [N m] at each speed, and how far from the axis the material is sheared [m]."""
+
+    torque: np.ndarray
+    sheared_radius: np.ndarray
+
+
+def reiner_riwlin(
+    speed: ArrayLike,
+    *,
+    yield_stress: Quantity,
+    plastic_viscosity: Quantity,
+    vane_radius: Quantity = "63.5 mm",
+    vane_height: Quantity = "127 mm",
+    container_radius: Quantity = "143 mm",
+) -> CouetteFlow:
+    """Torques of a Bingham material (yield_stress [Pa], plastic_viscosity [Pa s]) between vane and container at the
+    speeds [rad/s], the plug solved for."""
+    instrument = _instrument(vane_radius, vane_height, container_radius)
+    omega = np.asarray(speed, dtype=float)
+    torque, radius = _tremie.torques(
+        si("yield_stress", yield_stress, "Pa"), si("plastic_viscosity", plastic_viscosity, "Pa.s"), omega.ravel(), instrument
+    )
+    return CouetteFlow(torque.reshape(omega.shape), radius.reshape(omega.shape))
+
+
+def reiner_riwlin_speed(
+    torque: ArrayLike,
+    *,
+    yield_stress: Quantity,
+    plastic_viscosity: Quantity,
+    vane_radius: Quantity = "63.5 mm",
+    vane_height: Quantity = "127 mm",
+    container_radius: Quantity = "143 mm",
+) -> np.ndarray:
+    """The inverse of reiner_riwlin(): speeds [rad/s] that the torques [N m] drive; 0 where nothing yields."""
+    instrument = _instrument(vane_radius, vane_height, container_radius)
+    T = np.asarray(torque, dtype=float)
+    tau_0, mu = si("yield_stress", yield_stress, "Pa"), si("plastic_viscosity", plastic_viscosity, "Pa.s")
+    return _tremie.speeds(tau_0, mu, T.ravel(), instrument).reshape(T.shape)
+
+
+def _segments(history: Sequence[Sequence[Quantity]]) -> list[list[float]]:
+    segments = []
+    for number, piece in enumerate(history):
+        if len(piece) not in (2, 3):
+            raise _tremie.InputError(f"history[{number}]: (duration, shear rate) or (duration, from, to)")
+        duration, *rates = piece
+        rates = [si(f"history[{number}]", rate, "1/s") for rate in rates]
+        segments.append([si(f"history[{number}]", duration, "s"), rates[0], rates[-1]])
+    return segments
+
+
+def flocculation(
+    times: ArrayLike,
+    history: Sequence[Sequence[Quantity]],
+    *,
+    yield_stress: Quantity,
+    structuration_rate: Quantity,
+    destructuration: float,
+    kinetics: str = "gated",
+    critical_shear_rate: Quantity = "0.1 1/s",
+    initial: float = 0.0,
+    exponent: float = 1.0,
+    saturation: Optional[float] = None,
+) -> np.ndarray:
+    """The flocculation state lambda at `times` [s], ascending, by CVODE to 1e-13.
+
+    history             pieces (duration [s], shear rate [1/s]) or (duration, from, to), linear in between
+    yield_stress        dynamic, tau_0 [Pa]
+    structuration_rate  A_thix [Pa/s];  destructuration: alpha;  initial: lambda at time 0
+    kinetics            "gated", "roussel" or "power" (then exponent n, saturation lambda_max or None for none)"""
+    thixotropy = _tremie.Thixotropy(
+        A_thix=si("structuration_rate", structuration_rate, "Pa/s"),
+        alpha=float(destructuration),
+        kinetics=kinetics,
+        gamma_c=si("critical_shear_rate", critical_shear_rate, "1/s"),
+        exponent=float(exponent),
+        saturation=saturation,
+    )
+    at = np.atleast_1d(np.asarray(times, dtype=float))
+    return _tremie.flocculation(at, _segments(history), thixotropy, positive("yield_stress", yield_stress, "Pa"), float(initial))
+
+
+def estimate(
+    spread: Quantity,
+    t500: Optional[Quantity] = None,
+    *,
+    density: Quantity = "2400 kg/m3",
+    spread_error: Quantity = "15 mm",
+    t500_error: Quantity = "0.2 s",
+) -> Result:
+    """Yield stress and plastic viscosity from a slump flow [m] and its t500 [s], by a table of direct runs.
+
+    The errors are one standard error each. `.results` has yield_stress_Pa and plastic_viscosity_Pa_s (value, ci95;
+    None where the table does not reach, and the viscosity without t500) and two closed forms."""
+    measured = _tremie.Measured(
+        spread=positive("spread", spread, "m"),
+        spread_error=positive("spread_error", spread_error, "m"),
+        t500=_optional("t500", t500, "s"),
+        t500_error=positive("t500_error", t500_error, "s"),
+        density=positive("density", density, "kg/m3"),
+    )
+    if si("spread", spread, "m") <= 0.2:
+        raise _tremie.InputError("spread: must be more than the cone's 200 mm at its bottom")
+    results = _tremie.estimate(measured)
+    summary = {"apparatus": "estimate", "status": "completed", "checks": {"reasons": results.pop("reasons")}}
+    return checked(Result({**summary, "results": results}))
