@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <stdexcept>
 
-#include "rheometer/fits/statistics.hpp"
+#include "rheometer/regression/lack_of_fit.hpp"
+#include "rheometer/regression/statistics.hpp"
 
 namespace tremie {
 
@@ -106,6 +108,24 @@ std::optional<Estimate> tell(double value, double variance, double degrees, doub
 
 Estimate given(double value) { return {value, Interval{value, value}, true}; }
 
+std::string misfit_of(std::span<const double> x, std::span<const double> residual, const std::string& what) {
+  const LackOfFit l = lack_of_fit(x, residual);
+  const double whole = std::hypot(l.systematic, l.noise);
+  const double correlation = successive_correlation({residual.begin(), residual.end()});
+  const bool smooth = l.systematic >= 0.02 && l.probability < 1e-3;
+  // a jump is no smooth curve: far above the noise of neighbouring readings, and neighbours miss alike
+  const bool rough = whole >= 0.05 && whole > 5.0 * l.roughness_noise && correlation > 0.5;
+  if (residual.size() < 8 || (!smooth && !rough)) return {};
+  const auto percent = [](double v) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2g %%", 100.0 * v);
+    return std::string(text);
+  };
+  return "the model does not fit: it misses the readings by " + percent(whole) + ", " + percent(l.systematic) +
+         " of it along a smooth curve, where neighbouring readings scatter by " + percent(l.roughness_noise) +
+         ": " + what;
+}
+
 void report(const Readings& readings, const LeastSquaresFit& fit, FitResult& result) {
   double square = 0.0, left_out = 0.0;
   for (std::size_t i = 0; i < readings.size(); ++i) {
@@ -127,7 +147,7 @@ void report(const Readings& readings, const LeastSquaresFit& fit, FitResult& res
   const double misfit = 100.0 * std::sqrt(square / std::max(1.0, n - left_out));
   // An instrument's readings scatter by a few per cent; at this size the record is another material, unit or
   // speed.
-  if (misfit > 25.0)
+  if (misfit > 10.0)
     result.reasons.push_back("the fitted curve misses the readings by " +
                              std::to_string(std::lround(misfit)) +
                              " % (root mean square): check units, speed and what was given as known");

@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "rheometer/fits/fit_common.hpp"
-#include "rheometer/fits/statistics.hpp"
+#include "rheometer/regression/statistics.hpp"
 
 namespace tremie::fitting {
 

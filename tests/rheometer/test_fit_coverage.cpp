@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "rheometer/fits/statistics.hpp"
+#include "rheometer/regression/statistics.hpp"
 #include "tests/verification/fit_coverage.hpp"
 
 namespace tremie::study {

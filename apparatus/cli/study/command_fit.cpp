@@ -29,7 +29,7 @@ constexpr double two_pi = 2.0 * std::numbers::pi;
 struct Options {
   std::string data, out;
   std::string vane_radius, vane_height, container_radius, speed, rest, yield_stress, plastic_viscosity;
-  std::string kinetics = "gated", critical_shear_rate;
+  std::string kinetics = "auto", critical_shear_rate;
   bool quiet = false, force = false;
 };
 
@@ -48,7 +48,10 @@ FitInput input_of(const Options& o) {
   in.rest = quantity("--rest", o.rest, Dimension::time);
   in.tau_0 = quantity("--yield-stress", o.yield_stress, Dimension::pressure);
   in.mu = quantity("--plastic-viscosity", o.plastic_viscosity, Dimension::viscosity);
-  in.kinetics = o.kinetics == "roussel" ? Kinetics::roussel : Kinetics::gated;
+  in.choose_kinetics = o.kinetics == "auto";
+  in.kinetics = o.kinetics == "roussel" ? Kinetics::roussel
+                : o.kinetics == "power" ? Kinetics::power
+                                        : Kinetics::gated;
   in.gamma_c = quantity("--critical-shear-rate", o.critical_shear_rate, Dimension::rate).value_or(in.gamma_c);
   return in;
 }
@@ -111,6 +114,20 @@ Json dropped_json(const FitResult& r) {
   return list;
 }
 
+Json candidates_json(const FitResult& r) {
+  Json list = Json::array();
+  for (const Candidate& c : r.candidates)
+    list.push_back({{"model", c.name},
+                    {"parameters", c.parameters},
+                    {"relative_scatter", c.scatter},
+                    {"residual_correlation", c.correlation},
+                    {"aicc", json_of(c.aicc)},
+                    {"aicc_difference", json_of(c.difference)},
+                    {"fits", c.fits},
+                    {"chosen", c.chosen}});
+  return list;
+}
+
 Json results_json(const FitResult& r) {
   Json j;
   j["kind"] = r.kind == RecordKind::torque_decay ? "torque_decay" : "flow_curve";
@@ -130,6 +147,11 @@ Json results_json(const FitResult& r) {
   j["points_used"] = r.readings;
   j["relative_scatter"] = r.scatter;
   j["residual_correlation"] = r.correlation;
+  j["effective_readings"] = r.effective_readings;
+  j["model"] = r.model;
+  j["exponent"] = json_of(r.exponent);
+  j["models"] = candidates_json(r);
+  j["choice"] = r.choice;
   j["notes"] = r.notes;
   return j;
 }
@@ -159,7 +181,24 @@ void print_estimate(const char* name, const std::optional<Estimate>& e, const ch
     fmt::print("{:<22} {:.4g} {} [{:.4g}, {:.4g}]\n", name, e->value, unit, e->ci95->low, e->ci95->high);
 }
 
+void print_estimate_if(const std::optional<Estimate>& e, const char* name, const char* unit) {
+  if (e) print_estimate(name, e, unit);
+}
+
+void print_candidates(const FitResult& r) {
+  if (r.candidates.size() > 1) {
+    fmt::print("{:<22} {:>10} {:>9} {:>11} {:>8} {:>8}\n", "model", "parameters", "scatter", "correlation",
+               "AICc", "fits");
+    for (const Candidate& c : r.candidates)
+      fmt::print("{:<22} {:>10} {:>7.2f} % {:>11.2f} {:>8} {:>8}\n", (c.chosen ? "* " : "  ") + c.name, c.parameters,
+                 100.0 * c.scatter, c.correlation, c.difference ? fmt::format("+{:.1f}", *c.difference) : "-",
+                 c.fits ? "yes" : "no");
+  }
+  if (!r.choice.empty()) fmt::print("{:<22} {}\n", "chosen", r.choice);
+}
+
 void print_result(const FitResult& r) {
+  print_candidates(r);
   print_estimate("yield stress", r.tau_0, "Pa");
   print_estimate("plastic viscosity", r.mu, "Pa.s");
   if (r.kind == RecordKind::torque_decay) {
@@ -174,6 +213,7 @@ void print_result(const FitResult& r) {
           "apparent alpha", all.alpha_newtonian_rate, all.window, r.apparent->newtonian_rate);
     }
   }
+  print_estimate_if(r.exponent, "exponent n", "");
   if (r.plug) fmt::print("{:<22} {}\n", "plug", *r.plug ? "yes" : "no");
   fmt::print("{:<22} {} used, {} dropped, scatter {:.2g} %\n", "readings", r.readings, r.dropped_count,
              100.0 * r.scatter);
@@ -228,7 +268,7 @@ void add_command_fit(CLI::App& app, int& exit_code) {
   command->add_option("--yield-stress", o->yield_stress, "dynamic, where it is known: \"54 Pa\"");
   command->add_option("--plastic-viscosity", o->plastic_viscosity, "where it is known: \"35.8 Pa.s\"");
   command->add_option("--kinetics", o->kinetics, "of the flocculation")
-      ->check(CLI::IsMember({"gated", "roussel"}));
+      ->check(CLI::IsMember({"auto", "gated", "roussel", "power"}));
   command->add_option("--critical-shear-rate", o->critical_shear_rate,
                       "of the gated kinetics, \"0.1 1/s\" by default");
   command->add_option("--out", o->out, "Folder for the result (default: runs/<record's name>)");
