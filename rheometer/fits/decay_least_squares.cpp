@@ -77,7 +77,8 @@ void search_valley(const DecayModel& model, const Readings& r, const FitInput& i
   std::vector<double> fitted(r.size());
   double best = std::numeric_limits<double>::infinity();
   const std::vector<double> exponents = power ? std::vector{1.5, 2.2, 3.5} : std::vector{1.0};
-  const std::vector<double> yield_shares = power && !in.tau_0 ? std::vector{1.0, 0.2, 0.03} : std::vector{1.0};
+  const std::vector<double> yield_shares =
+      power && !in.tau_0 ? std::vector{1.0, 0.2, 0.03} : std::vector{1.0};
   const std::vector<double> viscosity_shares = power && !in.mu ? std::vector{1.0, 0.3} : std::vector{1.0};
   for (const double n : exponents)
     for (const double yield_share : yield_shares)

@@ -6,9 +6,9 @@
 #include "rheometer/fits/apparent_alpha.hpp"
 #include "rheometer/fits/decay_least_squares.hpp"
 #include "rheometer/fits/fit_common.hpp"
-#include "rheometer/regression/statistics.hpp"
 #include "rheometer/reference/thixotropic_couette.hpp"
 #include "rheometer/regression/lack_of_fit.hpp"
+#include "rheometer/regression/statistics.hpp"
 
 namespace tremie::fitting {
 
@@ -187,7 +187,8 @@ void report_apparent(const Readings& r, const FitInput& in, const Teller& told, 
 }
 
 /// Residuals and times without outliers.
-std::pair<std::vector<double>, std::vector<double>> kept_residuals(const Readings& r, const LeastSquaresFit& f) {
+std::pair<std::vector<double>, std::vector<double>> kept_residuals(const Readings& r,
+                                                                   const LeastSquaresFit& f) {
   std::pair<std::vector<double>, std::vector<double>> kept;
   for (std::size_t i = 0; i < r.size(); ++i) {
     if (f.outlier[i]) continue;
@@ -212,7 +213,8 @@ double common_mean_square(const std::vector<DecayFit>& fits, const LeastSquaresF
   double sum = 0.0;
   n = 0.0;
   for (std::size_t i = 0; i < judged.residual.size(); ++i) {
-    if (std::all_of(fits.begin(), fits.end(), [&](const DecayFit& f) { return f.fit.outlier[i] != 0; })) continue;
+    if (std::all_of(fits.begin(), fits.end(), [&](const DecayFit& f) { return f.fit.outlier[i] != 0; }))
+      continue;
     sum += judged.residual[i] * judged.residual[i];
     n += 1.0;
   }
@@ -301,7 +303,8 @@ FitResult fit_torque_decay(const TorqueRecord& record, const FitInput& input) {
   FitResult result;
   result.kind = RecordKind::torque_decay;
   const Readings r = readings_of(record, result);
-  const std::size_t unknowns = 2u + !in.tau_0 + !in.mu + (!in.choose_kinetics && in.kinetics == Kinetics::power);
+  const std::size_t unknowns =
+      2u + !in.tau_0 + !in.mu + (!in.choose_kinetics && in.kinetics == Kinetics::power);
   if (r.size() <= unknowns)
     throw std::invalid_argument("a torque decay needs more than " + std::to_string(unknowns) + " rows for " +
                                 std::to_string(unknowns) + " unknowns; " + std::to_string(r.size()) +

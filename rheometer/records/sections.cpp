@@ -88,7 +88,8 @@ double highest(const std::vector<double>& omega, std::size_t begin, std::size_t 
                            omega.begin() + static_cast<std::ptrdiff_t>(end));
 }
 
-Section flow_curve(const std::vector<double>& omega, std::size_t begin, std::size_t end, bool up, bool stepped) {
+Section flow_curve(const std::vector<double>& omega, std::size_t begin, std::size_t end, bool up,
+                   bool stepped) {
   Section s;
   s.kind = up ? SectionKind::flow_curve_up : SectionKind::flow_curve_down;
   s.begin = begin;
@@ -131,7 +132,8 @@ std::size_t steps_from(const std::vector<Piece>& pieces, const std::vector<doubl
 }
 
 /// Sections of rows in which the vane turns.
-void add_shear(const std::vector<double>& omega, std::size_t begin, std::size_t end, std::vector<Section>& sections) {
+void add_shear(const std::vector<double>& omega, std::size_t begin, std::size_t end,
+               std::vector<Section>& sections) {
   const std::vector<Piece> pieces = without_transitions(pieces_of(omega, begin, end));
   std::vector<double> speed;
   for (const Piece& p : pieces) speed.push_back(median_speed(omega, p));
@@ -245,13 +247,14 @@ ProtocolRecord parse_protocol_record(std::string_view bytes, const std::string& 
   const double fastest = highest(record.omega, 0, record.omega.size());
   for (std::size_t i = 0; i < record.torque.size(); ++i)
     if (record.torque[i] < 0.0 && record.omega[i] > 5e-4 * fastest)
-      throw RecordError(at_position(name, record.line[i], table.position[2],
-                                    "the torque is negative while the vane turns; give its magnitude, or the offset "
-                                    "of the unloaded instrument, --torque-offset \"-0.3 mN.m\""));
+      throw RecordError(
+          at_position(name, record.line[i], table.position[2],
+                      "the torque is negative while the vane turns; give its magnitude, or the offset "
+                      "of the unloaded instrument, --torque-offset \"-0.3 mN.m\""));
   if (!record.restarts.empty())
     record.understood.push_back("the clock starts again at " + std::to_string(record.restarts.size()) +
-                                " rows, the first on line " + std::to_string(record.line[record.restarts[0]]) +
-                                "; time is carried on");
+                                " rows, the first on line " +
+                                std::to_string(record.line[record.restarts[0]]) + "; time is carried on");
   return record;
 }
 

@@ -28,10 +28,10 @@ enum class SectionKind { rest, start_up, constant_rate, flow_curve_up, flow_curv
 struct Section {
   SectionKind kind = SectionKind::other;
   std::size_t begin = 0, end = 0;
-  double omega = 0.0;         ///< median speed [rad/s]; of a flow curve the highest
-  double rest_before = 0.0;   ///< [s]; 0: none
-  bool pre_shear = false;     ///< the first shear of several sections, at the highest speed
-  bool stepped = false;       ///< flow curve in steps of constant speed
+  double omega = 0.0;        ///< median speed [rad/s]; of a flow curve the highest
+  double rest_before = 0.0;  ///< [s]; 0: none
+  bool pre_shear = false;    ///< the first shear of several sections, at the highest speed
+  bool stepped = false;      ///< flow curve in steps of constant speed
 };
 
 /// "rest", "start-up", "constant rate", "flow curve up", ...
@@ -39,7 +39,8 @@ std::string_view name_of(SectionKind kind);
 
 /// Reads an export with time, speed and torque. `torque_offset` [N m] of the unloaded instrument is taken off. Throws
 /// RecordError for anything else, and for a negative torque in shear.
-ProtocolRecord parse_protocol_record(std::string_view text, const std::string& name, double torque_offset = 0.0);
+ProtocolRecord parse_protocol_record(std::string_view text, const std::string& name,
+                                     double torque_offset = 0.0);
 
 /// The columns of a table of torque_quantities as they stand, time carried on and speeds without their sign.
 ProtocolRecord protocol_of(const NumberTable& table);

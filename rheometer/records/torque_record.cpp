@@ -78,7 +78,8 @@ double keep_decay(NumberTable& table, const std::string& name, std::vector<std::
   const Section* found = nullptr;
   for (const Section& s : sections) {
     const bool shear = s.kind == SectionKind::constant_rate || s.kind == SectionKind::start_up;
-    if (shear && s.end - s.begin >= 8 && (!found || (found->kind == SectionKind::start_up && s.kind != found->kind)))
+    if (shear && s.end - s.begin >= 8 &&
+        (!found || (found->kind == SectionKind::start_up && s.kind != found->kind)))
       found = &s;
   }
   if (!found)
@@ -93,8 +94,7 @@ double keep_decay(NumberTable& table, const std::string& name, std::vector<std::
                        std::to_string(table.line.size() - (found->end - begin)) +
                        " rows are not used (--protocol reads them all)");
   const auto cut = [&](auto& v) {
-    v = {v.begin() + static_cast<std::ptrdiff_t>(begin),
-         v.begin() + static_cast<std::ptrdiff_t>(found->end)};
+    v = {v.begin() + static_cast<std::ptrdiff_t>(begin), v.begin() + static_cast<std::ptrdiff_t>(found->end)};
   };
   table.column[0] = record.time;
   if (begin > found->begin) {  // the breakdown starts here; else the shear starts with the section

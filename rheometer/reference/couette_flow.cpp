@@ -50,7 +50,8 @@ struct Driven {
 /// The integral over y = (tau - tau_0)/(stress - tau_0) = v^4, in which y^(1/n) is smooth from the edge of the plug on,
 /// by Gauss' rule with eight points on four intervals.
 Driven driven_by(double stress, const HerschelBulkleyFluid& f, double outer_share) {
-  static constexpr double node[] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
+  static constexpr double node[] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
+                                    0.9602898564975363};
   static constexpr double weight[] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
                                       0.1012285362903763};
   constexpr int intervals = 4;
@@ -84,8 +85,10 @@ Driven driven_by(double stress, const HerschelBulkleyFluid& f, double outer_shar
 
 }  // namespace
 
-HerschelBulkleyTorque herschel_bulkley_torque(const HerschelBulkleyFluid& f, double omega, const Instrument& in) {
-  if (!(omega > 0.0) || !(f.k > 0.0)) throw std::invalid_argument("the cylinder must turn, and k be greater than 0");
+HerschelBulkleyTorque herschel_bulkley_torque(const HerschelBulkleyFluid& f, double omega,
+                                              const Instrument& in) {
+  if (!(omega > 0.0) || !(f.k > 0.0))
+    throw std::invalid_argument("the cylinder must turn, and k be greater than 0");
   const double ratio = in.vane_radius / in.container_radius, share = ratio * ratio;
   double low = f.tau_0, high = f.tau_0 + f.k * std::pow(2.0 * omega, f.n) + 1e-12;
   while (driven_by(high, f, share).speed < omega) low = high, high *= 2.0;
@@ -108,8 +111,9 @@ HerschelBulkleyTorque herschel_bulkley_torque(const HerschelBulkleyFluid& f, dou
   t.d_tau_0 = -d.d_tau_0 * by_stress;
   t.d_k = -d.d_k * by_stress;
   t.d_n = d.d_s / (f.n * f.n) * by_stress;
-  t.sheared_radius = f.tau_0 > 0.0 ? std::min(in.container_radius, in.vane_radius * std::sqrt(stress / f.tau_0))
-                                   : in.container_radius;
+  t.sheared_radius = f.tau_0 > 0.0
+                         ? std::min(in.container_radius, in.vane_radius * std::sqrt(stress / f.tau_0))
+                         : in.container_radius;
   return t;
 }
 

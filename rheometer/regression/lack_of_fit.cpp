@@ -19,8 +19,10 @@ Eigen::MatrixXd smooth_basis(std::span<const double> x, Eigen::Index columns) {
   const double span = x.back() - x.front();
   for (Eigen::Index i = 0; i < n; ++i) {
     const double u =
-        span > 0.0 ? 2.0 * std::log1p(30.0 * (x[static_cast<std::size_t>(i)] - x.front()) / span) / std::log(31.0) - 1.0
-                   : 0.0;
+        span > 0.0
+            ? 2.0 * std::log1p(30.0 * (x[static_cast<std::size_t>(i)] - x.front()) / span) / std::log(31.0) -
+                  1.0
+            : 0.0;
     double before = 1.0, now = u;
     basis(i, 0) = 1.0;
     for (Eigen::Index k = 1; k < columns; ++k) {

@@ -10,11 +10,11 @@
 namespace tremie {
 
 struct LackOfFit {
-  double systematic = 0.0;      ///< root mean square of the smooth part
-  double noise = 0.0;           ///< root mean square of what is left
-  double correlation = 0.0;     ///< of successive values of what is left
-  double probability = 1.0;     ///< that noise alone gives as much
-  double roughness_noise = 0.0; ///< noise by second differences, blind to every smooth curve and every jump
+  double systematic = 0.0;       ///< root mean square of the smooth part
+  double noise = 0.0;            ///< root mean square of what is left
+  double correlation = 0.0;      ///< of successive values of what is left
+  double probability = 1.0;      ///< that noise alone gives as much
+  double roughness_noise = 0.0;  ///< noise by second differences, blind to every smooth curve and every jump
 };
 
 /// `x` ascending, `residual` one a reading, both without outliers. Fewer than 8 readings tell nothing: probability 1.

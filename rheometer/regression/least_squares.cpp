@@ -231,7 +231,9 @@ std::vector<std::size_t> without_runs(const std::vector<std::size_t>& found, con
   const auto last = static_cast<std::size_t>(robust.residual.size()) - 1;
   std::vector<std::size_t> kept;
   for (std::size_t from = 0, to = 0; from < found.size(); from = to) {
-    const auto high = [&](std::size_t k) { return robust.residual(static_cast<Eigen::Index>(found[k])) > 0.0; };
+    const auto high = [&](std::size_t k) {
+      return robust.residual(static_cast<Eigen::Index>(found[k])) > 0.0;
+    };
     for (to = from + 1; to < found.size() && found[to] == found[to - 1] + 1 && high(to) == high(from);) ++to;
     if (found[from] != 0 && to - from < (found[to - 1] == last ? 2u : 3u))
       for (std::size_t k = from; k < to; ++k) kept.push_back(found[k]);

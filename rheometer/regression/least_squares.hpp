@@ -38,7 +38,7 @@ struct LeastSquaresFit {
 struct LeastSquaresOptions {
   /// Then correlated residuals widen the covariance, and neighbours that miss alike are no outliers.
   bool readings_in_time_order = false;
-  double parameter_tolerance = 1e-10;   ///< relative change of the parameters to stop at
+  double parameter_tolerance = 1e-10;  ///< relative change of the parameters to stop at
   int max_iterations = 60;
 };
 
