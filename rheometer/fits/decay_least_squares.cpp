@@ -168,15 +168,19 @@ LeastSquaresFit least_squares(const DecayModel& model, const Readings& r, const 
 
 }  // namespace
 
-DecayFit fit_decay(const Readings& r, const FitInput& in, std::size_t rows) {
+DecayFit fit_decay(const Readings& r, const FitInput& in) {
   DecayFit result;
   result.kinetics = in.kinetics;
   result.layout = first_guess(r, in);
-  // so many rows tell more than the usual grid's error of 1e-4 of the torque
-  const DecayModel model(in, r.x, rows > 20000 ? 200 : 100);
   search_valley(DecayModel(in, r.x, 40), r, in, result.layout);  // it only has to tell the valley
-  result.fit = least_squares(model, r, result.layout);
+  result.fit = least_squares(DecayModel(in, r.x, 100), r, result.layout);
   return result;
+}
+
+DecayFit refined(const Readings& r, const FitInput& in, DecayFit fit, int intervals) {
+  fit.layout.all = fit.parameters();
+  fit.fit = least_squares(DecayModel(in, r.x, intervals), r, fit.layout);
+  return fit;
 }
 
 }  // namespace tremie::fitting

@@ -42,8 +42,10 @@ struct DecayFit {
   DecayParameters parameters() const { return layout.with(fit.parameters); }
 };
 
-/// Fits with in.kinetics. `rows` of the record, whose number decides the model's grid. Throws std::runtime_error where
-/// the model has no solution.
-DecayFit fit_decay(const Readings& r, const FitInput& in, std::size_t rows);
+/// Fits with in.kinetics on 100 intervals of the gap. Throws std::runtime_error where the model has no solution.
+DecayFit fit_decay(const Readings& r, const FitInput& in);
+
+/// The same fit, continued on another number of intervals.
+DecayFit refined(const Readings& r, const FitInput& in, DecayFit fit, int intervals);
 
 }  // namespace tremie::fitting

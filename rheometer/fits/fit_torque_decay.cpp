@@ -15,6 +15,7 @@ namespace tremie::fitting {
 namespace {
 
 constexpr std::size_t most_readings = 2000;
+const std::string before_peak = "before the torque's peak";
 
 // --- the record
 // ---------------------------------------------------------------------------------------------------
@@ -35,6 +36,18 @@ double scatter_of(const std::vector<double>& torque) {
   for (std::size_t i = 2; i < torque.size(); ++i)
     second.push_back(torque[i] - 2.0 * torque[i - 1] + torque[i - 2]);
   return robust_deviation(second) / std::sqrt(6.0);
+}
+
+/// Single readings far from all their neighbours: a stone in the gap, a bit that was lost. The first reading, which may be
+/// the peak, is none.
+std::vector<char> spikes_of(const Readings& r) {
+  std::vector<char> spike(r.size(), 0);
+  if (r.size() < 8) return spike;
+  const std::vector<double> smooth = running_median(r.torque);
+  const double noise = scatter_of(r.torque);
+  for (std::size_t i = 1; i < r.size(); ++i)
+    spike[i] = std::abs(r.torque[i] - smooth[i]) > std::max(10.0 * noise, 0.4 * smooth[i]);
+  return spike;
 }
 
 /// Number of leading rows in which the torque still rises: the vane starts, the material is strained
@@ -61,10 +74,14 @@ Readings readings_of(const TorqueRecord& record, FitResult& result) {
     else
       all.push(record.time[i], record.torque[i], 1.0, record.line[i]);
   }
+  const std::vector<char> spike = spikes_of(all);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (spike[i]) drop(result, all.line[i], all.x[i], all.torque[i], "spike among its neighbours");
+  all = without(all, spike);
   const std::size_t rising = rising_rows(all);
   std::vector<char> leave_out(all.size(), 0);
   for (std::size_t i = 0; i < rising; ++i) {
-    drop(result, all.line[i], all.x[i], all.torque[i], "before the torque's peak");
+    drop(result, all.line[i], all.x[i], all.torque[i], before_peak);
     leave_out[i] = 1;
   }
   Readings kept = without(all, leave_out);
@@ -259,8 +276,8 @@ std::size_t choose(const Readings& r, const std::vector<DecayFit>& fits, FitResu
 }
 
 /// Fits of the kinetics that are asked for, in order of their complexity; one that has no solution is left out.
-std::vector<DecayFit> fit_candidates(const Readings& r, FitInput in, std::size_t rows) {
-  if (!in.choose_kinetics) return {fit_decay(r, in, rows)};
+std::vector<DecayFit> fit_candidates(const Readings& r, FitInput in) {
+  if (!in.choose_kinetics) return {fit_decay(r, in)};
   std::vector<DecayFit> fits;
   std::string failure;
   for (const Kinetics k : {Kinetics::gated, Kinetics::roussel, Kinetics::power}) {
@@ -269,13 +286,31 @@ std::vector<DecayFit> fit_candidates(const Readings& r, FitInput in, std::size_t
     if (k == Kinetics::roussel && !in.rest) continue;
     if (r.size() <= 2u + !in.tau_0 + !in.mu + (k == Kinetics::power)) continue;
     try {
-      fits.push_back(fit_decay(r, in, rows));
+      fits.push_back(fit_decay(r, in));
     } catch (const std::runtime_error& error) {
       failure = error.what();
     }
   }
   if (fits.empty()) throw std::runtime_error(failure);
   return fits;
+}
+
+/// A torque that is level or rises shows no breakdown, whatever curve can be laid through it; with neither yield stress nor
+/// viscosity known it then splits into anything.
+void judge_fall(const Readings& r, std::size_t rows, const FitInput& in, FitResult& result) {
+  const double first = mean_torque(r, 0.0, 0.05), last = mean_torque(r, 0.9, 1.0);
+  const double noise = scatter_of(r.torque) / std::sqrt(std::max(1.0, 0.05 * static_cast<double>(r.size())));
+  const long before = std::count_if(result.dropped.begin(), result.dropped.end(),
+                                    [](const DroppedPoint& p) { return p.reason == before_peak; });
+  if (2 * static_cast<std::size_t>(std::max(before, result.dropped_count)) > rows && before > 0)
+    result.reasons.push_back("the torque rises over most of the record: no decay");
+  else if (last > 1.03 * first && last > first + 4.0 * noise)
+    result.reasons.push_back(
+        "the torque rises at the end of the record, which no breakdown at a constant speed does");
+  else if (!(in.tau_0 && in.mu) && last > 0.97 * first && last >= first - 4.0 * noise)
+    result.reasons.push_back(
+        "the torque is level: nothing breaks down, and one torque tells neither yield stress nor "
+        "viscosity nor flocculation");
 }
 
 /// A model that does not describe the record tells none of its parameters.
@@ -311,10 +346,14 @@ FitResult fit_torque_decay(const TorqueRecord& record, const FitInput& input) {
                                 " found" + (result.dropped_count > 0 ? " behind the torque's peak" : ""));
   if (!(r.x.back() > 0.0)) throw std::invalid_argument("all rows have the same time");
 
-  const std::vector<DecayFit> fits = fit_candidates(r, in, record.torque.size());
-  const DecayFit& best = fits[choose(r, fits, result)];
+  // so many rows tell more than the usual grid's error of 1e-4 of the torque
+  const bool fine = record.torque.size() > 20000;
+  const std::vector<DecayFit> fits = fit_candidates(r, in);
+  DecayFit best = fits[choose(r, fits, result)];
   in.kinetics = best.kinetics;
+  if (fine) best = refined(r, in, std::move(best), 200);
   result.model = name_of(best.kinetics);
+  judge_fall(r, record.torque.size(), in, result);
   const Teller told{best.layout, best.fit, best.parameters()};
   report(r, best.fit, result);
   result.effective_readings = effective_number(static_cast<double>(r.size()), best.fit.correlation);

@@ -23,8 +23,9 @@ std::size_t peak_of(const ProtocolRecord& r, const Section& s) {
 TorqueRecord decay_of(const ProtocolRecord& r, const Section& s) {
   TorqueRecord d;
   d.kind = RecordKind::torque_decay;
-  for (std::size_t i = peak_of(r, s); i < s.end; ++i) {
-    d.time.push_back(r.time[i] - r.time[peak_of(r, s)]);
+  const std::size_t peak = peak_of(r, s);
+  for (std::size_t i = peak; i < s.end; ++i) {
+    d.time.push_back(r.time[i] - r.time[peak]);
     d.torque.push_back(r.torque[i]);
     d.line.push_back(r.line[i]);
   }
