@@ -22,9 +22,9 @@ TEST(InstrumentExport, ReadsTheMeasuredExport) {
   const TorqueRecord r = read_torque_record(TREMIE_REFERENCE_DATA "/rheocem/SYS_0.55_250_1.csv");
   ASSERT_EQ(r.kind, RecordKind::torque_decay);
   EXPECT_NEAR(r.speed, angular_speed(40.0 / 60.0), 1e-3);
-  EXPECT_EQ(r.line.front(), 13);
-  EXPECT_DOUBLE_EQ(r.time.front(), 1.5);
-  EXPECT_NEAR(r.torque.front(), 0.15824, 1e-12);
+  EXPECT_EQ(r.line.front(), 12);  // the peak, while the vane gathers speed
+  EXPECT_DOUBLE_EQ(r.time.front(), 0.0);
+  EXPECT_NEAR(r.torque.front(), 0.22721, 1e-12);
   EXPECT_GE(r.understood.size(), 5u);
 }
 
