@@ -219,6 +219,11 @@ double mean_square(const LeastSquaresFit& f) {
   return sum / static_cast<double>(f.residual.size());
 }
 
+/// A flow index at an end of its range is no measurement of it.
+bool at_bound(const Fitted& f) {
+  return f.law == FlowLaw::herschel_bulkley && (f.fluid.n < 0.201 || f.fluid.n > 1.999);
+}
+
 /// Every reading is one speed held for a while or a mean: they count as independent.
 Fitted choose(const Readings& r, const FitInput& input, FitResult& result) {
   std::vector<Fitted> fits;
@@ -231,7 +236,9 @@ Fitted choose(const Readings& r, const FitInput& input, FitResult& result) {
   const auto n = static_cast<double>(r.size());
   std::vector<double> aicc;
   for (const Fitted& f : fits)
-    aicc.push_back(corrected_akaike(mean_square(f.fit), n, static_cast<int>(f.free.size())));
+    aicc.push_back(fits.size() > 1 && at_bound(f)
+                       ? HUGE_VAL
+                       : corrected_akaike(mean_square(f.fit), n, static_cast<int>(f.free.size())));
   const auto best = static_cast<std::size_t>(std::min_element(aicc.begin(), aicc.end()) - aicc.begin());
   for (std::size_t i = 0; i < fits.size(); ++i) {
     const bool finite = std::isfinite(aicc[i]);
@@ -308,6 +315,9 @@ FitResult fit_flow_curve(const TorqueRecord& record, const FitInput& input) {
   if (f.fluid.k <= 0.0)
     result.notes.push_back(
         "plastic_viscosity: the torque does not rise with the speed, so the record cannot tell it");
+  if (at_bound(f))
+    result.reasons.push_back(
+        "the flow index lies at the end of its range, 0.2 to 2: the law does not describe the record");
   if (torque_falls(r))
     result.reasons.push_back(
         "the torque falls as the speed rises, which neither a Bingham nor a Herschel-Bulkley "

@@ -305,8 +305,15 @@ LeastSquaresFit fit_least_squares(const LeastSquaresProblem& p, const LeastSquar
   fit.told = plain.told;
   Matrix covariance = parameter_covariance(plain, variance);
   const double significant = 3.0 / std::sqrt(static_cast<double>(plain.residual.size()));
-  if (options.readings_in_time_order && fit.correlation > significant)
-    covariance *= (1.0 + fit.correlation) / std::max(0.05, 1.0 - fit.correlation);
+  if (options.readings_in_time_order && fit.correlation > significant) {
+    // what the parameters take with them makes the correlation read low, by (1 + 3 rho + parameters)/n
+    const auto readings = static_cast<double>(plain.residual.size()),
+               p_count = static_cast<double>(fit.parameters.size());
+    const double rho = std::min(0.98, fit.correlation + (1.0 + 3.0 * fit.correlation + p_count) / readings);
+    covariance *= (1.0 + rho) / (1.0 - rho);
+    const double independent = readings * (1.0 - rho) / (1.0 + rho);
+    fit.degrees_of_freedom = std::min(fit.degrees_of_freedom, std::max(3.0, independent - p_count));
+  }
   fit.covariance.assign(covariance.data(), covariance.data() + covariance.size());
   return fit;
 }

@@ -28,18 +28,6 @@ TEST(InstrumentExport, ReadsTheMeasuredExport) {
   EXPECT_GE(r.understood.size(), 5u);
 }
 
-// Its decay is not an exponential of lambda's: 7.7 % scatter about one. No parameters without a reason.
-TEST(InstrumentExport, TheMeasuredDecayIsSaidNotToFit) {
-  const TorqueRecord r = read_torque_record(TREMIE_REFERENCE_DATA "/rheocem/SYS_0.55_250_1.csv");
-  FitInput in;
-  in.instrument = {.vane_radius = 0.02, .vane_height = 0.06, .container_radius = 0.05};
-  in.omega = r.speed;
-  const FitResult result = fit(r, in);
-  EXPECT_FALSE(result.reasons.empty());
-  EXPECT_FALSE(result.mu.has_value());  // one speed
-  EXPECT_FALSE(result.tau_0.has_value());
-}
-
 // Made in the layout of an ICAR-like log: Latin-1, semicolons, decimal commas with thousands points, a repeated header.
 TEST(InstrumentExport, ReadsLatin1WithDecimalCommasAndARepeatedHeader) {
   std::string text =

@@ -11,11 +11,11 @@
 #include <nlohmann/json.hpp>
 
 #include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/fit/fit_output.hpp"
+#include "apparatus/cli/fit/fit_protocol.hpp"
 #include "apparatus/cli/options/quantity.hpp"
 #include "apparatus/cli/program.hpp"
 #include "apparatus/cli/study/charts.hpp"
-#include "apparatus/cli/study/fit_output.hpp"
-#include "apparatus/cli/study/fit_protocol.hpp"
 #include "apparatus/report/rheometer_files.hpp"
 #include "apparatus/report/run_folder.hpp"
 #include "apparatus/scene/input_error.hpp"

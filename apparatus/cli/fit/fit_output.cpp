@@ -1,4 +1,4 @@
-#include "apparatus/cli/study/fit_output.hpp"
+#include "apparatus/cli/fit/fit_output.hpp"
 
 #include <fmt/format.h>
 

@@ -1,10 +1,10 @@
-#include "apparatus/cli/study/fit_protocol.hpp"
+#include "apparatus/cli/fit/fit_protocol.hpp"
 
 #include <fmt/format.h>
 
 #include <numbers>
 
-#include "apparatus/cli/study/fit_output.hpp"
+#include "apparatus/cli/fit/fit_output.hpp"
 
 namespace tremie::cli {
 
