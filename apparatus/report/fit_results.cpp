@@ -1,13 +1,10 @@
 #include "apparatus/report/fit_results.hpp"
 
-#include <nlohmann/json.hpp>
 #include <numbers>
 
 namespace tremie::report {
-namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr double two_pi = 2.0 * std::numbers::pi;
 
 Json json_of(const std::optional<Estimate>& e) {
   if (!e) return nullptr;
@@ -17,10 +14,9 @@ Json json_of(const std::optional<Estimate>& e) {
   return json;
 }
 
-template <class T>
-Json json_of(const std::optional<T>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
+namespace {
+
+constexpr double two_pi = 2.0 * std::numbers::pi;
 
 Json apparent_json(const FitResult& r) {
   if (!r.apparent) return nullptr;
@@ -49,6 +45,20 @@ Json dropped_json(const FitResult& r) {
   return list;
 }
 
+Json candidates_json(const FitResult& r) {
+  Json list = Json::array();
+  for (const Candidate& c : r.candidates)
+    list.push_back({{"model", c.name},
+                    {"parameters", c.parameters},
+                    {"relative_scatter", c.scatter},
+                    {"residual_correlation", c.correlation},
+                    {"aicc", json_of(c.aicc)},
+                    {"aicc_difference", json_of(c.difference)},
+                    {"fits", c.fits},
+                    {"chosen", c.chosen}});
+  return list;
+}
+
 }  // namespace
 
 Json fit_results(const FitResult& r) {
@@ -70,6 +80,13 @@ Json fit_results(const FitResult& r) {
   j["points_used"] = r.readings;
   j["relative_scatter"] = r.scatter;
   j["residual_correlation"] = r.correlation;
+  j["effective_readings"] = r.effective_readings;
+  j["model"] = r.model;
+  j["consistency_Pa_s_n"] = json_of(r.consistency);
+  j["flow_index"] = json_of(r.flow_index);
+  j["exponent"] = json_of(r.exponent);
+  j["models"] = candidates_json(r);
+  j["choice"] = r.choice;
   j["notes"] = r.notes;
   return j;
 }

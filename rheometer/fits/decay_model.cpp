@@ -25,6 +25,19 @@ std::vector<double> slopes(const std::vector<double>& x, const std::vector<doubl
 
 }  // namespace
 
+double alpha_of(const DecayParameters& p) {
+  return p[4] == 1.0 || !(p[2] > 0.0) ? p[3] : p[3] * std::pow(p[2], 1.0 - p[4]);
+}
+
+Thixotropy thixotropy_of(const DecayParameters& p, const FitInput& in) {
+  // at rest before the test lambda grew from 0 to lambda_0, equation (8)
+  const double A_thix = in.rest ? p[2] * p[0] / *in.rest : 0.0;
+  Thixotropy t{A_thix, alpha_of(p), in.kinetics, in.gamma_c, p[2]};
+  t.exponent = p[4];
+  if (in.kinetics == Kinetics::power) t.gamma_c = 0.0;
+  return t;
+}
+
 DecayModel::DecayModel(const FitInput& input, const std::vector<double>& times, int intervals)
     : input_(input), intervals_(intervals) {
   constexpr int pieces = 120;
@@ -42,9 +55,7 @@ void DecayModel::torque(const DecayParameters& p, std::span<double> result) cons
   CouetteFlow flow;
   flow.bingham = {p[0], p[1]};
   flow.omega = *input_.omega;
-  // at rest before the test lambda grew from 0 to lambda_0, equation (8)
-  const double A_thix = input_.rest ? p[2] * p[0] / *input_.rest : 0.0;
-  flow.thixotropy = {A_thix, p[3], input_.kinetics, input_.gamma_c, p[2]};
+  flow.thixotropy = thixotropy_of(p, input_);
   CouetteOptions options;
   options.intervals = intervals_;
   options.relative_tolerance =

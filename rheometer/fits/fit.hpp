@@ -21,15 +21,20 @@
 
 namespace tremie {
 
+enum class FlowLaw { bingham, herschel_bulkley, automatic };
+
 /// What is known besides the record.
 struct FitInput {
   Instrument instrument;
-  std::optional<double> tau_0;  ///< dynamic yield stress [Pa]
-  std::optional<double> mu;     ///< plastic viscosity [Pa s]
-  std::optional<double> omega;  ///< speed of a torque decay [rad/s]; a decay needs it
-  std::optional<double> rest;   ///< rest before a torque decay [s]
-  Kinetics kinetics = Kinetics::gated;
-  double gamma_c = 0.1;  ///< critical shear rate of the gate [1/s]
+  std::optional<double> tau_0;          ///< dynamic yield stress [Pa]
+  std::optional<double> mu;             ///< plastic viscosity [Pa s]
+  std::optional<double> omega;          ///< speed of a torque decay [rad/s]; a decay needs it
+  std::optional<double> rest;           ///< rest before a torque decay [s]
+  Kinetics kinetics = Kinetics::gated;  ///< power: without a gate and without a saturation
+  double max_aggregate = 0.0;           ///< largest grain [m]; 0: not known
+  bool choose_kinetics = false;         ///< fit each kinetics and take the one that the record supports best
+  FlowLaw law = FlowLaw::bingham;       ///< of a flow curve
+  double gamma_c = 0.1;                 ///< critical shear rate of the gate [1/s]
 };
 
 struct Interval {
@@ -71,8 +76,23 @@ struct FittedCurve {
   std::vector<double> standard_error;       ///< of the fitted torque [N m]
 };
 
+/// One of the models that were compared.
+struct Candidate {
+  std::string name;
+  int parameters = 0;
+  double scatter = 0.0, correlation = 0.0;  ///< of its residuals
+  std::optional<double> aicc, difference;   ///< corrected Akaike criterion; difference to the smallest
+  bool fits = false, chosen = false;
+};
+
 struct FitResult {
   RecordKind kind = RecordKind::flow_curve;
+  std::string model;                                ///< kinetics or law: "power", "bingham"
+  std::optional<Estimate> exponent;                 ///< n of the power kinetics
+  std::optional<Estimate> consistency, flow_index;  ///< of Herschel-Bulkley [Pa s^n]
+  std::vector<Candidate> candidates;
+  std::string choice;               ///< which model and why
+  double effective_readings = 0.0;  ///< independent readings that carry as much as those used
   std::optional<Estimate> tau_0, mu, static_yield_stress, lambda_0, alpha, A_thix;
   std::optional<ApparentReading> apparent;
   std::optional<bool> plug;              ///< part of the gap is at rest at some reading

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <stdexcept>
 
-#include "rheometer/fits/statistics.hpp"
+#include "rheometer/regression/lack_of_fit.hpp"
+#include "rheometer/regression/statistics.hpp"
 
 namespace tremie {
 
@@ -28,6 +30,33 @@ void judge_sizes(const TorqueRecord& record, const FitInput& input, FitResult& r
                              " rev/s: is the speed's unit right?");
 }
 
+/// What the parameters hold for: a gap of 3 grains is no continuum, 5 are the usual demand (Feys et al. 2018).
+void judge_gap(const FitInput& in, FitResult& result) {
+  const double gap = in.instrument.container_radius - in.instrument.vane_radius;
+  char text[300];
+  if (in.max_aggregate > 0.0 && gap < 5.0 * in.max_aggregate) {
+    std::snprintf(
+        text, sizeof text,
+        "the gap of %.3g mm is %.2g maximum grains: %s; the parameters hold for this gap, not for the "
+        "material",
+        1e3 * gap, gap / in.max_aggregate,
+        gap < 3.0 * in.max_aggregate ? "under 3, where grains jam" : "under 5, where grains still matter");
+    (gap < 3.0 * in.max_aggregate ? result.reasons : result.notes).push_back(text);
+  }
+  if (!result.plug || !*result.plug || !result.sheared_radius) return;
+  const double sheared = *result.sheared_radius - in.instrument.vane_radius;
+  std::snprintf(text, sizeof text,
+                "plug: at the least sheared reading the material beyond %.3g mm stands still",
+                1e3 * *result.sheared_radius);
+  result.notes.push_back(text);
+  if (in.max_aggregate > 0.0 && sheared < 3.0 * in.max_aggregate) {
+    std::snprintf(text, sizeof text,
+                  "the sheared layer is as thin as %.2g mm, %.2g maximum grains, at a reading", 1e3 * sheared,
+                  sheared / in.max_aggregate);
+    result.notes.push_back(text);
+  }
+}
+
 }  // namespace
 
 FitResult fit(const TorqueRecord& record, const FitInput& input) {
@@ -43,6 +72,7 @@ FitResult fit(const TorqueRecord& record, const FitInput& input) {
   FitResult result = record.kind == RecordKind::flow_curve ? fitting::fit_flow_curve(record, input)
                                                            : fitting::fit_torque_decay(record, input);
   judge_sizes(record, input, result);
+  judge_gap(input, result);
   return result;
 }
 
@@ -106,6 +136,24 @@ std::optional<Estimate> tell(double value, double variance, double degrees, doub
 
 Estimate given(double value) { return {value, Interval{value, value}, true}; }
 
+std::string misfit_of(std::span<const double> x, std::span<const double> residual, const std::string& what) {
+  const LackOfFit l = lack_of_fit(x, residual);
+  const double whole = std::hypot(l.systematic, l.noise);
+  const double correlation = successive_correlation({residual.begin(), residual.end()});
+  const bool smooth = l.systematic >= 0.02 && l.probability < 1e-3;
+  // a jump is no smooth curve: far above the noise of neighbouring readings, and neighbours miss alike
+  const bool rough = whole >= 0.05 && whole > 5.0 * l.roughness_noise && correlation > 0.5;
+  if (residual.size() < 8 || (!smooth && !rough)) return {};
+  const auto percent = [](double v) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2g %%", 100.0 * v);
+    return std::string(text);
+  };
+  return "the model does not fit: it misses the readings by " + percent(whole) + ", " +
+         percent(l.systematic) + " of it along a smooth curve, where neighbouring readings scatter by " +
+         percent(l.roughness_noise) + ": " + what;
+}
+
 void report(const Readings& readings, const LeastSquaresFit& fit, FitResult& result) {
   double square = 0.0, left_out = 0.0;
   for (std::size_t i = 0; i < readings.size(); ++i) {
@@ -127,7 +175,7 @@ void report(const Readings& readings, const LeastSquaresFit& fit, FitResult& res
   const double misfit = 100.0 * std::sqrt(square / std::max(1.0, n - left_out));
   // An instrument's readings scatter by a few per cent; at this size the record is another material, unit or
   // speed.
-  if (misfit > 25.0)
+  if (misfit > 10.0)
     result.reasons.push_back("the fitted curve misses the readings by " +
                              std::to_string(std::lround(misfit)) +
                              " % (root mean square): check units, speed and what was given as known");

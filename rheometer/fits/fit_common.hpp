@@ -2,8 +2,10 @@
 
 // What the fit of a flow curve and of a torque decay share. Private to rheometer/.
 
+#include <span>
+
 #include "rheometer/fits/fit.hpp"
-#include "rheometer/fits/least_squares.hpp"
+#include "rheometer/regression/least_squares.hpp"
 
 namespace tremie::fitting {
 
@@ -32,6 +34,10 @@ Estimate given(double value);
 
 /// Names the outliers and fills in the scatter and the curve.
 void report(const Readings& readings, const LeastSquaresFit& fit, FitResult& result);
+
+/// Why a model with these relative residuals, outliers left out, does not describe its readings, as a sentence that
+/// ends with `what`; empty where it does. Systematic parts below 2 % are within what instruments and models promise.
+std::string misfit_of(std::span<const double> x, std::span<const double> residual, const std::string& what);
 
 FitResult fit_flow_curve(const TorqueRecord& record, const FitInput& input);
 FitResult fit_torque_decay(const TorqueRecord& record, const FitInput& input);

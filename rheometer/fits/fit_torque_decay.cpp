@@ -4,17 +4,18 @@
 #include <stdexcept>
 
 #include "rheometer/fits/apparent_alpha.hpp"
-#include "rheometer/fits/decay_model.hpp"
+#include "rheometer/fits/decay_least_squares.hpp"
 #include "rheometer/fits/fit_common.hpp"
-#include "rheometer/fits/statistics.hpp"
 #include "rheometer/reference/thixotropic_couette.hpp"
+#include "rheometer/regression/lack_of_fit.hpp"
+#include "rheometer/regression/statistics.hpp"
 
 namespace tremie::fitting {
 
 namespace {
 
 constexpr std::size_t most_readings = 2000;
-enum Index : std::size_t { i_tau_0, i_mu, i_lambda, i_alpha };
+const std::string before_peak = "before the torque's peak";
 
 // --- the record
 // ---------------------------------------------------------------------------------------------------
@@ -35,6 +36,18 @@ double scatter_of(const std::vector<double>& torque) {
   for (std::size_t i = 2; i < torque.size(); ++i)
     second.push_back(torque[i] - 2.0 * torque[i - 1] + torque[i - 2]);
   return robust_deviation(second) / std::sqrt(6.0);
+}
+
+/// Single readings far from all their neighbours: a stone in the gap, a bit that was lost. The first reading, which may be
+/// the peak, is none.
+std::vector<char> spikes_of(const Readings& r) {
+  std::vector<char> spike(r.size(), 0);
+  if (r.size() < 8) return spike;
+  const std::vector<double> smooth = running_median(r.torque);
+  const double noise = scatter_of(r.torque);
+  for (std::size_t i = 1; i < r.size(); ++i)
+    spike[i] = std::abs(r.torque[i] - smooth[i]) > std::max(10.0 * noise, 0.4 * smooth[i]);
+  return spike;
 }
 
 /// Number of leading rows in which the torque still rises: the vane starts, the material is strained
@@ -61,10 +74,14 @@ Readings readings_of(const TorqueRecord& record, FitResult& result) {
     else
       all.push(record.time[i], record.torque[i], 1.0, record.line[i]);
   }
+  const std::vector<char> spike = spikes_of(all);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (spike[i]) drop(result, all.line[i], all.x[i], all.torque[i], "spike among its neighbours");
+  all = without(all, spike);
   const std::size_t rising = rising_rows(all);
   std::vector<char> leave_out(all.size(), 0);
   for (std::size_t i = 0; i < rising; ++i) {
-    drop(result, all.line[i], all.x[i], all.torque[i], "before the torque's peak");
+    drop(result, all.line[i], all.x[i], all.torque[i], before_peak);
     leave_out[i] = 1;
   }
   Readings kept = without(all, leave_out);
@@ -79,161 +96,6 @@ Readings readings_of(const TorqueRecord& record, FitResult& result) {
     result.notes.push_back("time: the shear is taken to start at time 0 of the record");
   }
   return condense(kept, most_readings, result);
-}
-
-// --- the fit
-// ------------------------------------------------------------------------------------------------------
-
-/// Mean torque over the first or last part of the readings.
-double mean_torque(const Readings& r, double from, double to) {
-  const auto n = static_cast<double>(r.size());
-  const auto begin = static_cast<std::size_t>(from * n);
-  const auto end = std::max(begin + 1, static_cast<std::size_t>(std::ceil(to * n)));
-  return median({r.torque.begin() + static_cast<std::ptrdiff_t>(begin),
-                 r.torque.begin() + static_cast<std::ptrdiff_t>(end)});
-}
-
-/// Which of the four parameters are free, and how a vector of those maps to all of them.
-struct Layout {
-  std::vector<std::size_t> free;
-  DecayParameters all{};
-
-  DecayParameters with(std::span<const double> p) const {
-    DecayParameters result = all;
-    for (std::size_t k = 0; k < free.size(); ++k) result[free[k]] = p[k];
-    return result;
-  }
-  std::optional<std::size_t> place_of(std::size_t index) const {
-    const auto at = std::find(free.begin(), free.end(), index);
-    if (at == free.end()) return std::nullopt;
-    return static_cast<std::size_t>(at - free.begin());
-  }
-};
-
-/// tau_0 and mu from the end of the record, lambda_0 from its start; alpha is looked for later.
-Layout first_guess(const Readings& r, const FitInput& in) {
-  const double start = mean_torque(r, 0.0, 0.03), end = std::min(start, mean_torque(r, 0.9, 1.0));
-  Layout layout;
-  double mu = in.mu.value_or(0.0);
-  if (!in.mu) {  // what the torque's end leaves for the viscosity, or a third of it
-    const double newtonian = reiner_riwlin({0.0, 1.0}, *in.omega, in.instrument).torque;
-    mu = end / newtonian / 3.0;
-    if (in.tau_0) {
-      double low = 1e-6 * mu, high = 3.0 * mu;
-      for (int i = 0; i < 60; ++i) {
-        const double middle = 0.5 * (low + high);
-        (reiner_riwlin({*in.tau_0, middle}, *in.omega, in.instrument).torque < end ? low : high) = middle;
-      }
-      mu = 0.5 * (low + high);
-    }
-    layout.free.push_back(i_mu);
-  }
-  const double tau_end = yield_stress_from_torque(end, mu, *in.omega, in.instrument);
-  const double tau_start = yield_stress_from_torque(start, mu, *in.omega, in.instrument);
-  const double smallest = 1e-3 * shear_stress_at(in.instrument.vane_radius, end, in.instrument);
-  const double tau_0 = in.tau_0.value_or(std::max(0.6 * tau_end, smallest));
-  if (!in.tau_0) layout.free.insert(layout.free.begin(), i_tau_0);
-  layout.free.push_back(i_lambda);
-  layout.free.push_back(i_alpha);
-  layout.all = {tau_0, mu, std::max(0.05, tau_start / tau_0 - 1.0), 0.0};
-  return layout;
-}
-
-bool evaluate(const DecayModel& model, const DecayParameters& p, std::span<double> result) {
-  try {
-    model.torque(p, result);
-  } catch (const std::runtime_error&) {
-    return false;  // the integrator gave up: the fit takes a smaller step
-  }
-  return std::all_of(result.begin(), result.end(), [](double t) { return std::isfinite(t) && t > 0.0; });
-}
-
-/// The sum of squares has side minima in alpha where nothing breaks down or all does at once: look over five
-/// decades.
-void search_alpha(const DecayModel& model, const Readings& r, const FitInput& in, Layout& layout) {
-  const double unit = 1.0 / (newtonian_shear_rate(*in.omega, in.instrument) * r.x.back());
-  std::vector<double> fitted(r.size());
-  double best = std::numeric_limits<double>::infinity();
-  for (double factor = 0.03; factor < 2000.0; factor *= 2.5) {
-    DecayParameters p = layout.all;
-    p[i_alpha] = factor * unit;
-    if (!evaluate(model, p, fitted)) continue;
-    double sum = 0.0;  // absolute values: an outlier must not decide
-    for (std::size_t i = 0; i < r.size(); ++i) sum += r.count[i] * std::abs(r.torque[i] / fitted[i] - 1.0);
-    if (sum < best) {
-      best = sum;
-      layout.all[i_alpha] = p[i_alpha];
-    }
-  }
-  if (!std::isfinite(best))
-    throw std::runtime_error("the thixotropic Couette model has no solution for this record");
-}
-
-/// Forward differences: the model's own error, 1e-6, moves them by 1e-3 of the derivative.
-bool fill_jacobian(const DecayModel& model, const Layout& layout, const DecayParameters& p,
-                   std::span<const double> fitted, std::span<double> jacobian) {
-  std::vector<double> moved(fitted.size());
-  const double floors[] = {0.1, 0.1, 0.05, 1e-4};
-  for (std::size_t k = 0; k < layout.free.size(); ++k) {
-    const std::size_t index = layout.free[k];
-    const double step = 2e-3 * std::max(p[index], floors[index]);
-    DecayParameters q = p;
-    q[index] += step;
-    if (!evaluate(model, q, moved)) return false;
-    for (std::size_t i = 0; i < fitted.size(); ++i)
-      jacobian[i * layout.free.size() + k] = (moved[i] - fitted[i]) / step;
-  }
-  return true;
-}
-
-/// What the model gave before. A fit asks for the same parameters twice or more (residuals, Jacobian, next
-/// pass), and for the Jacobian at parameters that hardly differ.
-struct Memory {
-  DecayParameters at{}, jacobian_at{};
-  std::vector<double> torque, jacobian;
-};
-
-/// Torque and, where it is asked for, the Jacobian; that of parameters within 0.5 % serves as well, as it
-/// differs by as much: the iterations still end where the residuals say, and the intervals move by less than
-/// 1 %.
-bool recall(const DecayModel& model, const Layout& layout, const DecayParameters& p, Memory& memory,
-            std::span<double> fitted, std::span<double> jacobian) {
-  if (memory.torque.empty() || p != memory.at) {
-    memory.torque.clear();
-    if (!evaluate(model, p, fitted)) return false;
-    memory.at = p;
-    memory.torque.assign(fitted.begin(), fitted.end());
-  }
-  std::copy(memory.torque.begin(), memory.torque.end(), fitted.begin());
-  if (jacobian.empty()) return true;
-  const bool near = std::equal(p.begin(), p.end(), memory.jacobian_at.begin(),
-                               [](double a, double b) { return std::abs(a - b) <= 5e-3 * std::abs(b); });
-  if (!near || memory.jacobian.empty()) {
-    memory.jacobian.clear();
-    if (!fill_jacobian(model, layout, p, fitted, jacobian)) return false;
-    memory.jacobian_at = p;
-    memory.jacobian.assign(jacobian.begin(), jacobian.end());
-  }
-  std::copy(memory.jacobian.begin(), memory.jacobian.end(), jacobian.begin());
-  return true;
-}
-
-LeastSquaresFit least_squares(const DecayModel& model, const Readings& r, const Layout& layout) {
-  const DecayParameters lower{1e-6, 1e-6, 0.0, 0.0}, upper{1e6, 1e6, 1e4, 1e3};
-  LeastSquaresProblem problem;
-  problem.observed = r.torque;
-  problem.count = r.count;
-  for (const std::size_t index : layout.free) {
-    problem.start.push_back(layout.all[index]);
-    problem.lower.push_back(lower[index]);
-    problem.upper.push_back(upper[index]);
-  }
-  Memory memory;
-  problem.model = [&](std::span<const double> p, std::span<double> fitted, std::span<double> jacobian) {
-    return recall(model, layout, layout.with(p), memory, fitted, jacobian);
-  };
-  return fit_least_squares(
-      problem, {.readings_in_time_order = true, .parameter_tolerance = 1e-5, .max_iterations = 60});
 }
 
 // --- the report
@@ -268,16 +130,23 @@ struct Teller {
 };
 
 void report_parameters(const Readings& r, const Teller& told, const FitInput& in, FitResult& result) {
-  const auto& [tau_0, mu, lambda_0, alpha] = told.p;
+  const auto& [tau_0, mu, lambda_0, breakdown, n] = told.p;
+  const double alpha = alpha_of(told.p);
   const double stress = shear_stress_at(in.instrument.vane_radius, told.fit.fitted.front(), in.instrument);
   const double rate = newtonian_shear_rate(*in.omega, in.instrument);
-  result.tau_0 = in.tau_0 ? given(tau_0) : told(tau_0, {1, 0, 0, 0}, tau_0);
-  result.mu = in.mu ? given(mu) : told(mu, {0, 1, 0, 0}, mu);
-  result.lambda_0 = told(lambda_0, {0, 0, 1, 0}, std::max(lambda_0, 0.5));
-  result.static_yield_stress = told((1 + lambda_0) * tau_0, {1 + lambda_0, 0, tau_0, 0}, stress);
-  if (lambda_0 > 0.0) result.alpha = told(alpha, {0, 0, 0, 1}, std::max(alpha, 1.0 / (rate * r.x.back())));
+  result.tau_0 = in.tau_0 ? given(tau_0) : told(tau_0, {1, 0, 0, 0, 0}, tau_0);
+  result.mu = in.mu ? given(mu) : told(mu, {0, 1, 0, 0, 0}, mu);
+  result.lambda_0 = told(lambda_0, {0, 0, 1, 0, 0}, std::max(lambda_0, 0.5));
+  result.static_yield_stress = told((1 + lambda_0) * tau_0, {1 + lambda_0, 0, tau_0, 0, 0}, stress);
+  const bool power = in.kinetics == Kinetics::power;
+  if (lambda_0 > 0.0 && breakdown > 0.0) {
+    const DecayParameters gradient{0, 0, power ? (1.0 - n) * alpha / lambda_0 : 0.0, alpha / breakdown,
+                                   power ? -std::log(lambda_0) * alpha : 0.0};
+    result.alpha = told(alpha, gradient, std::max(alpha, 1.0 / (rate * r.x.back())));
+  }
+  if (power) result.exponent = told(n, {0, 0, 0, 0, 1}, n);
   if (in.rest)
-    result.A_thix = told(lambda_0 * tau_0 / *in.rest, {lambda_0 / *in.rest, 0, tau_0 / *in.rest, 0},
+    result.A_thix = told(lambda_0 * tau_0 / *in.rest, {lambda_0 / *in.rest, 0, tau_0 / *in.rest, 0, 0},
                          std::max(lambda_0 * tau_0, 0.5 * tau_0) / *in.rest);
   const auto note = [&](const std::optional<Estimate>& e, const char* name, const char* why) {
     if (!e) result.notes.push_back(std::string(name) + ": the record cannot tell it" + why);
@@ -287,6 +156,7 @@ void report_parameters(const Readings& r, const Teller& told, const FitInput& in
        " at one speed together with the others; --plastic-viscosity gives it");
   note(result.lambda_0, "flocculation_start", "");
   note(result.alpha, "alpha", "");
+  if (power) note(result.exponent, "exponent", "");
   if (in.rest)
     note(result.A_thix, "structuration_rate", "");
   else
@@ -297,8 +167,7 @@ void report_flow(const Readings& r, const DecayParameters& p, const FitInput& in
   CouetteFlow flow;
   flow.bingham = {p[i_tau_0], p[i_mu]};
   flow.omega = *in.omega;
-  flow.thixotropy = {in.rest ? p[i_lambda] * p[i_tau_0] / *in.rest : 0.0, p[i_alpha], in.kinetics, in.gamma_c,
-                     p[i_lambda]};
+  flow.thixotropy = thixotropy_of(p, in);
   const CouetteDecay d =
       thixotropic_couette(flow, std::vector{0.0, 0.5 * r.x.back(), r.x.back()}, in.instrument);
   result.sheared_radius = *std::min_element(d.sheared_radius.begin(), d.sheared_radius.end());
@@ -334,71 +203,165 @@ void report_apparent(const Readings& r, const FitInput& in, const Teller& told, 
   if (!a.windows.empty()) result.apparent = a;
 }
 
-/// Where a smooth curve through the record would leave far less than the model does, and neighbours miss on the same
-/// side, the misfit is the model's. The record's own noise is taken from second differences of the residuals.
-bool model_misses(const LeastSquaresFit& fit, FitResult& result) {
-  std::vector<double> residual, second;
-  double square = 0.0;
-  for (std::size_t i = 0; i < fit.residual.size(); ++i) {
-    if (fit.outlier[i]) continue;
-    residual.push_back(fit.residual[i]);
-    square += fit.residual[i] * fit.residual[i];
+/// Residuals and times without outliers.
+std::pair<std::vector<double>, std::vector<double>> kept_residuals(const Readings& r,
+                                                                   const LeastSquaresFit& f) {
+  std::pair<std::vector<double>, std::vector<double>> kept;
+  for (std::size_t i = 0; i < r.size(); ++i) {
+    if (f.outlier[i]) continue;
+    kept.first.push_back(r.x[i]);
+    kept.second.push_back(f.residual[i]);
   }
-  if (residual.size() < 10) return false;
-  for (std::size_t i = 2; i < residual.size(); ++i)
-    second.push_back(residual[i] - 2.0 * residual[i - 1] + residual[i - 2]);
-  const double noise = robust_deviation(second) / std::sqrt(6.0);
-  const double misfit = std::sqrt(square / static_cast<double>(residual.size()));
-  if (misfit < 0.02 || misfit > 0.25 || misfit < 3.0 * noise || result.correlation < 0.5) return false;
-  const auto percent = [](double v) {
-    return std::to_string(0.1 * static_cast<double>(std::lround(1000.0 * v))).substr(0, 4);
+  return kept;
+}
+
+/// What is wrong with the fit as a description of the record; empty where it describes it.
+std::string misfit(const Readings& r, const LeastSquaresFit& f) {
+  const auto [x, residual] = kept_residuals(r, f);
+  return misfit_of(x, residual, "the decay has another shape than these kinetics give it");
+}
+
+const char* name_of(Kinetics k) {
+  return k == Kinetics::power ? "power" : k == Kinetics::roussel ? "roussel" : "gated";
+}
+
+/// Root mean square over the readings that at least one of the models keeps: all are judged on the same readings.
+double common_mean_square(const std::vector<DecayFit>& fits, const LeastSquaresFit& judged, double& n) {
+  double sum = 0.0;
+  n = 0.0;
+  for (std::size_t i = 0; i < judged.residual.size(); ++i) {
+    if (std::all_of(fits.begin(), fits.end(), [&](const DecayFit& f) { return f.fit.outlier[i] != 0; }))
+      continue;
+    sum += judged.residual[i] * judged.residual[i];
+    n += 1.0;
+  }
+  return sum / std::max(1.0, n);
+}
+
+/// Compares the models by AICc on the number of independent readings, which the noise about the closest one tells.
+std::size_t choose(const Readings& r, const std::vector<DecayFit>& fits, FitResult& result) {
+  double n = 0.0, closest = std::numeric_limits<double>::infinity(), correlation = 0.0;
+  for (const DecayFit& f : fits) {
+    const double square = common_mean_square(fits, f.fit, n);
+    if (square < closest) {
+      const auto [x, residual] = kept_residuals(r, f.fit);
+      correlation = lack_of_fit(x, residual).correlation;
+    }
+    closest = std::min(closest, square);
+  }
+  const double independent = effective_number(n, correlation);
+  std::vector<double> aicc;
+  for (const DecayFit& f : fits)
+    aicc.push_back(corrected_akaike(common_mean_square(fits, f.fit, n), independent,
+                                    static_cast<int>(f.layout.free.size())));
+  const auto best = static_cast<std::size_t>(std::min_element(aicc.begin(), aicc.end()) - aicc.begin());
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    const bool finite = std::isfinite(aicc[i]);
+    result.candidates.push_back({name_of(fits[i].kinetics), static_cast<int>(fits[i].layout.free.size()),
+                                 fits[i].fit.scatter, fits[i].fit.correlation,
+                                 finite ? std::optional(aicc[i]) : std::nullopt,
+                                 finite ? std::optional(aicc[i] - aicc[best]) : std::nullopt,
+                                 misfit(r, fits[i].fit).empty(), i == best});
+  }
+  result.choice = std::string("kinetics ") + name_of(fits[best].kinetics) + ": the smallest AICc of " +
+                  std::to_string(fits.size()) + " kinetics, on " + std::to_string(std::lround(independent)) +
+                  " independent readings of " + std::to_string(std::lround(n)) +
+                  " (the correlation of the noise taken off)";
+  double second = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < fits.size(); ++i)
+    if (i != best) second = std::min(second, aicc[i] - aicc[best]);
+  if (fits.size() > 1 && second < 2.0)
+    result.choice += "; the next is within 2 of it, so the record hardly tells them apart";
+  return best;
+}
+
+/// Fits of the kinetics that are asked for, in order of their complexity; one that has no solution is left out.
+std::vector<DecayFit> fit_candidates(const Readings& r, FitInput in) {
+  if (!in.choose_kinetics) return {fit_decay(r, in)};
+  std::vector<DecayFit> fits;
+  std::string failure;
+  for (const Kinetics k : {Kinetics::gated, Kinetics::roussel, Kinetics::power}) {
+    in.kinetics = k;
+    // without a rest nothing is known to build up, and Roussel's equation is the gated one
+    if (k == Kinetics::roussel && !in.rest) continue;
+    if (r.size() <= 2u + !in.tau_0 + !in.mu + (k == Kinetics::power)) continue;
+    try {
+      fits.push_back(fit_decay(r, in));
+    } catch (const std::runtime_error& error) {
+      failure = error.what();
+    }
+  }
+  if (fits.empty()) throw std::runtime_error(failure);
+  return fits;
+}
+
+/// A torque that is level or rises shows no breakdown, whatever curve can be laid through it; with neither yield stress nor
+/// viscosity known it then splits into anything.
+void judge_fall(const Readings& r, std::size_t rows, const FitInput& in, FitResult& result) {
+  const double first = mean_torque(r, 0.0, 0.05), last = mean_torque(r, 0.9, 1.0);
+  const double noise = scatter_of(r.torque) / std::sqrt(std::max(1.0, 0.05 * static_cast<double>(r.size())));
+  const long before = std::count_if(result.dropped.begin(), result.dropped.end(),
+                                    [](const DroppedPoint& p) { return p.reason == before_peak; });
+  if (2 * static_cast<std::size_t>(std::max(before, result.dropped_count)) > rows && before > 0)
+    result.reasons.push_back("the torque rises over most of the record: no decay");
+  else if (last > 1.03 * first && last > first + 4.0 * noise)
+    result.reasons.push_back(
+        "the torque rises at the end of the record, which no breakdown at a constant speed does");
+  else if (!(in.tau_0 && in.mu) && last > 0.97 * first && last >= first - 4.0 * noise)
+    result.reasons.push_back(
+        "the torque is level: nothing breaks down, and one torque tells neither yield stress nor "
+        "viscosity nor flocculation");
+}
+
+/// A model that does not describe the record tells none of its parameters.
+void tell_nothing(const FitInput& in, FitResult& result) {
+  const auto forget = [&](std::optional<Estimate>& e, const char* name) {
+    if (!e || e->given) return;
+    e.reset();
+    result.notes.push_back(std::string(name) + ": a model that does not fit does not tell it");
   };
-  result.reasons.push_back("the model does not fit: it misses the readings by " + percent(misfit) +
-                           " % where they scatter by " + percent(noise) +
-                           " % about a smooth curve, and neighbours miss alike (correlation " +
-                           std::to_string(result.correlation).substr(0, 4) +
-                           "): the decay has another shape than these kinetics give it");
-  return true;
+  if (!in.tau_0) forget(result.tau_0, "yield_stress");
+  if (!in.mu) forget(result.mu, "plastic_viscosity");
+  forget(result.static_yield_stress, "static_yield_stress");
+  forget(result.lambda_0, "flocculation_start");
+  forget(result.alpha, "alpha");
+  forget(result.A_thix, "structuration_rate");
+  forget(result.exponent, "exponent");
 }
 
 }  // namespace
 
-FitResult fit_torque_decay(const TorqueRecord& record, const FitInput& in) {
+FitResult fit_torque_decay(const TorqueRecord& record, const FitInput& input) {
+  FitInput in = input;
   if (!in.omega)
     throw std::invalid_argument("a torque decay needs the speed of the vane: --speed \"0.25 rev/s\"");
   FitResult result;
   result.kind = RecordKind::torque_decay;
   const Readings r = readings_of(record, result);
-  const std::size_t unknowns = 2 + !in.tau_0 + !in.mu;
+  const std::size_t unknowns =
+      2u + !in.tau_0 + !in.mu + (!in.choose_kinetics && in.kinetics == Kinetics::power);
   if (r.size() <= unknowns)
     throw std::invalid_argument("a torque decay needs more than " + std::to_string(unknowns) + " rows for " +
                                 std::to_string(unknowns) + " unknowns; " + std::to_string(r.size()) +
-                                " found");
+                                " found" + (result.dropped_count > 0 ? " behind the torque's peak" : ""));
   if (!(r.x.back() > 0.0)) throw std::invalid_argument("all rows have the same time");
 
-  Layout layout = first_guess(r, in);
   // so many rows tell more than the usual grid's error of 1e-4 of the torque
-  const DecayModel model(in, r.x, record.torque.size() > 20000 ? 200 : 100);
-  search_alpha(DecayModel(in, r.x, 40), r, in, layout);  // it only has to tell the valley
-  const LeastSquaresFit fit = least_squares(model, r, layout);
-  const Teller told{layout, fit, layout.with(fit.parameters)};
-  report(r, fit, result);
-  // Whatever makes the fit not to be trusted, a record of one speed then splits its torque into neither.
-  const bool misses = model_misses(fit, result) || !result.reasons.empty();
+  const bool fine = record.torque.size() > 20000;
+  const std::vector<DecayFit> fits = fit_candidates(r, in);
+  DecayFit best = fits[choose(r, fits, result)];
+  in.kinetics = best.kinetics;
+  if (fine) best = refined(r, in, std::move(best), 200);
+  result.model = name_of(best.kinetics);
+  judge_fall(r, record.torque.size(), in, result);
+  const Teller told{best.layout, best.fit, best.parameters()};
+  report(r, best.fit, result);
+  result.effective_readings = effective_number(static_cast<double>(r.size()), best.fit.correlation);
+  if (const std::string why = misfit(r, best.fit); !why.empty()) result.reasons.push_back(why);
   report_parameters(r, told, in, result);
   report_flow(r, told.p, in, result);
   report_apparent(r, in, told, result);
-  if (misses && !in.mu) {
-    result.mu.reset();
-    result.notes.push_back(
-        "plastic_viscosity: one speed and a model that does not fit do not tell it; --plastic-viscosity "
-        "gives it");
-  }
-  if (misses && !in.tau_0) {
-    result.tau_0.reset();
-    result.notes.push_back(
-        "yield_stress: one speed and a model that does not fit do not tell it; --yield-stress gives it");
-  }
+  if (!result.reasons.empty()) tell_nothing(in, result);
   return result;
 }
 

@@ -30,6 +30,9 @@ struct NumberTable {
 NumberTable parse_number_table(std::string_view text, const std::string& name,
                                const std::vector<ColumnQuantity>& quantities);
 
+/// Time [s], speed [rad/s] and torque [N m], the columns of every torque record, in this order.
+const std::vector<ColumnQuantity>& torque_quantities();
+
 /// "name:line:column: what", for RecordError.
 std::string at_position(const std::string& name, long line, std::size_t column, const std::string& what);
 

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "rheometer/records/instrument_export.hpp"
+#include "rheometer/records/sections.hpp"
 #include "rheometer/records/table.hpp"
 
 namespace tremie {
@@ -15,7 +16,9 @@ namespace {
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
 
-const std::vector<ColumnQuantity>& quantities() {
+}  // namespace
+
+const std::vector<ColumnQuantity>& torque_quantities() {
   static const std::vector<ColumnQuantity> all{
       {"time",
        {{"s", 1.0}, {"sec", 1.0}, {"ms", 1e-3}, {"min", 60.0}, {"h", 3600.0}},
@@ -37,12 +40,17 @@ const std::vector<ColumnQuantity>& quantities() {
   return all;
 }
 
+namespace {
+
 void require_not_negative(const std::vector<double>& column, const NumberTable& table, std::size_t position,
                           const char* quantity, const std::string& name) {
   for (std::size_t i = 0; i < column.size(); ++i)
     if (column[i] < 0.0)
       throw RecordError(at_position(name, table.line[i], position,
-                                    std::string(quantity) + " is negative; give its magnitude, 0 or more"));
+                                    std::string(quantity) + " is negative; give its magnitude, 0 or more" +
+                                        (quantity == std::string_view("the torque")
+                                             ? ", or the offset of the unloaded instrument, --torque-offset"
+                                             : "")));
 }
 
 /// A wrong unit in the header shows as a size that no rheometer has.
@@ -53,49 +61,61 @@ void require_below(const std::vector<double>& column, const NumberTable& table, 
       throw RecordError(at_position(name, table.line[i], position, what + "; is the header's unit right?"));
 }
 
-/// The first run of at least 8 rows whose speed stays within 2 % of its first; its rows [begin, end).
-std::pair<std::size_t, std::size_t> constant_speed(const std::vector<double>& omega) {
-  for (std::size_t begin = 0; begin < omega.size();) {
-    std::size_t end = begin + 1;
-    while (end < omega.size() && std::abs(omega[end] - omega[begin]) <= 0.02 * std::abs(omega[begin])) ++end;
-    if (end - begin >= 8 && std::abs(omega[begin]) > 1e-4) return {begin, end};
-    begin = end - begin >= 8 ? end : begin + 1;
+/// The row at which the material begins to break down: the largest torque of the rows in which the vane gathers speed.
+std::size_t first_row(const ProtocolRecord& r, const Section& s) {
+  std::size_t first = s.begin;
+  for (std::size_t i = s.begin + 1; i < s.end; ++i) {
+    if (r.torque[i] > r.torque[first]) first = i;
+    if (r.omega[i] > 0.97 * s.omega) break;
   }
-  return {0, 0};
+  return first;
 }
 
-/// Keeps the first section of constant speed as a torque decay.
+/// Keeps the shear at a constant rate as a torque decay, the rows in which the vane gathers speed with it.
 double keep_decay(NumberTable& table, const std::string& name, std::vector<std::string>& understood) {
-  const auto section = constant_speed(table.column[1]);
-  const std::size_t begin = section.first, end = section.second;
-  if (begin == end)
+  ProtocolRecord record = protocol_of(table);
+  const std::vector<Section> sections = find_sections(record);
+  const Section* found = nullptr;
+  for (const Section& s : sections) {
+    const bool shear = s.kind == SectionKind::constant_rate || s.kind == SectionKind::start_up;
+    if (shear && s.end - s.begin >= 8 &&
+        (!found || (found->kind == SectionKind::start_up && s.kind != found->kind)))
+      found = &s;
+  }
+  if (!found)
     throw RecordError(
         at_position(name, table.header_line, 1,
-                    "time, speed and torque, but no 8 rows of one speed (within 2 %): no torque decay; for "
-                    "a flow curve leave the time column out"));
-  double speed = 0.0;
-  const auto count = static_cast<double>(end - begin);
-  for (std::size_t i = begin; i < end; ++i) speed += std::abs(table.column[1][i]) / count;
+                    "time, speed and torque, but no 8 rows of one speed (within 3 %): no torque decay; for "
+                    "a flow curve leave the time column out, or give --protocol"));
+  const std::size_t begin = first_row(record, *found);
   understood.push_back("first section of constant speed: lines " + std::to_string(table.line[begin]) +
-                       " to " + std::to_string(table.line[end - 1]) + ", " + std::to_string(speed / two_pi) +
-                       " rev/s; the other " + std::to_string(table.line.size() - (end - begin)) +
-                       " rows are not used");
+                       " to " + std::to_string(table.line[found->end - 1]) + ", " +
+                       std::to_string(found->omega / two_pi) + " rev/s; the other " +
+                       std::to_string(table.line.size() - (found->end - begin)) +
+                       " rows are not used (--protocol reads them all)");
   const auto cut = [&](auto& v) {
-    v = {v.begin() + static_cast<std::ptrdiff_t>(begin), v.begin() + static_cast<std::ptrdiff_t>(end)};
+    v = {v.begin() + static_cast<std::ptrdiff_t>(begin), v.begin() + static_cast<std::ptrdiff_t>(found->end)};
   };
+  table.column[0] = record.time;
+  if (begin > found->begin) {  // the breakdown starts here; else the shear starts with the section
+    understood.push_back("time: counted from the largest torque while the vane gathers speed, line " +
+                         std::to_string(table.line[begin]));
+    for (double& t : table.column[0]) t -= record.time[begin];
+  }
   for (auto& column : table.column) cut(column);
   cut(table.line);
   table.column[1].clear();
   table.position[1] = 0;
-  return speed;
+  return found->omega;
 }
 
 }  // namespace
 
-TorqueRecord parse_torque_record(std::string_view bytes, const std::string& name) {
+TorqueRecord parse_torque_record(std::string_view bytes, const std::string& name, double torque_offset) {
   const std::string text = decoded_text(bytes, name);
   const auto plain = plain_export(text, name);
-  NumberTable table = parse_number_table(plain ? plain->text : text, name, quantities());
+  NumberTable table = parse_number_table(plain ? plain->text : text, name, torque_quantities());
+  for (double& torque : table.column[2]) torque -= torque_offset;
   TorqueRecord record;
   if (plain) record.understood = plain->understood;
   if (plain && table.position[0] != 0 && table.position[1] != 0 && !table.line.empty())
@@ -137,8 +157,8 @@ std::string read_text_file(const std::string& path) {
   return text;
 }
 
-TorqueRecord read_torque_record(const std::string& path) {
-  return parse_torque_record(read_text_file(path), path);
+TorqueRecord read_torque_record(const std::string& path, double torque_offset) {
+  return parse_torque_record(read_text_file(path), path, torque_offset);
 }
 
 }  // namespace tremie

@@ -34,11 +34,11 @@ struct RecordError : std::runtime_error {
 /// columns are left out. Separator comma, semicolon or tab; with the last two a decimal comma too. Lines from
 /// # on are comments; a byte-order mark is skipped. `name` is the file's, for messages. Throws RecordError
 /// for anything else: no rows, a text for a number, too few columns, an unknown unit, a negative torque or
-/// speed, time that runs backwards.
-TorqueRecord parse_torque_record(std::string_view text, const std::string& name);
+/// speed, time that runs backwards. `torque_offset` [N m] of the unloaded instrument is taken off first.
+TorqueRecord parse_torque_record(std::string_view text, const std::string& name, double torque_offset = 0.0);
 
 /// The same from a file. Throws RecordError too where it cannot be read.
-TorqueRecord read_torque_record(const std::string& path);
+TorqueRecord read_torque_record(const std::string& path, double torque_offset = 0.0);
 
 /// The text of a file. Throws RecordError where it cannot be read.
 std::string read_text_file(const std::string& path);

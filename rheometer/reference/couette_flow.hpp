@@ -15,4 +15,26 @@ namespace tremie {
 double couette_torque(const YieldLaw& law, double tau_y, double mu, double omega,
                       const Instrument& instrument);
 
+/// tau = tau_0 + k gamma_dot^n beyond tau_0.
+struct HerschelBulkleyFluid {
+  double tau_0 = 0.0;  ///< [Pa]
+  double k = 1.0;      ///< [Pa s^n], > 0
+  double n = 1.0;      ///< 0.2 to 2
+};
+
+/// Torque and its derivatives, to 1e-8 of it.
+struct HerschelBulkleyTorque {
+  double torque = 0.0;          ///< [N m]
+  double sheared_radius = 0.0;  ///< [m]; R_o where all is sheared
+  double d_tau_0 = 0.0, d_k = 0.0, d_n = 0.0;
+};
+
+/// The same torque for a fit, which needs the derivatives many thousand times:
+///
+///   omega = 1/2 int ((tau - tau_0)/k)^(1/n) dtau/tau from max(tau_0, T/(2 pi h R_o^2)) to T/(2 pi h R_i^2).
+///
+/// Throws std::invalid_argument unless omega > 0 and k > 0.
+HerschelBulkleyTorque herschel_bulkley_torque(const HerschelBulkleyFluid& fluid, double omega,
+                                              const Instrument& instrument);
+
 }  // namespace tremie

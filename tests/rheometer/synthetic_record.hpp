@@ -2,6 +2,7 @@
 
 // Torque records of a known material with noise of a known seed, for the tests of the fit.
 
+#include <cmath>
 #include <cstdint>
 #include <random>
 #include <vector>
@@ -52,6 +53,26 @@ inline CouetteDecay exact_decay(const std::vector<double>& times) {
   options.absolute_tolerance = 1e-9;
   options.whole_gap = false;
   return thixotropic_couette(flow, times, {}, options);
+}
+
+/// Noise of an instrument: correlated over neighbouring readings by `rho`, and a drift of `drift` of the torque over the
+/// record that starts again with every seed.
+inline TorqueRecord correlated_decay(const CouetteDecay& exact, double noise, double rho, double drift,
+                                     std::uint64_t seed) {
+  TorqueRecord record;
+  record.kind = RecordKind::torque_decay;
+  record.time = exact.time;
+  record.torque = exact.torque;
+  std::mt19937_64 generator(seed);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  const double slope = drift * normal(generator);
+  double state = noise * normal(generator);
+  for (std::size_t i = 0; i < record.torque.size(); ++i) {
+    record.torque[i] *= 1.0 + state + slope * (exact.time[i] / exact.time.back() - 0.5);
+    state = rho * state + std::sqrt(1.0 - rho * rho) * noise * normal(generator);
+    record.line.push_back(static_cast<long>(i) + 2);
+  }
+  return record;
 }
 
 inline TorqueRecord torque_decay(const CouetteDecay& exact, double noise = 0.0, std::uint64_t seed = 1) {

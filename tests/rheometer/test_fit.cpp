@@ -181,7 +181,7 @@ TEST(FitTorqueDecay, SaysWhenTheCurveMissesTheReadings) {
   TorqueRecord record = torque_decay(exact_decay(even_times(60, 20.0)), 0.01);
   for (double& torque : record.torque) torque *= 0.1;
   const FitResult f = fit(record, decay_input());
-  ASSERT_EQ(f.reasons.size(), 1u);
+  ASSERT_FALSE(f.reasons.empty());
   EXPECT_NE(f.reasons[0].find("misses the readings"), std::string::npos);
   EXPECT_FALSE(f.alpha.has_value());
 }

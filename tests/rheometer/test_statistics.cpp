@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "rheometer/fits/statistics.hpp"
+#include "rheometer/regression/statistics.hpp"
 
 namespace tremie {
 namespace {

@@ -39,9 +39,15 @@ inline std::vector<Coverage> flow_curve_coverage(int readings, double noise, int
   return c;
 }
 
+/// White noise unless rho > 0; a drift of the torque over the record.
+struct Noise {
+  double rho = 0.0, drift = 0.0;
+};
+
 /// Mix A after 240 s of rest by 200 readings over 20 s; `each` sees every fit.
 inline std::vector<Coverage> decay_coverage(bool tau_0_given, double noise, int seeds,
-                                            const std::function<void(const FitResult&)>& each = {}) {
+                                            const std::function<void(const FitResult&)>& each = {},
+                                            const Noise& kind = {}) {
   const CouetteDecay exact = synthetic::exact_decay(synthetic::even_times(200, 20.0));
   FitInput input;
   input.omega = synthetic::omega;
@@ -56,8 +62,9 @@ inline std::vector<Coverage> decay_coverage(bool tau_0_given, double noise, int 
   std::vector<FitResult> fits(static_cast<std::size_t>(seeds));
 #pragma omp parallel for schedule(dynamic)
   for (int i = 0; i < seeds; ++i)
-    fits[static_cast<std::size_t>(i)] =
-        fit(synthetic::torque_decay(exact, noise, static_cast<std::uint64_t>(i + 1)), input);
+    fits[static_cast<std::size_t>(i)] = fit(
+        synthetic::correlated_decay(exact, noise, kind.rho, kind.drift, static_cast<std::uint64_t>(i + 1)),
+        input);
   for (const FitResult& f : fits) {
     const std::optional<Estimate>* found[] = {&f.lambda_0, &f.alpha, &f.static_yield_stress, &f.A_thix,
                                               &f.tau_0};

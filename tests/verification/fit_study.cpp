@@ -8,7 +8,7 @@
 #include <iomanip>
 
 #include "apparatus/verification/references/study_output.hpp"
-#include "rheometer/fits/statistics.hpp"
+#include "rheometer/regression/statistics.hpp"
 #include "tests/verification/fit_coverage.hpp"
 
 namespace tremie::study {

@@ -4,11 +4,15 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/fit/fit_output.hpp"
+#include "apparatus/cli/fit/fit_protocol.hpp"
 #include "apparatus/cli/options/json_option.hpp"
 #include "apparatus/cli/options/quantity.hpp"
 #include "apparatus/cli/program.hpp"
@@ -18,22 +22,27 @@
 #include "apparatus/report/rheometer_files.hpp"
 #include "apparatus/report/run_folder.hpp"
 #include "apparatus/scene/input_error.hpp"
+#include "apparatus/scene/load.hpp"
 #include "apparatus/scene/units.hpp"
 #include "libmpm/io/write_error.hpp"
 #include "rheometer/fits/fit.hpp"
+#include "rheometer/fits/replicates.hpp"
+#include "rheometer/fits/vane_ends.hpp"
+#include "rheometer/protocol/protocol.hpp"
 
 namespace tremie::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using scene::Dimension;
 constexpr double two_pi = 2.0 * std::numbers::pi;
 
 struct Options {
-  std::string data, out;
+  std::vector<std::string> data;
+  std::string out;
   std::string vane_radius, vane_height, container_radius, speed, rest, yield_stress, plastic_viscosity;
-  std::string kinetics = "gated", critical_shear_rate;
-  bool quiet = false, json = false, force = false;
+  std::string kinetics = "auto", critical_shear_rate, law = "bingham", torque_offset;
+  std::string ends = "none", max_aggregate, compliance;
+  bool protocol = false, json = false, quiet = false, force = false;
 };
 
 // --- in
@@ -51,37 +60,115 @@ FitInput input_of(const Options& o) {
   in.rest = quantity("--rest", o.rest, Dimension::time);
   in.tau_0 = quantity("--yield-stress", o.yield_stress, Dimension::pressure);
   in.mu = quantity("--plastic-viscosity", o.plastic_viscosity, Dimension::viscosity);
-  in.kinetics = o.kinetics == "roussel" ? Kinetics::roussel : Kinetics::gated;
+  in.choose_kinetics = o.kinetics == "auto";
+  in.kinetics = o.kinetics == "roussel" ? Kinetics::roussel
+                : o.kinetics == "power" ? Kinetics::power
+                                        : Kinetics::gated;
+  in.max_aggregate = quantity("--max-aggregate", o.max_aggregate, Dimension::length).value_or(0.0);
+  in.law = o.law == "auto"               ? FlowLaw::automatic
+           : o.law == "herschel_bulkley" ? FlowLaw::herschel_bulkley
+                                         : FlowLaw::bingham;
   in.gamma_c = quantity("--critical-shear-rate", o.critical_shear_rate, Dimension::rate).value_or(in.gamma_c);
   return in;
 }
 
-/// Faults of the record and of the options are the user's to mend.
-FitResult read_and_fit(const Options& o, FitInput& in) {
+/// [N m] with its sign; 0 where it is not given.
+double torque_offset(const Options& o) {
+  if (o.torque_offset.empty()) return 0.0;
   try {
-    const TorqueRecord record = read_torque_record(o.data);
+    return scene::parse_quantity(o.torque_offset, Dimension::torque);
+  } catch (const std::invalid_argument& error) {
+    throw scene::InputError(fmt::format("--torque-offset: {}", error.what()));
+  }
+}
+
+/// [rad/(N m)], 0 where it is not given.
+double compliance(const Options& o) {
+  if (o.compliance.empty()) return 0.0;
+  std::size_t used = 0;
+  double value = -1.0;
+  try {
+    value = std::stod(o.compliance, &used);
+  } catch (const std::logic_error&) {  // no number: told below
+  }
+  std::string unit = o.compliance.substr(used);
+  std::erase(unit, ' ');
+  if (!(value >= 0.0) || !std::isfinite(value) || unit != "rad/(N.m)")
+    throw scene::InputError(fmt::format(
+        "--instrument-compliance: \"{}\" is no compliance; write \"0.02 rad/(N.m)\"", o.compliance));
+  return value;
+}
+
+/// Faults of the record and of the options are the user's to mend.
+template <class Read>
+auto as_bad_input(const std::string& file, Read read) {
+  try {
+    return read();
+  } catch (const RecordError& error) {
+    throw scene::InputError(error.what());
+  } catch (const std::invalid_argument& error) {
+    throw scene::InputError(file + ": " + error.what());
+  }
+}
+
+FitResult read_and_fit(const Options& o, const std::string& file, FitInput in) {
+  return as_bad_input(file, [&] {
+    const TorqueRecord record = read_torque_record(file, torque_offset(o));
     if (!in.omega && record.speed > 0.0) in.omega = record.speed;
     FitResult result = fit(record, in);
     result.notes.insert(result.notes.begin(), record.understood.begin(), record.understood.end());
     return result;
-  } catch (const RecordError& error) {
-    throw scene::InputError(error.what());
-  } catch (const std::invalid_argument& error) {
-    throw scene::InputError(o.data + ": " + error.what());
+  });
+}
+
+// --- the ends of the vane
+
+/// The factor of the ends on the height of the vane.
+double end_factor(const Options& o, const Instrument& in) {
+  if (o.ends == "textbook") return textbook_end_factor(in);
+  if (o.ends == "none") return 1.0;
+  for (const auto& folder : scene::data_folders()) {
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(folder / "vane_ends", error))
+      if (entry.path().extension() == ".csv")
+        return as_bad_input("--ends computed", [&] {
+          return end_factor_from_table(read_text_file(entry.path().string()),
+                                       entry.path().filename().string(), in);
+        });
   }
+  throw scene::InputError(
+      "--ends computed: its table of the three-dimensional vane, reference_data/vane_ends/*.csv, is not "
+      "there; "
+      "allowed without it: none, textbook");
+}
+
+/// By how much the ends move each value: the same fit without them, beside the fit with them.
+Json ends_json(const Options& o, const std::string& file, const FitInput& in, double factor,
+               const FitResult& with) {
+  FitInput without = in;
+  without.instrument.vane_height /= factor;
+  const FitResult none = read_and_fit(o, file, without);
+  Json moves;
+  const auto add = [&](const char* key, const std::optional<Estimate>& a, const std::optional<Estimate>& b) {
+    if (a && b && !a->given) moves[key] = {{"without_ends", b->value}, {"change", a->value / b->value - 1.0}};
+  };
+  add("yield_stress_Pa", with.tau_0, none.tau_0);
+  add("plastic_viscosity_Pa_s", with.mu, none.mu);
+  add("consistency_Pa_s_n", with.consistency, none.consistency);
+  add("flow_index", with.flow_index, none.flow_index);
+  add("static_yield_stress_Pa", with.static_yield_stress, none.static_yield_stress);
+  add("flocculation_start", with.lambda_0, none.lambda_0);
+  add("alpha", with.alpha, none.alpha);
+  add("structuration_rate_Pa_per_s", with.A_thix, none.A_thix);
+  return moves;
 }
 
 // --- out
 // --------------------------------------------------------------------------------------------------------
 
-template <class T>
-Json json_of(const std::optional<T>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
-
 /// What the fit was told, the defaults included: a fit can be repeated from its summary.
 Json input_json(const Options& o, const FitInput& in) {
-  return {{"record", o.data},
+  return {{"record", o.data.size() == 1 ? Json(o.data.front()) : Json(o.data)},
           {"vane_radius_mm", 1e3 * in.instrument.vane_radius},
           {"vane_height_mm", 1e3 * in.instrument.vane_height},
           {"container_radius_mm", 1e3 * in.instrument.container_radius},
@@ -90,73 +177,159 @@ Json input_json(const Options& o, const FitInput& in) {
           {"yield_stress_Pa", json_of(in.tau_0)},
           {"plastic_viscosity_Pa_s", json_of(in.mu)},
           {"kinetics", o.kinetics},
+          {"law", o.law},
+          {"ends", o.ends},
+          {"torque_offset_N_m", torque_offset(o)},
           {"critical_shear_rate_per_s", in.gamma_c}};
 }
 
-void print_estimate(const char* name, const std::optional<Estimate>& e, const char* unit) {
-  if (!e)
-    fmt::print("{:<22} not told by this record\n", name);
-  else if (e->given)
-    fmt::print("{:<22} {:.4g} {} (given)\n", name, e->value, unit);
-  else if (!e->ci95)
-    fmt::print("{:<22} {:.4g} {} (no interval: as many readings as parameters)\n", name, e->value, unit);
-  else
-    fmt::print("{:<22} {:.4g} {} [{:.4g}, {:.4g}]\n", name, e->value, unit, e->ci95->low, e->ci95->high);
+/// What a fit gives: the JSON of results, reasons, files and charts, and lines for the screen.
+struct Answer {
+  Json results;
+  std::vector<std::string> reasons;
+  std::vector<std::pair<std::string, std::string>> files;
+  std::string charts;
+  std::function<void()> print;
+};
+
+std::string percent(const std::optional<double>& v) { return v ? fmt::format("{:.2g} %", 100.0 * *v) : "-"; }
+
+void print_moves(const Json& moves, const Options& o, double factor) {
+  if (o.ends == "none") return;
+  fmt::print("{:<22} {}: torque {:.4g} times that of the side", "ends", o.ends, factor);
+  for (const auto& [key, move] : moves.items())
+    fmt::print("; {} {:+.1f} %", key, 100.0 * move["change"].get<double>());
+  fmt::print("\n");
 }
 
-void print_result(const FitResult& r) {
-  print_estimate("yield stress", r.tau_0, "Pa");
-  print_estimate("plastic viscosity", r.mu, "Pa.s");
-  if (r.kind == RecordKind::torque_decay) {
-    print_estimate("static yield stress", r.static_yield_stress, "Pa");
-    print_estimate("flocculation at start", r.lambda_0, "");
-    print_estimate("alpha", r.alpha, "");
-    print_estimate("A_thix", r.A_thix, "Pa/s");
-    if (r.apparent) {
-      const ApparentAlpha& all = r.apparent->windows.back();
-      fmt::print(
-          "{:<22} {:.4g} (exponential over {:.4g} s, shear rate 2 Omega/(1 - Ri^2/Ro^2) = {:.4g} 1/s)\n",
-          "apparent alpha", all.alpha_newtonian_rate, all.window, r.apparent->newtonian_rate);
-    }
+Answer one_record(const Options& o, const FitInput& in, double factor) {
+  const std::string& file = o.data.front();
+  auto result = std::make_shared<FitResult>(read_and_fit(o, file, in));
+  Answer a{
+      report::fit_results(*result),
+      result->reasons,
+      {{"fit.csv", fit_csv(*result, in.instrument)},
+       {"report.html", report::fit_html(fit_report(*result, in.instrument, file, "tremie fit " + file))}},
+      fit_charts(*result, in.instrument),
+      {}};
+  const Json moves = o.ends == "none" ? Json() : ends_json(o, file, in, factor, *result);
+  a.results["ends"] = {{"correction", o.ends}, {"factor", factor}, {"moves", moves}};
+  a.print = [=] {
+    print_result(*result);
+    print_moves(moves, o, factor);
+  };
+  return a;
+}
+
+Answer protocol(const Options& o, FitInput in, double factor) {
+  const std::string& file = o.data.front();
+  ProtocolOptions options;
+  options.compliance = compliance(o);
+  ProtocolRecord record;
+  auto reading = std::make_shared<ProtocolReading>(as_bad_input(file, [&] {
+    record = parse_protocol_record(read_text_file(file), file, torque_offset(o));
+    return read_protocol(record, in, options);
+  }));
+  Answer a{protocol_json(*reading),
+           reading->reasons,
+           {{"sections.csv", protocol_csv(*reading)}},
+           protocol_charts(record, *reading),
+           {}};
+  a.results["understood"] = record.understood;
+  a.results["ends"] = {{"correction", o.ends}, {"factor", factor}};
+  a.print = [=, understood = record.understood] {
+    print_protocol(*reading);
+    print_moves(Json(), o, factor);
+    for (const auto& note : understood) fmt::print("{:<22} {}\n", "read", note);
+  };
+  return a;
+}
+
+Answer replicates(const Options& o, const FitInput& in, double factor) {
+  std::vector<FitResult> fits;
+  Answer a;
+  a.results = {{"kind", "replicates"}, {"records", Json::array()}};
+  for (const std::string& file : o.data) {
+    fits.push_back(read_and_fit(o, file, in));
+    Json one{{"record", file}};
+    one.update(report::fit_results(fits.back()));
+    a.results["records"].push_back(one);
+    for (const auto& why : fits.back().reasons) a.reasons.push_back(file + ": " + why);
+    a.files.emplace_back(fmt::format("fit_{}.csv", fits.size()), fit_csv(fits.back(), in.instrument));
+    a.files.emplace_back(
+        fmt::format("report_{}.html", fits.size()),
+        report::fit_html(fit_report(fits.back(), in.instrument, file, "tremie fit " + file)));
   }
-  if (r.plug) fmt::print("{:<22} {}\n", "plug", *r.plug ? "yes" : "no");
-  fmt::print("{:<22} {} used, {} dropped, scatter {:.2g} %\n", "readings", r.readings, r.dropped_count,
-             100.0 * r.scatter);
-  constexpr std::size_t most = 10;
-  for (std::size_t i = 0; i < std::min(most, r.dropped.size()); ++i)
-    fmt::print("{:<22} line {}: {}\n", "dropped", r.dropped[i].line, r.dropped[i].reason);
-  if (r.dropped.size() > most) fmt::print("{:<22} and more, named in summary.json\n", "dropped");
-  for (const auto& note : r.notes) fmt::print("{:<22} {}\n", "note", note);
+  const std::vector<ReplicateMean> means = replicate_means(fits);
+  Json& mean = a.results["mean"] = Json::object();
+  for (const ReplicateMean& m : means) {
+    mean[m.name] = json_of(std::optional(m.mean));
+    mean[m.name].update({{"unit", m.unit},
+                         {"records", m.records},
+                         {"scatter_between", json_of(m.between)},
+                         {"scatter_within", json_of(m.within)},
+                         {"scatter_between_laboratories", json_of(m.laboratories)}});
+  }
+  a.results["ends"] = {{"correction", o.ends}, {"factor", factor}};
+  a.print = [=] {
+    for (std::size_t i = 0; i < fits.size(); ++i) {
+      fmt::print("--- {}\n", o.data[i]);
+      print_result(fits[i]);
+    }
+    fmt::print("--- mean of {} records\n{:<22} {:>10} {:>24} {:>9} {:>9} {:>13}\n", fits.size(), "", "mean",
+               "95 %", "between", "within", "laboratories");
+    for (const ReplicateMean& m : means)
+      fmt::print(
+          "{:<22} {:>10.4g} {:>24} {:>9} {:>9} {:>13}\n", m.name, m.mean.value,
+          m.mean.ci95 ? fmt::format("[{:.4g}, {:.4g}] {}", m.mean.ci95->low, m.mean.ci95->high, m.unit) : "-",
+          percent(m.between), percent(m.within), percent(m.laboratories));
+    fmt::print(
+        "between laboratories the same material scatters by 27 % in yield stress and 24 % in viscosity "
+        "(Haist "
+        "et al. 2020)\n");
+  };
+  return a;
 }
 
 int run(const Options& options) {
   const Stopwatch watch;
   FitInput in = input_of(options);
-  const FitResult result = read_and_fit(options, in);
-  const std::string name = std::filesystem::path(options.data).stem().string();
+  if (options.protocol && options.data.size() > 1)
+    throw scene::InputError("--protocol reads one record; " + std::to_string(options.data.size()) +
+                            " are given");
+  as_bad_input("the instrument", [&] {
+    check(in.instrument);
+    return 0;
+  });
+  const double factor = end_factor(options, in.instrument);
+  const Json given = input_json(options, in);
+  in.instrument.vane_height *= factor;  // torque and height enter all formulas as their quotient
+  const Answer answer = options.protocol          ? protocol(options, in, factor)
+                        : options.data.size() > 1 ? replicates(options, in, factor)
+                                                  : one_record(options, in, factor);
+  const std::string name = std::filesystem::path(options.data.front()).stem().string();
   const HeldInterrupts held;  // outlives the folder
   report::RunFolder folder(options.out.empty() ? "runs/" + name : options.out, options.force);
   scene::Outcome outcome;
   outcome.apparatus = "fit";
-  outcome.checks.reasons = result.reasons;
-  io::write_text(folder.staging() / "fit.csv", fit_csv(result, in.instrument));
-  const std::string note = draw(folder.staging(), fit_charts(result, in.instrument));
-  io::write_text(folder.staging() / "report.html",
-                 report::fit_html(fit_report(result, in.instrument, name, "tremie fit " + options.data)));
+  outcome.checks.reasons = answer.reasons;
+  for (const auto& [file, text] : answer.files) io::write_text(folder.staging() / file, text);
+  const std::string note = answer.charts.empty() ? "" : draw(folder.staging(), answer.charts);
   watch.stop(outcome.cost);
   Json summary = summary_of(outcome);
-  summary["results"] = report::fit_results(result);
-  summary["input"] = input_json(options, in);
+  summary["results"] = answer.results;
+  summary["input"] = given;
   io::write_text(folder.staging() / "summary.json", summary.dump(2) + "\n");
   folder.publish();
-  for (const auto& reason : result.reasons) fmt::print(stderr, "not to be trusted: {}\n", reason);
-  if (options.json) print_result_as_json(folder.target());
-  if (!options.quiet && !options.json) {
-    print_result(result);
+  for (const auto& reason : answer.reasons) fmt::print(stderr, "not to be trusted: {}\n", reason);
+  if (options.json) {
+    print_result_as_json(folder.target());
+  } else if (!options.quiet) {
+    answer.print();
     if (!note.empty()) fmt::print("{:<22} {}\n", "note", note);
     fmt::print("{:<22} {}\n", "written to", folder.target().string());
   }
-  return result.reasons.empty() ? done : not_to_be_trusted;
+  return answer.reasons.empty() ? done : not_to_be_trusted;
 }
 
 }  // namespace
@@ -166,7 +339,8 @@ void add_command_fit(CLI::App& app, int& exit_code) {
   auto* command = app.add_subcommand(fit_command.name, fit_command.description);
   command
       ->add_option("data", o->data,
-                   "CSV: speed_rev_per_s,torque_N_m (flow curve) or time_s,torque_N_m (decay)")
+                   "CSV or an instrument's export: speed and torque (flow curve), time and torque (decay), "
+                   "or all three; several files are replicates")
       ->required();
   command->add_option("--vane-radius", o->vane_radius, "\"63.5 mm\" (ICAR) by default");
   command->add_option("--vane-height", o->vane_height, "\"127 mm\" (ICAR) by default");
@@ -176,11 +350,21 @@ void add_command_fit(CLI::App& app, int& exit_code) {
   command->add_option("--yield-stress", o->yield_stress, "dynamic, where it is known: \"54 Pa\"");
   command->add_option("--plastic-viscosity", o->plastic_viscosity, "where it is known: \"35.8 Pa.s\"");
   command->add_option("--kinetics", o->kinetics, "of the flocculation")
-      ->check(CLI::IsMember({"gated", "roussel"}));
+      ->check(CLI::IsMember({"auto", "gated", "roussel", "power"}));
+  command->add_option("--law", o->law, "of a flow curve: the law, or both compared")
+      ->check(CLI::IsMember({"auto", "bingham", "herschel_bulkley"}));
   command->add_option("--critical-shear-rate", o->critical_shear_rate,
                       "of the gated kinetics, \"0.1 1/s\" by default");
-  command->add_option("--out", o->out, "Folder for the result (default: runs/<record's name>)");
+  command->add_flag("--protocol", o->protocol, "Read every section of a record with time, speed and torque");
+  command->add_option("--instrument-compliance", o->compliance,
+                      "the instrument's own turn by torque: \"0.02 rad/(N.m)\"");
+  command->add_option("--torque-offset", o->torque_offset,
+                      "of the unloaded instrument, taken off: \"0.3 mN.m\"");
+  command->add_option("--ends", o->ends, "what the ends of the vane carry")
+      ->check(CLI::IsMember({"none", "textbook", "computed"}));
+  command->add_option("--max-aggregate", o->max_aggregate, "largest grain, to judge the gap by: \"16 mm\"");
   add_json_option(*command, o->json);
+  command->add_option("--out", o->out, "Folder for the result (default: runs/<record's name>)");
   command->add_flag("--quiet", o->quiet, "Print nothing but errors");
   command->add_flag("--force", o->force, "Replace an earlier result in the folder");
   command->footer("tremie fit torque.csv, with --speed \"0.25 rev/s\" --rest \"240 s\" for a torque decay");

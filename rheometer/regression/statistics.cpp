@@ -1,4 +1,4 @@
-#include "rheometer/fits/statistics.hpp"
+#include "rheometer/regression/statistics.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -41,6 +41,10 @@ double incomplete_beta(double a, double b, double x) {
 double student_probability(double t, double degrees) {
   const double tail = 0.5 * incomplete_beta(0.5 * degrees, 0.5, degrees / (degrees + t * t));
   return t > 0.0 ? 1.0 - tail : tail;
+}
+
+double fisher_tail(double f, double d1, double d2) {
+  return f > 0.0 ? incomplete_beta(0.5 * d2, 0.5 * d1, d2 / (d2 + d1 * f)) : 1.0;
 }
 
 double student_quantile(double probability, double degrees) {

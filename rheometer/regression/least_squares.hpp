@@ -29,15 +29,16 @@ struct LeastSquaresFit {
   std::vector<double> fitted, residual;  ///< of all readings; residual = (observed - fitted)/fitted
   std::vector<char> outlier;
   double scatter = 0.0;            ///< relative standard deviation of one reading
-  double degrees_of_freedom = 0;   ///< readings left - parameters; 0: no uncertainty can be told
+  double degrees_of_freedom = 0;   ///< independent readings left - parameters; 0: no uncertainty can be told
   std::vector<char> told;          ///< parameters that the readings tell apart from the others
   std::vector<double> covariance;  ///< parameters x parameters; 0 where a parameter is not told
   double correlation = 0.0;        ///< of successive residuals
 };
 
 struct LeastSquaresOptions {
-  bool readings_in_time_order = false;  ///< then correlated residuals widen the covariance
-  double parameter_tolerance = 1e-10;   ///< relative change of the parameters to stop at
+  /// Then correlated residuals widen the covariance, and neighbours that miss alike are no outliers.
+  bool readings_in_time_order = false;
+  double parameter_tolerance = 1e-10;  ///< relative change of the parameters to stop at
   int max_iterations = 60;
 };
 

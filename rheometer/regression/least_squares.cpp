@@ -1,4 +1,4 @@
-#include "rheometer/fits/least_squares.hpp"
+#include "rheometer/regression/least_squares.hpp"
 
 #include <ceres/ceres.h>
 
@@ -8,7 +8,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "rheometer/fits/statistics.hpp"
+#include "rheometer/regression/statistics.hpp"
 
 namespace tremie {
 
@@ -225,6 +225,22 @@ std::vector<std::size_t> outliers(const Pass& robust) {
   return found;
 }
 
+/// Readings in time order: three neighbours or more that miss on the same side, or two at the end, are a part of the
+/// curve that the model does not describe, and so is the first, the peak. They are no outliers, and stay.
+std::vector<std::size_t> without_runs(const std::vector<std::size_t>& found, const Pass& robust) {
+  const auto last = static_cast<std::size_t>(robust.residual.size()) - 1;
+  std::vector<std::size_t> kept;
+  for (std::size_t from = 0, to = 0; from < found.size(); from = to) {
+    const auto high = [&](std::size_t k) {
+      return robust.residual(static_cast<Eigen::Index>(found[k])) > 0.0;
+    };
+    for (to = from + 1; to < found.size() && found[to] == found[to - 1] + 1 && high(to) == high(from);) ++to;
+    if (found[from] != 0 && to - from < (found[to - 1] == last ? 2u : 3u))
+      for (std::size_t k = from; k < to; ++k) kept.push_back(found[k]);
+  }
+  return kept;
+}
+
 /// Covariance of the parameters from (J^T J)^-1 and the residuals. With many readings it is the sandwich
 /// (HC3), which does not believe that the error is in proportion to the reading; with few, that assumption
 /// has to stand.
@@ -268,7 +284,10 @@ LeastSquaresFit fit_least_squares(const LeastSquaresProblem& p, const LeastSquar
     const double scale = std::max(2.0 * robust_deviation(residuals(fit.fitted)), resolution);
     robust = minimise(p, robust.parameters, fit.fitted, use, scale, rough);
   }
-  for (const std::size_t i : outliers(robust)) {
+  std::vector<std::size_t> found = outliers(robust);
+  std::sort(found.begin(), found.end());
+  if (options.readings_in_time_order) found = without_runs(found, robust);
+  for (const std::size_t i : found) {
     fit.outlier[i] = 1;
     use[i] = 0;
   }
@@ -286,8 +305,15 @@ LeastSquaresFit fit_least_squares(const LeastSquaresProblem& p, const LeastSquar
   fit.told = plain.told;
   Matrix covariance = parameter_covariance(plain, variance);
   const double significant = 3.0 / std::sqrt(static_cast<double>(plain.residual.size()));
-  if (options.readings_in_time_order && fit.correlation > significant)
-    covariance *= (1.0 + fit.correlation) / std::max(0.05, 1.0 - fit.correlation);
+  if (options.readings_in_time_order && fit.correlation > significant) {
+    // what the parameters take with them makes the correlation read low, by (1 + 3 rho + parameters)/n
+    const auto readings = static_cast<double>(plain.residual.size()),
+               p_count = static_cast<double>(fit.parameters.size());
+    const double rho = std::min(0.98, fit.correlation + (1.0 + 3.0 * fit.correlation + p_count) / readings);
+    covariance *= (1.0 + rho) / (1.0 - rho);
+    const double independent = readings * (1.0 - rho) / (1.0 + rho);
+    fit.degrees_of_freedom = std::min(fit.degrees_of_freedom, std::max(3.0, independent - p_count));
+  }
   fit.covariance.assign(covariance.data(), covariance.data() + covariance.size());
   return fit;
 }

@@ -1,0 +1,79 @@
+#pragma once
+
+// The reading of each section of a whole test: static yield stress and elastic rise of a start-up after a rest, flow
+// curve, decay at a constant rate; and A_thix from the peaks after rests of different length.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "rheometer/fits/fit.hpp"
+#include "rheometer/records/sections.hpp"
+
+namespace tremie {
+
+/// Start of the shear at a low rate.
+struct StartUpReading {
+  double peak_torque = 0.0;  ///< [N m]
+  double peak_time = 0.0;    ///< since the vane began to turn [s]
+  double end_torque = 0.0;   ///< at the end of the section [N m]
+  bool peak_inside = false;  ///< false: the torque still rises at the end, so the peak is a lower bound
+  std::optional<double> static_yield_stress;  ///< of the peak [Pa]
+  std::optional<double> shear_modulus;        ///< of the rise to half the peak [Pa]
+};
+
+/// The shape of a decay behind its peak, without a material: T_end + C e^(-t/t_0) against T_end + C (1 + t/t_0)^(-m).
+struct DecayShape {
+  double peak_torque = 0.0, end_torque = 0.0;  ///< [N m]
+  std::optional<double> half_time;             ///< from the peak to half of its torque [s]
+  std::optional<double> exponential_scatter;   ///< relative
+  std::optional<double> power_scatter, power_m;
+};
+
+struct SectionReading {
+  Section section;
+  long first_line = 0, last_line = 0;
+  double start = 0.0, duration = 0.0;  ///< [s]
+  std::optional<StartUpReading> start_up;
+  std::optional<DecayShape> decay;
+  std::optional<FitResult> fit;  ///< decay or flow curve
+  double fit_origin = 0.0;       ///< time from the start of the section at which a decay's fit begins [s]
+  std::vector<std::string> notes, reasons;
+};
+
+/// Peaks over rests: static yield stress = intercept + A_thix rest.
+struct Structuration {
+  std::optional<Estimate> A_thix, at_no_rest;  ///< [Pa/s], [Pa]
+  std::optional<double> scatter;               ///< of the peaks about the line, relative to their mean
+  std::optional<double> early, late;  ///< slope between the two shortest and the two longest rests [Pa/s]
+  std::vector<double> rest, stress;   ///< what was used [s], [Pa]
+  std::vector<std::string> notes;
+};
+
+struct ProtocolReading {
+  std::vector<SectionReading> sections;
+  Structuration structuration;
+  std::vector<std::string> reasons;  ///< why a section is not to be trusted, with its number
+};
+
+struct ProtocolOptions {
+  double compliance = 0.0;  ///< of the instrument: its own turn by torque [rad/(N m)]
+};
+
+/// Reads every section. `input` holds instrument, kinetics, law and what is known besides; its speed and rest are the
+/// sections'. Throws std::invalid_argument for an instrument that cannot be.
+ProtocolReading read_protocol(const ProtocolRecord& record, const FitInput& input,
+                              const ProtocolOptions& options = {});
+
+/// A start-up: rows of the section.
+StartUpReading read_start_up(const ProtocolRecord& record, const Section& section,
+                             const Instrument& instrument, const ProtocolOptions& options,
+                             std::vector<std::string>& notes);
+
+/// The shape of the torque from its peak on; time counts from the peak.
+DecayShape read_decay_shape(const std::vector<double>& time, const std::vector<double>& torque);
+
+/// The line through the peaks of the start-ups whose peak lies inside.
+Structuration structuration_of(const std::vector<SectionReading>& sections);
+
+}  // namespace tremie

@@ -1,0 +1,133 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "rheometer/protocol/protocol.hpp"
+#include "rheometer/regression/statistics.hpp"
+
+namespace tremie {
+
+namespace {
+
+/// Slope [N m/rad] of the torque over the vane's angle while it rises from its first value to half the peak; the rows
+/// of the first tenth of the rise are left out, as the drive still gathers speed there.
+std::optional<double> rise(const ProtocolRecord& r, std::size_t begin, std::size_t peak) {
+  const double first = r.torque[begin], top = r.torque[peak];
+  std::vector<double> angle, torque;
+  double turned = 0.0;
+  for (std::size_t i = begin; i <= peak; ++i) {
+    if (i > begin) turned += 0.5 * (r.omega[i] + r.omega[i - 1]) * (r.time[i] - r.time[i - 1]);
+    const double share = (r.torque[i] - first) / (top - first);
+    if (share > 0.5) break;
+    if (i > begin && share < 0.1) continue;
+    angle.push_back(turned);
+    torque.push_back(r.torque[i]);
+  }
+  const auto n = static_cast<double>(angle.size());
+  if (n < 3.0) return std::nullopt;
+  double ma = 0.0, mt = 0.0, aa = 0.0, at = 0.0;
+  for (std::size_t i = 0; i < angle.size(); ++i) ma += angle[i] / n, mt += torque[i] / n;
+  for (std::size_t i = 0; i < angle.size(); ++i) {
+    aa += (angle[i] - ma) * (angle[i] - ma);
+    at += (angle[i] - ma) * (torque[i] - mt);
+  }
+  return aa > 0.0 && at > 0.0 ? std::optional(at / aa) : std::nullopt;
+}
+
+/// G of an elastic material between the vane and the container: T = 4 pi h G angle/(R_i^-2 - R_o^-2).
+std::optional<double> modulus(std::optional<double> slope, const Instrument& in, double compliance,
+                              std::vector<std::string>& notes) {
+  if (!slope) {
+    notes.push_back("shear_modulus: fewer than 3 rows between the start of the shear and half its peak");
+    return std::nullopt;
+  }
+  const double material = 1.0 / *slope - compliance;
+  if (!(material > 0.05 / *slope)) {
+    notes.push_back("shear_modulus: the instrument's own compliance explains the rise");
+    return std::nullopt;
+  }
+  const double share =
+      1.0 / (in.vane_radius * in.vane_radius) - 1.0 / (in.container_radius * in.container_radius);
+  return share / (4.0 * std::numbers::pi * in.vane_height * material);
+}
+
+}  // namespace
+
+StartUpReading read_start_up(const ProtocolRecord& r, const Section& s, const Instrument& in,
+                             const ProtocolOptions& options, std::vector<std::string>& notes) {
+  StartUpReading reading;
+  std::size_t peak = s.begin;
+  for (std::size_t i = s.begin; i < s.end; ++i)
+    if (r.torque[i] > r.torque[peak]) peak = i;
+  reading.peak_torque = r.torque[peak];
+  reading.end_torque = r.torque[s.end - 1];
+  reading.peak_time = r.time[peak] - (s.begin > 0 ? r.time[s.begin - 1] : r.time[s.begin]);
+  // the torque has to fall again, by more than a reading's scatter
+  reading.peak_inside = peak > s.begin && peak + 2 < s.end && reading.end_torque < 0.98 * reading.peak_torque;
+  if (reading.peak_inside) {
+    reading.static_yield_stress = shear_stress_at(in.vane_radius, reading.peak_torque, in);
+    reading.shear_modulus = modulus(rise(r, s.begin, peak), in, options.compliance, notes);
+  } else {
+    notes.push_back(peak <= s.begin + 1
+                        ? "static_yield_stress: the torque does not rise, so no start-up was recorded"
+                        : "static_yield_stress: no peak, the torque still rises at the end of the "
+                          "section or stays level");
+  }
+  return reading;
+}
+
+Structuration structuration_of(const std::vector<SectionReading>& sections) {
+  Structuration result;
+  for (const SectionReading& s : sections) {
+    if (!s.start_up || !s.start_up->static_yield_stress || !(s.section.rest_before > 0.0)) continue;
+    result.rest.push_back(s.section.rest_before);
+    result.stress.push_back(*s.start_up->static_yield_stress);
+  }
+  const auto n = static_cast<double>(result.rest.size());
+  double mx = 0.0, my = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
+  for (std::size_t i = 0; i < result.rest.size(); ++i) mx += result.rest[i] / n, my += result.stress[i] / n;
+  for (std::size_t i = 0; i < result.rest.size(); ++i) {
+    const double x = result.rest[i] - mx, y = result.stress[i] - my;
+    xx += x * x, xy += x * y, yy += y * y;
+  }
+  if (n < 2.0 || !(xx > 1e-6 * mx * mx)) {
+    result.notes.push_back("structuration_rate: needs the peaks after two rests of different length");
+    return result;
+  }
+  const double slope = xy / xx, intercept = my - slope * mx;
+  result.A_thix = Estimate{slope, std::nullopt, false};
+  result.at_no_rest = Estimate{intercept, std::nullopt, false};
+  if (n < 3.0) {
+    result.notes.push_back("structuration_rate: two peaks tell no interval");
+    return result;
+  }
+  const double variance = std::max(0.0, yy - slope * xy) / (n - 2.0), t = student_quantile(0.975, n - 2.0);
+  const double half = t * std::sqrt(variance / xx),
+               half_0 = t * std::sqrt(variance * (1.0 / n + mx * mx / xx));
+  result.A_thix->ci95 = Interval{slope - half, slope + half};
+  result.at_no_rest->ci95 = Interval{intercept - half_0, intercept + half_0};
+  result.scatter = std::sqrt(variance) / my;
+  std::vector<std::size_t> order(result.rest.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return result.rest[a] < result.rest[b]; });
+  const auto between = [&](std::size_t a, std::size_t b) -> std::optional<double> {
+    const double rest = result.rest[b] - result.rest[a];
+    return rest > 0.0 ? std::optional((result.stress[b] - result.stress[a]) / rest) : std::nullopt;
+  };
+  result.early = between(order[0], order[1]);
+  result.late = between(order[order.size() - 2], order.back());
+  if (*result.scatter > 0.05 && result.early && result.late &&
+      std::abs(*result.early - *result.late) > 0.3 * slope) {
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "structuration_rate: the peaks do not lie on a line over the rest: %.3g Pa/s between the "
+                  "two shortest "
+                  "rests, %.3g Pa/s between the two longest; the one value is a mean",
+                  *result.early, *result.late);
+    result.notes.push_back(text);
+  }
+  return result;
+}
+
+}  // namespace tremie

@@ -1,0 +1,261 @@
+#include "rheometer/records/sections.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "rheometer/records/instrument_export.hpp"
+#include "rheometer/records/torque_record.hpp"
+
+namespace tremie {
+
+namespace {
+
+constexpr double same_speed = 0.03, drift = 0.015;
+constexpr std::size_t fewest_rows = 5;
+
+/// A run of rows: of constant speed, or between such runs.
+struct Piece {
+  std::size_t begin = 0, end = 0;
+  bool constant = false;
+
+  std::size_t size() const { return end - begin; }
+};
+
+/// The rows from `begin` on that keep the speed; their mean follows the first five.
+std::size_t end_of_constant(const std::vector<double>& omega, std::size_t begin, std::size_t end) {
+  double sum = omega[begin], rows = 1.0;
+  std::size_t i = begin + 1;
+  for (; i < end && std::abs(omega[i] - sum / rows) <= same_speed * sum / rows; ++i)
+    if (rows < 5.0) sum += omega[i], rows += 1.0;
+  return i;
+}
+
+/// A slow ramp keeps its speed for a few rows too, but drifts through all of the tolerance.
+bool drifts(const std::vector<double>& omega, std::size_t begin, std::size_t end) {
+  const std::size_t third = std::max<std::size_t>(1, (end - begin) / 3);
+  double first = 0.0, last = 0.0;
+  for (std::size_t i = 0; i < third; ++i) first += omega[begin + i], last += omega[end - 1 - i];
+  return std::abs(last - first) > drift * first;
+}
+
+std::vector<Piece> pieces_of(const std::vector<double>& omega, std::size_t begin, std::size_t end) {
+  std::vector<Piece> pieces;
+  for (std::size_t i = begin; i < end;) {
+    const std::size_t stop = end_of_constant(omega, i, end);
+    if (stop - i >= fewest_rows && !drifts(omega, i, stop)) {
+      pieces.push_back({i, stop, true});
+      i = stop;
+    } else {
+      if (pieces.empty() || pieces.back().constant) pieces.push_back({i, i, false});
+      pieces.back().end = ++i;
+    }
+  }
+  return pieces;
+}
+
+/// Few rows before a constant speed are the vane's start, few rows behind it its stop: they belong to it.
+std::vector<Piece> without_transitions(std::vector<Piece> pieces) {
+  std::vector<Piece> kept;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    Piece p = pieces[i];
+    const bool next = i + 1 < pieces.size() && pieces[i + 1].constant;
+    const std::size_t near = std::max(next ? pieces[i + 1].size() : 0, kept.empty() ? 0 : kept.back().size());
+    if (!p.constant && p.size() <= std::max<std::size_t>(fewest_rows - 1, near / 10)) {
+      if (next) {
+        pieces[i + 1].begin = p.begin;
+        continue;
+      }
+      if (!kept.empty()) {
+        kept.back().end = p.end;
+        continue;
+      }
+    }
+    kept.push_back(p);
+  }
+  return kept;
+}
+
+double median_speed(const std::vector<double>& omega, const Piece& p) {
+  std::vector<double> v(omega.begin() + static_cast<std::ptrdiff_t>(p.begin),
+                        omega.begin() + static_cast<std::ptrdiff_t>(p.end));
+  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
+  std::nth_element(v.begin(), middle, v.end());
+  return *middle;
+}
+
+double highest(const std::vector<double>& omega, std::size_t begin, std::size_t end) {
+  return *std::max_element(omega.begin() + static_cast<std::ptrdiff_t>(begin),
+                           omega.begin() + static_cast<std::ptrdiff_t>(end));
+}
+
+Section flow_curve(const std::vector<double>& omega, std::size_t begin, std::size_t end, bool up,
+                   bool stepped) {
+  Section s;
+  s.kind = up ? SectionKind::flow_curve_up : SectionKind::flow_curve_down;
+  s.begin = begin;
+  s.end = end;
+  s.omega = highest(omega, begin, end);
+  s.stepped = stepped;
+  return s;
+}
+
+/// Rows that keep no speed: a ramp up, a ramp down, or both.
+void add_ramps(const std::vector<double>& omega, const Piece& p, std::vector<Section>& sections) {
+  const auto from = omega.begin() + static_cast<std::ptrdiff_t>(p.begin);
+  const auto top = static_cast<std::size_t>(
+      std::max_element(from, omega.begin() + static_cast<std::ptrdiff_t>(p.end)) - omega.begin());
+  const auto rows = [&](std::size_t a, std::size_t b) { return b - a >= fewest_rows; };
+  if (rows(p.begin, top + 1) && omega[top] > 1.3 * omega[p.begin])
+    sections.push_back(flow_curve(omega, p.begin, top + 1, true, false));
+  const std::size_t behind = sections.empty() || sections.back().end != top + 1 ? p.begin : top + 1;
+  if (rows(behind, p.end) && omega[p.end - 1] < 0.77 * highest(omega, behind, p.end)) {
+    sections.push_back(flow_curve(omega, behind, p.end, false, false));
+  } else if (behind < p.end) {
+    Section s;
+    s.begin = behind;
+    s.end = p.end;
+    s.omega = highest(omega, behind, p.end);
+    sections.push_back(s);
+  }
+}
+
+/// How many of the pieces from i on are steps of one flow curve, up or down; fewer than 3 are none. A first step that
+/// takes more than 2.5 times as many rows as the others is a pre-shear.
+std::size_t steps_from(const std::vector<Piece>& pieces, const std::vector<double>& speed, std::size_t i,
+                       bool up) {
+  std::size_t n = 1;
+  while (i + n < pieces.size() && pieces[i + n].constant && pieces[i].constant &&
+         (up ? speed[i + n] > 1.03 * speed[i + n - 1] : speed[i + n] < 0.97 * speed[i + n - 1]))
+    ++n;
+  if (n < 3) return 0;
+  return 2 * pieces[i].size() > 5 * pieces[i + 1].size() ? 0 : n;
+}
+
+/// Sections of rows in which the vane turns.
+void add_shear(const std::vector<double>& omega, std::size_t begin, std::size_t end,
+               std::vector<Section>& sections) {
+  const std::vector<Piece> pieces = without_transitions(pieces_of(omega, begin, end));
+  std::vector<double> speed;
+  for (const Piece& p : pieces) speed.push_back(median_speed(omega, p));
+  for (std::size_t i = 0; i < pieces.size();) {
+    const std::size_t up = steps_from(pieces, speed, i, true), down = steps_from(pieces, speed, i, false);
+    if (const std::size_t n = std::max(up, down); n > 0) {
+      sections.push_back(flow_curve(omega, pieces[i].begin, pieces[i + n - 1].end, up > 0, true));
+      i += n;
+      continue;
+    }
+    if (pieces[i].constant) {
+      Section s;
+      s.kind = SectionKind::constant_rate;
+      s.begin = pieces[i].begin;
+      s.end = pieces[i].end;
+      s.omega = speed[i];
+      sections.push_back(s);
+    } else {
+      add_ramps(omega, pieces[i], sections);
+    }
+    ++i;
+  }
+}
+
+/// Rests before, start-ups and the pre-shear: what a section is by what lies around it.
+void name_by_neighbours(const ProtocolRecord& r, double fastest, std::vector<Section>& sections) {
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    Section& s = sections[i];
+    if (i > 0 && sections[i - 1].kind == SectionKind::rest) {
+      const Section& rest = sections[i - 1];
+      s.rest_before = r.time[rest.end - 1] - r.time[rest.begin > 0 ? rest.begin - 1 : 0];
+    }
+    if (s.kind != SectionKind::constant_rate) continue;
+    const bool slow = s.omega < 0.1 * fastest || (s.rest_before > 0.0 && s.omega < 0.3 * fastest);
+    if (slow) s.kind = SectionKind::start_up;
+  }
+  for (Section& s : sections) {
+    if (s.kind == SectionKind::rest) continue;
+    s.pre_shear = s.kind == SectionKind::constant_rate && &s != &sections.back() && s.omega > 0.5 * fastest;
+    break;
+  }
+}
+
+}  // namespace
+
+std::string_view name_of(SectionKind kind) {
+  switch (kind) {
+    case SectionKind::rest:
+      return "rest";
+    case SectionKind::start_up:
+      return "start-up";
+    case SectionKind::constant_rate:
+      return "constant rate";
+    case SectionKind::flow_curve_up:
+      return "flow curve up";
+    case SectionKind::flow_curve_down:
+      return "flow curve down";
+    case SectionKind::other:
+      break;
+  }
+  return "other";
+}
+
+ProtocolRecord protocol_of(const NumberTable& table) {
+  ProtocolRecord r;
+  r.time = table.column[0];
+  double carried = 0.0;
+  for (std::size_t i = 0; i < r.time.size(); ++i) {
+    if (i > 0 && table.column[0][i] < table.column[0][i - 1]) {
+      carried = r.time[i - 1] - std::min(0.0, table.column[0][i]);
+      r.restarts.push_back(i);
+    }
+    r.time[i] += carried;
+  }
+  for (const double w : table.column[1]) r.omega.push_back(std::abs(w));
+  r.torque = table.column[2];
+  r.line = table.line;
+  return r;
+}
+
+std::vector<Section> find_sections(const ProtocolRecord& r) {
+  std::vector<Section> sections;
+  if (r.omega.empty()) return sections;
+  const double fastest = highest(r.omega, 0, r.omega.size());
+  const auto rests = [&](std::size_t i) { return !(r.omega[i] > 5e-4 * fastest); };
+  for (std::size_t begin = 0, end = 0; begin < r.omega.size(); begin = end) {
+    for (end = begin + 1; end < r.omega.size() && rests(end) == rests(begin); ++end) {
+    }
+    if (rests(begin))
+      sections.push_back({SectionKind::rest, begin, end, 0.0, 0.0, false, false});
+    else
+      add_shear(r.omega, begin, end, sections);
+  }
+  name_by_neighbours(r, fastest, sections);
+  return sections;
+}
+
+ProtocolRecord parse_protocol_record(std::string_view bytes, const std::string& name, double torque_offset) {
+  const std::string text = decoded_text(bytes, name);
+  const auto plain = plain_export(text, name);
+  const NumberTable table = parse_number_table(plain ? plain->text : text, name, torque_quantities());
+  for (std::size_t q = 0; q < 3; ++q)
+    if (table.position[q] == 0)
+      throw RecordError(at_position(name, std::max(1L, table.header_line), 1,
+                                    "--protocol needs columns of time, speed and torque; there is none of " +
+                                        std::string(torque_quantities()[q].name)));
+  if (table.line.empty()) throw RecordError(at_position(name, table.header_line, 1, "a header without rows"));
+  ProtocolRecord record = protocol_of(table);
+  if (plain) record.understood = plain->understood;
+  for (double& torque : record.torque) torque -= torque_offset;
+  const double fastest = highest(record.omega, 0, record.omega.size());
+  for (std::size_t i = 0; i < record.torque.size(); ++i)
+    if (record.torque[i] < 0.0 && record.omega[i] > 5e-4 * fastest)
+      throw RecordError(
+          at_position(name, record.line[i], table.position[2],
+                      "the torque is negative while the vane turns; give its magnitude, or the offset "
+                      "of the unloaded instrument, --torque-offset \"-0.3 mN.m\""));
+  if (!record.restarts.empty())
+    record.understood.push_back("the clock starts again at " + std::to_string(record.restarts.size()) +
+                                " rows, the first on line " +
+                                std::to_string(record.line[record.restarts[0]]) + "; time is carried on");
+  return record;
+}
+
+}  // namespace tremie
