@@ -45,6 +45,7 @@ inline StepSettings step_settings(const Scene& scene) {
   StepSettings settings = test_run::step_settings(scene.model);
   if (scene.model.space != SpaceKind::axisymmetric) settings.time_error = 0.005;
   settings.friction_coefficient = scene.floor.coefficient;
+  settings.settle_on_floor = true;
   settings.wall_gap = 0.5 * scene.model.cell[0] / scene.model.points_per_cell[0];
   return settings;
 }
