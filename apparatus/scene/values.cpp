@@ -62,8 +62,13 @@ void Values::fail(std::string_view key, const std::string& what) const {
 }
 
 void Values::set_number(std::string_view key, double value, Layer layer, const std::string& note) {
+  set_numbers(key, {value}, layer, note);
+}
+
+void Values::set_numbers(std::string_view key, std::vector<double> values, Layer layer,
+                         const std::string& note) {
   Value& entry = entries[std::string(key)];
-  entry.numbers = {value};
+  entry.numbers = std::move(values);
   entry.words.clear();
   entry.origin.layer = layer;
   entry.note = note;

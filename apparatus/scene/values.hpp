@@ -54,6 +54,7 @@ class Values {
 
   /// For rules over several keys.
   void set_number(std::string_view key, double value, Layer layer, const std::string& note);
+  void set_numbers(std::string_view key, std::vector<double> values, Layer layer, const std::string& note);
   void drop(std::string_view key);
   /// Drops what has no meaning beside `decider`: quietly where it is a default, with a note where a later
   /// layer decided; throws InputError where the decider's own layer gave it. `why` follows the key's name.

@@ -80,6 +80,7 @@ Outcome run_implicit_in(const Scene& scene, const Observer& observer) {
   test_run::judge(body, start_mass, outcome.checks, outcome.cost);
   test_run::judge_volume(outcome.series.front().volume_change, outcome.checks);
   judge_depth(scene, outcome);
+  judge_points_across(scene, outcome);
   judge_lift(outcome);
   judge_height(scene, outcome);
   outcome.final_frame = test_run::frame_of(body);

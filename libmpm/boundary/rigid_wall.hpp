@@ -57,10 +57,10 @@ std::vector<ContactPoint<D>> find_contact(const ActiveGrid<D>& grid, const Point
       if (dt < contact_relaxation && overlap > 0.0)
         contact_point.target = std::min(contact_point.target, wall_speed + overlap / contact_relaxation);
       // A layer of the points' spacing, 2 gap_min, under the pressure p gives way by p dt^2 / (2 rho gap_min)
-      // over the penalty: no farther than the points are kept from the wall.
+      // over the penalty: no farther than the points are kept from the wall, nor than a step gives back.
       const double rho = points.mass[p] / points.volume(p),
                    p_wall = std::max(0.0, pressure(points.ln_J[p], K));
-      const double needed = p_wall * dt * dt / (2.0 * rho * gap_min * gap_min);
+      const double needed = p_wall * dt * dt / (2.0 * rho * gap_min * std::min(gap_min, reach));
       contact_point.stiffness = std::max(penalty, needed) * points.mass[p] / dt;
       contact.push_back(contact_point);
     }

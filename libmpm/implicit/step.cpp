@@ -29,7 +29,7 @@ StepReport implicit_step(ImplicitBody<Geometry>& body, const YieldLaw& law, cons
   detail::carry_over_admm_state(old_cells, law, settings, body);
   old_cells = {};
   lay_out_quadrature<Geometry>(body.grid, body.points, body.mix.tau_0, body.mix.K, body.quadrature,
-                               settings.cut_cell_rule);
+                               settings.cut_cell_rule, settings.settle_on_floor);
   body.v = body.nodes.v;
 
   // The step's convex problem and its solution, the velocities at the end of the step. One that does not

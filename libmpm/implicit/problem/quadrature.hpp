@@ -221,14 +221,35 @@ inline void lay_out_kinds(const ActiveGrid<3>& grid, Quadrature<ThreeD>& quadrat
   }
 }
 
+/// What is in a cell on the floor lies on it: its lower places are full before its upper ones hold anything. Points
+/// that a front has rolled over never settle there, and the floor would hold with a part of the yield stress.
+template <class Geometry>
+void settle_on_floor(const ActiveGrid<Geometry::dim>& grid, const Index<Geometry::dim>& cell,
+                     const std::array<Vec<Geometry::dim>, power(2, Geometry::dim)>& x,
+                     std::array<double, power(2, Geometry::dim)>& V) {
+  if constexpr (requires { Geometry::up; }) {
+    constexpr int up = Geometry::up;
+    if (!grid.axes[up].clamped_low() || cell[up] != 0) return;
+    const auto full = full_volumes<Geometry>(grid.axes, x);
+    for (int k = 0; k < power(2, Geometry::dim); ++k) {
+      if ((k >> up) & 1) continue;
+      const int above = k | (1 << up);
+      const double all = V[k] + V[above];
+      V[k] = std::min(all, std::max(V[k], full[k]));
+      V[above] = all - V[k];
+    }
+  }
+}
+
 }  // namespace detail
 
 /// Lays out the quadrature of a step: places, volumes, yield stresses tau_y = (1 + lambda) tau_0 and
 /// pressures. `fit`: the places of partly filled cells are fitted to their points (cut_cell_rule.hpp), in a
-/// section.
+/// section. `settle`: partly filled cells on the floor are full from below.
 template <class Geometry>
 void lay_out_quadrature(const ActiveGrid<Geometry::dim>& grid, const Points<Geometry::dim>& points,
-                        double tau_0, double K, Quadrature<Geometry>& quadrature, bool fit = false) {
+                        double tau_0, double K, Quadrature<Geometry>& quadrature, bool fit = false,
+                        bool settle = false) {
   constexpr int D = Geometry::dim, n = power(2, D);
   quadrature.resize(grid.cell_index.size());
   if constexpr (D == 3) detail::lay_out_kinds(grid, quadrature);
@@ -254,6 +275,7 @@ void lay_out_quadrature(const ActiveGrid<Geometry::dim>& grid, const Points<Geom
       for (int k = 0; k < n; ++k) section += quadrature.V[c][k] / Geometry::measure(x[k]);
       for (int k = 0; k < n; ++k) quadrature.V[c][k] = section / n * Geometry::measure(x[k]);
     }
+    if (settle && !inside) detail::settle_on_floor<Geometry>(grid, cell, x, quadrature.V[c]);
     // Inside the body a cell is full: with counted volumes the pressure would push whenever a point crosses
     // into a cell.
     if (inside) quadrature.V[c] = detail::full_volumes<Geometry>(grid.axes, x);
