@@ -73,7 +73,7 @@ struct SlenderBars {
 /// m of a bar on square cells of so many of its radii, which stands s0 and s1 of a cell away from a corner of the
 /// cells: within 0.03/4 pi of what rows of bars gave, 3 % of their drag.
 inline double bar_mobility(double cells, double s0, double s1) {
-  const double mean = std::min(0.15 * cells, 0.19) + 0.11 * std::max(0.0, cells - 2.15);
+  const double mean = std::min(0.12 * cells, 0.19) + 0.11 * std::max(0.0, cells - 2.15);
   const double varies = 0.06 * std::max(0.0, cells - 1.7);
   const double round = 2.0 * std::numbers::pi;
   return (mean + varies * (std::cos(round * s0) + std::cos(round * s1))) / (4.0 * std::numbers::pi);
