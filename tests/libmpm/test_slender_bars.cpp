@@ -72,14 +72,14 @@ TEST(SlenderBars, ARowInANewtonianFluidTakesTheClosedForms) {
 }
 
 // In a concrete that hardly flows, Bi = 1000, it is the limit load of a rough cylinder, 11.94 tau_0 D, within 3 %. In
-// between the law is linear where a bar's boundary layers make the drag grow with the root of the speed: within 20 % at
-// Bi = 10 and 15 % at 100 of sections on cells of D/14, 16.2 and 14.0 tau_0 D (tests/verification/bars.md).
+// between the law is linear in the speed, the drag is not: within 12, 25 and 5 % of finite elements at Bi = 1, 10, 100
+// (tests/verification/bars.md).
 TEST(SlenderBars, TheDragInAPlasticIsTheLimitLoad) {
   for (double along : {0.0, 0.5})
     for (const auto& [Bi, drag, tolerance] :
-         {std::array{10.0, 16.2, 0.2}, {100.0, 14.0, 0.15}, {1000.0, 11.94, 0.03}}) {
+         {std::array{1.0, 28.2, 0.12}, {10.0, 15.8, 0.25}, {100.0, 13.0, 0.05}, {1000.0, 11.94, 0.03}}) {
       const double found = drag_of_row<PlaneStrain>(0.0707 / 5, 5, along, Bi) / Bi;
-      std::printf("Bi %g: %.2f tau_0 D, section %.2f\n", Bi, found, drag);
+      std::printf("Bi %g: %.2f tau_0 D, expected %.2f\n", Bi, found, drag);
       EXPECT_NEAR(found / drag, 1.0, tolerance);
     }
 }
