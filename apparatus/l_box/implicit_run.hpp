@@ -64,13 +64,13 @@ void read_results(const Body<Geometry>& body, const Scene& scene, std::optional<
   read_profile(body, scene, r);
 }
 
-/// The concrete sticks to a bar in all of the cells that it stands in, which makes a bar of one cell thicker
-/// than it is, and lets the velocities behind it alternate from cell to cell.
+/// The drag of a bar between cells that resolve it and those for which it was measured; and a gap wants two cells.
 inline void judge_bars(const Scene& scene, Checks& checks) {
-  const double cell = scene.model.cell[0];
-  if (scene.bars > 0 && cell > 0.5 * bar_diameter * (1.0 + 1e-9))
+  const double cell = scene.model.cell[0], most = 0.5 * bar_cells_most * bar_diameter;
+  if (scene.bars > 0 && cell > most * (1.0 + 1e-9))
     checks.reasons.push_back("cells of " + std::to_string(std::lround(1e3 * cell)) +
-                             " mm do not resolve the bars of 12 mm: a model.cell of at most 6 mm");
+                             " mm are too large for the gaps between the bars: a model.cell of at most " +
+                             std::to_string(std::lround(1e3 * most)) + " mm");
 }
 
 /// Depths and how far they reach are the grid's where a few cells make them: below these the passing ratio is
@@ -96,6 +96,8 @@ template <class Geometry>
 Outcome run_in(const Scene& scene, const Observer& observer) {
   ImplicitBody<Geometry> body{filled_column<Geometry>(scene)};
   StepSettings settings = step_settings<Geometry>(scene);
+  if constexpr (Geometry::dim == 3)
+    if (!resolves_bars(body.grid.axes[1].h)) body.bars = slender_bars(scene, body.grid.axes);
   const double start_mass = test_run::total_mass(body.points);
 
   Outcome outcome;

@@ -50,14 +50,29 @@ Section test_section() {
 
 bool in_the_plane(const Values& values) { return values.word("model.space").starts_with("plane"); }
 
+/// Three dimensions start from cells and points that take minutes; a scene that gives one of the two is taken at its
+/// word.
+void settle_model(Values& values) {
+  if (in_the_plane(values)) return;
+  const char* note = "the default in three dimensions";
+  if (!values.given("model.cell")) values.set_number("model.cell", 0.015, Layer::fallback, note);
+  if (values.given("model.points_per_cell")) return;
+  values.set_number("model.points_per_cell", 8, Layer::fallback, note);
+  values.entries["model.points_per_cell"].numbers.push_back(4);
+}
+
 void settle(Values& values) {
   settle_mix(values);
+  settle_model(values);
   const auto bars = values.integer("test.bars");
   if (bars == 1) values.fail("test.bars", "1 is not allowed; allowed: 0, 2 (class PL1) or 3 (class PL2)");
   if (bars > 0 && in_the_plane(values))
     values.fail("test.bars", fmt::format("{} bars need three dimensions, model.space = \"half\" or \"full\"; "
                                          "in the plane the box has none (bars = 0)",
                                          bars));
+  if (bars > 0 && values.word("model.method") == "newton")
+    values.fail("model.method",
+                "\"newton\" does not know bars; allowed with test.bars: \"auto\" or \"admm\"");
   if (values.number("box.channel_height") > values.number("box.column_height"))
     values.fail("box.channel_height",
                 fmt::format("is above the column's top; allowed: at most column_height, \"{}\"",

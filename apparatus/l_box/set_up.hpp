@@ -73,10 +73,27 @@ inline std::vector<double> bar_places(const Scene& scene) {
   return places;
 }
 
-/// The bars right in front of the gate, as cylinders to which the concrete sticks.
+/// Where the plane in the middle of the box is across the grid [m].
+inline double middle_plane(const Scene& scene) {
+  return scene.model.space == SpaceKind::half ? 0.0 : 0.5 * computed_width(scene);
+}
+
+/// Whether cells of this size resolve a bar, two to its diameter.
+inline bool resolves_bars(double cell) { return cell <= 0.5 * bar_diameter * (1.0 + 1e-9); }
+
+/// The bars right in front of the gate on cells that do not resolve them.
+inline std::vector<BarPoint<3>> slender_bars(const Scene& scene, const std::array<Axis, 3>& axes) {
+  std::vector<BarPoint<3>> points;
+  for (double place : bar_places(scene))
+    add_bar(axes, {scene.box.column_length + 0.5 * bar_diameter, middle_plane(scene) + place, 0.0}, 2,
+            scene.box.channel_height, bar_diameter, points);
+  std::erase_if(points, [](const BarPoint<3>& p) { return p.x[1] < 0.0; });  // beyond the plane of symmetry
+  return points;
+}
+
+/// The same on cells that resolve them: cylinders to which the concrete sticks.
 inline void add_bars(const Scene& scene, double spacing, std::vector<BoundaryPoint<3>>& points) {
-  const double R = 0.5 * bar_diameter, width = computed_width(scene);
-  const double middle = scene.model.space == SpaceKind::half ? 0.0 : 0.5 * width;
+  const double R = 0.5 * bar_diameter, middle = middle_plane(scene);
   const int around = std::max(8, static_cast<int>(std::ceil(2.0 * std::numbers::pi * R / spacing)));
   const int rows = static_cast<int>(std::ceil(scene.box.channel_height / spacing));
   for (double place : bar_places(scene))
@@ -118,7 +135,8 @@ std::vector<BoundaryPoint<Geometry::dim>> walls_inside(const Scene& scene,
       points.push_back(point);
     }
   }
-  if constexpr (D == 3) add_bars(scene, 0.5 * std::min(axes[1].h, axes[up].h), points);
+  if constexpr (D == 3)
+    if (resolves_bars(axes[1].h)) add_bars(scene, 0.5 * std::min(axes[1].h, axes[up].h), points);
   return points;
 }
 

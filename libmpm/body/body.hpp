@@ -6,6 +6,7 @@
 
 #include "libmpm/boundary/boundary_points.hpp"
 #include "libmpm/boundary/flat_walls.hpp"
+#include "libmpm/boundary/slender_bars.hpp"
 #include "libmpm/constitutive/mix.hpp"
 #include "libmpm/transfer/apic.hpp"
 
@@ -22,6 +23,7 @@ struct Body {
   Motion<Geometry> motion{};               ///< of the points
   WallVelocities<D> walls{};               ///< of the walls at the ends of the axes
   std::vector<BoundaryPoint<D>> boundary;  ///< walls inside the grid
+  std::vector<BarPoint<D>> bars{};         ///< thinner than the grid resolves
   double time = 0.0, dt = 0.0;             ///< [s]; dt of the last step
 
   NodalState<D> nodes;             ///< of the last step, velocities at its start

@@ -9,6 +9,8 @@ namespace tremie {
 
 template <int D>
 inline constexpr bool stored_plainly<FrictionNode<D>> = true;
+template <int D>
+inline constexpr bool stored_plainly<BarDrag<D>> = true;
 template <>
 inline constexpr bool stored_plainly<PackedAdmmState::Batch> = true;
 
@@ -30,12 +32,12 @@ void visit(Archive& archive, AdmmState<Geometry>& state) {
   if constexpr (Geometry::dim == 3) archive(state.packed);
 }
 
-/// Stresses, rates and friction stand by the cells and nodes that were active in the last step. A grid's axes and its
+/// Stresses, rates, friction and the drag of bars stand by the cells and nodes that were active in the last step. A grid's axes and its
 /// blocks are the scene's; matrices and factors follow from the grid.
 template <class Geometry>
 void visit(Archive& archive, ImplicitBody<Geometry>& body) {
   archive(body.points, body.time, body.dt, body.motion, body.walls.v);
-  archive(body.grid.cell_map, body.grid.node_map, body.admm_state, body.friction);
+  archive(body.grid.cell_map, body.grid.node_map, body.admm_state, body.friction, body.bar_drag.drag);
   archive(body.quadrature.tau_y, body.time_error, body.shear_rate);
 }
 

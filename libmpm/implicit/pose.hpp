@@ -6,13 +6,11 @@
 
 #include "libmpm/boundary/flat_walls.hpp"
 #include "libmpm/boundary/rigid_wall.hpp"
+#include "libmpm/implicit/bar_drag.hpp"
 #include "libmpm/implicit/carry_over.hpp"
 #include "libmpm/implicit/free_surface.hpp"
 
 namespace tremie::detail {
-
-/// Rates at which the viscosity of a law that is not Newtonian may be taken for the scale of its stresses [1/s].
-inline constexpr double typical_rates[2] = {0.01, 100.0};
 
 /// The side walls of a section averaged over the width W: the concrete sticks to them, so they hold each node
 /// with the yield stress and, for the parabola between two plates, the viscous stress 6 mu v / W on both
@@ -64,6 +62,7 @@ void pose(ImplicitBody<Geometry>& body, const YieldLaw& law, const StepSettings&
   fill_mirrors<D>(body.grid, body.v);
   if (settings.side_wall_distance > 0.0) add_side_walls(settings.side_wall_distance, law, body.v, *posed);
   posed->bound = find_penalty_points(body.grid, body.nodes, body.boundary, dt, settings.boundary_stiffness);
+  if (!body.bars.empty()) add_bars(body, law, *posed);
   if constexpr (D == 2 && requires { Geometry::up; })
     if (settings.moving_surface) posed->surface = surface_of_pool(body, dt);
   carry_friction<Geometry>(body.friction, old_nodes, body.grid, posed->friction);

@@ -24,7 +24,8 @@ double force_scale(const ImplicitBody<Geometry>& body, double dt) {
   return scale;
 }
 
-/// Solves with the chosen method; `automatic` is ADMM, and Newton where ADMM does not converge.
+/// Solves with the chosen method; `automatic` is ADMM, and Newton where ADMM does not converge. With bars it is ADMM
+/// alone.
 template <class Geometry>
 SolveReport solve_yield(YieldProblem<Geometry>& problem, const YieldLaw& law, const StepSettings& settings,
                         ImplicitBody<Geometry>& body) {
@@ -35,11 +36,11 @@ SolveReport solve_yield(YieldProblem<Geometry>& problem, const YieldLaw& law, co
     }
   const double scale = force_scale(body, problem.dt);
   body.system.set_pattern(body.grid);
-  if (settings.method == YieldMethod::newton)
+  if (settings.method == YieldMethod::newton && problem.bars.drag.empty())
     return solve_newton(problem, law, settings.newton, scale, body.system, body.v, body.admm_state);
   FactorisedAdmm<Geometry> form{problem, law, settings.admm, body.system, body.admm_state};
   SolveReport report = solve_admm(problem, settings.admm, form, body.v);
-  if (report.converged || settings.method == YieldMethod::admm) return report;
+  if (report.converged || settings.method == YieldMethod::admm || !problem.bars.drag.empty()) return report;
   const int before = report.iterations;
   report = solve_newton(problem, law, settings.newton, scale, body.system, body.v, body.admm_state);
   report.iterations += before;

@@ -51,6 +51,7 @@ struct ImplicitBody : Body<Geometry> {
   AdmmState<Geometry> admm_state{};
   std::vector<FrictionNode<D>> friction{};
   std::vector<PenaltyPoint<D>> bound{};  ///< walls inside the grid that touched concrete in the last step
+  SlenderBars<D> bar_drag{};             ///< of the points of bars that touched concrete in the last step
   double time_error = 0.0;               ///< of the last step: its local error, if it was asked for [m]
   double shear_rate = 0.0;               ///< mean of the last step [1/s]
   BlockSystem<D> system{};

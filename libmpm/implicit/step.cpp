@@ -59,6 +59,7 @@ StepReport implicit_step(ImplicitBody<Geometry>& body, const YieldLaw& law, cons
   }
   body.friction = problem.friction;
   body.bound = problem.bound;
+  body.bar_drag = problem.bars;
   if (settings.keep_forces) detail::keep_forces(problem, law, body);
 
   release(posed->contact);

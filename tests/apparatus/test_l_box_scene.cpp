@@ -33,6 +33,14 @@ TEST(LBoxScene, DefaultsAreTheStandards) {
   EXPECT_EQ(s.model.points_per_cell, (std::array{16, 4}));
 }
 
+// Three dimensions have cells and points of their own, each unless the scene gives it.
+TEST(LBoxScene, ThreeDimensionsStartFromLargerCells) {
+  const auto s = l_box_of(mix_a, {"model.space=half", "test.bars=2"});
+  EXPECT_EQ(s.model.cell, (std::array{0.015, 0.015}));
+  EXPECT_EQ(s.model.points_per_cell, (std::array{8, 4}));
+  EXPECT_EQ(l_box_of(mix_a, {"model.space=half", "model.cell=20 mm"}).model.cell[0], 0.02);
+}
+
 TEST(LBoxScene, WhatASceneSays) {
   const auto s =
       l_box_of(mix_a + "[box]\nwidth = \"15 cm\"\n[test]\nrest = \"4 min\"\ngate_speed = \"instant\"\n",
@@ -48,6 +56,8 @@ TEST(LBoxScene, FaultsNameTheKey) {
   EXPECT_TRUE(says(complaint(mix_a, {"test.bars=4"}), {"test.bars", "at most 3"}));
   EXPECT_TRUE(says(complaint(mix_a, {"test.bars=2"}), {"test.bars", "three dimensions", "\"half\""}));
   EXPECT_EQ(complaint(mix_a, {"test.bars=2", "model.space=half"}), "");
+  EXPECT_TRUE(says(complaint(mix_a, {"test.bars=2", "model.space=half", "model.method=newton"}),
+                   {"model.method", "\"auto\""}));
   EXPECT_TRUE(says(complaint(mix_a, {"test.gate_speed=0 m/s"}), {"test.gate_speed", "greater than 0 m/s"}));
   EXPECT_TRUE(says(complaint(mix_a, {"test.lift_speed=1 m/s"}), {"test.lift_speed", "unknown key"}));
   EXPECT_TRUE(

@@ -124,7 +124,7 @@ Where detached_share and films fall the surface is loose: cells there are 0.85 t
 | half, 2 bars: not to be trusted | 81.2 | 48.1 | 0.592 | 80 |
 | half, 3 bars: not to be trusted | 82.0 | 47.4 | 0.578 | 80 |
 
-Without bars space agrees with the sections within 1 % in H1, 2 to 5 % in H2 and 3 to 5 % in the ratio. The front is up to 7 % faster on coarse cells: partly filled cells keep the places of full ones (cut_cell_rule.hpp is for sections), which leaves what is thin less friction. Nor does space have the viscosity against velocities that alternate from node to node, and the bars call them up: at 60 s cells behind them are in turn 0.7 and 1.0 deep, which is what their H1 shows. Before that they hold the concrete back as they should: after 10 s the ratio is 0.184 with two bars and 0.287 without; after 2 s on 25 mm cells the front stands at 487, 418 and 331 mm with none, two and three (lbox_test.cpp). Cells of 20 mm fit twice into a gap, but stick to a bar of 12 mm as if it were as thick as they are. A run with bars on cells of more than 6 mm, two to a bar, is marked; none on finer ones has been made (10 mm cells: 1.5 million points, and 4 s of the flow are not done in nine minutes of a shared core).
+Without bars space agrees with the sections within 1 % in H1, 2 to 5 % in H2 and 3 to 5 % in the ratio. The front is up to 7 % faster on coarse cells: partly filled cells keep the places of full ones (cut_cell_rule.hpp is for sections), which leaves what is thin less friction. The rows with bars are of boundary points on their surface, which on cells of 20 mm act as bars thicker than theirs; bars.md has what is done instead.
 )";
 
 /// The films of 50 Pa in the plane, over time, by cell size [mm].

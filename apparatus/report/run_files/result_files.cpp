@@ -101,6 +101,32 @@ void write_results(io::Hdf5File& h5, const std::string& group, const std::vector
   }
 }
 
+/// So many points of a frame are written where a run chooses its frames by itself: 2 MB.
+constexpr std::size_t most_points_written = 20'000;
+
+/// Every k-th point of a frame, so that no more than most_points_written are left; 1 where all are.
+std::size_t stride_of(const Frame& frame) {
+  return std::max<std::size_t>(1, (frame.position.size() + most_points_written - 1) / most_points_written);
+}
+
+template <class T>
+std::vector<T> strided(std::size_t stride, const std::vector<T>& all) {
+  std::vector<T> some;
+  for (std::size_t i = 0; i < all.size(); i += stride) some.push_back(all[i]);
+  return some;
+}
+
+Frame thinned(const Frame& frame) {
+  const std::size_t k = stride_of(frame);
+  return {.time = frame.time,
+          .position = strided(k, frame.position),
+          .velocity = strided(k, frame.velocity),
+          .volume = strided(k, frame.volume),
+          .pressure = strided(k, frame.pressure),
+          .shear_rate = strided(k, frame.shear_rate),
+          .flocculation = strided(k, frame.flocculation)};
+}
+
 }  // namespace
 
 FramesWritten frames_written(const scene::Output& output) {
@@ -125,10 +151,12 @@ void ResultFiles::frame(const Frame& frame) {
   if (written_ == FramesWritten::none) return;
   const std::size_t every = written_ == FramesWritten::all ? 1 : frame.position.size() > 20000 ? 3 : 2;
   last_.reset();
+  const bool thin = written_ == FramesWritten::some && stride_of(frame) > 1;
+  if (thin) stride_ = stride_of(frame);
   if (came_++ % every == 0)
-    write_frame(frame);
+    write_frame(thin ? thinned(frame) : frame);
   else
-    last_ = frame;
+    last_ = thin ? thinned(frame) : frame;
 }
 
 void ResultFiles::write_frame(const Frame& frame) {
@@ -153,6 +181,9 @@ void ResultFiles::write_results_h5(const scene::Outcome& outcome) {
 
 std::vector<std::string> ResultFiles::finish(const scene::Outcome& outcome) {
   std::vector<std::string> notes;
+  if (stride_ > 1)
+    notes.push_back(
+        fmt::format("the frames have every {}th point; all of them: output.frame_interval", stride_));
   if (last_) write_frame(*last_);
   write_results_h5(outcome);
   io::write_text(folder_ / "timeseries.csv", columns_csv(outcome.series));

@@ -16,8 +16,9 @@
 
 namespace tremie::report {
 
-/// Which of the frames that come are written for ParaView and Python: some, so that a default run stays small
-/// (every second, every third of more than 20000 points, and the last), or all. The report shows them all.
+/// Which of the frames that come are written for ParaView and Python: some, so that a default run stays below 30 MB
+/// (every second, every third of more than 20000 points, and the last; no more than 20000 points of each), or all. The
+/// report shows them all.
 enum class FramesWritten { none, some, all };
 
 /// What the scene's [output] asks for.
@@ -43,7 +44,7 @@ class ResultFiles {
   std::filesystem::path folder_;
   std::string resolved_, command_;
   FramesWritten written_;
-  std::size_t came_ = 0;
+  std::size_t came_ = 0, stride_ = 1;
   std::optional<Frame> last_;  ///< came last and is not written: it is if no other follows
   ShownFrames shown_;          ///< thinned, for the report
   io::Hdf5File h5_;

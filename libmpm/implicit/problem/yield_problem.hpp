@@ -16,6 +16,7 @@
 
 #include "libmpm/boundary/boundary_points.hpp"
 #include "libmpm/boundary/contact.hpp"
+#include "libmpm/boundary/slender_bars.hpp"
 #include "libmpm/grid/active_grid.hpp"
 #include "libmpm/implicit/matrix_free/admm_state.hpp"
 #include "libmpm/implicit/problem/quadrature.hpp"
@@ -55,6 +56,7 @@ struct YieldProblem {
   double zeta = 0.0;                      ///< [Pa s], plane strain alone
   std::vector<double> p_offset = {};      ///< of the cells' pressures [Pa]; empty: those before the step
   double K_share = 1.0;                   ///< K over the mix's
+  SlenderBars<D> bars = {};               ///< thinner than the grid resolves; ADMM alone
   double eta = mu;  ///< viscosity that scales stresses: mu, and the law's at a typical rate
 
   /// Pressure of cell c without divergence.
@@ -128,6 +130,7 @@ Eigen::VectorXd residual(const YieldProblem<Geometry>& problem, const std::vecto
   add_contact_forces<D>(problem.contact, grid.cell_nodes, v, R);
   add_penalty_forces<D>(problem.bound, grid.cell_nodes, v, R);
   add_penalty_forces<D>(problem.surface, grid.cell_nodes, v, R);
+  add_penalty_forces<D>(problem.bars.points, grid.cell_nodes, v, R);
   fold_mirrors<D>(grid, R);
   return R;
 }
@@ -177,6 +180,7 @@ void assemble(const YieldProblem<Geometry>& problem, Tangent tangent, BlockSyste
   add_contact_stiffness<D>(problem.contact, system);
   add_penalty_stiffness<D>(problem.bound, system);
   add_penalty_stiffness<D>(problem.surface, system);
+  add_penalty_stiffness<D>(problem.bars.points, system);
 }
 
 }  // namespace tremie

@@ -116,10 +116,12 @@ SolveReport solve_admm(YieldProblem<Geometry>& problem, const AdmmSettings& sett
     const bool contact_changed = update_active<D>(problem.contact, problem.grid.cell_nodes, v);
     const bool friction_settled =
         update_friction_admm<D>(problem.friction, v, settings.over_relaxation, settings.tolerance);
+    const bool bars_settled = update_bars_admm<D>(problem.grid.cell_nodes, v, settings.over_relaxation,
+                                                  settings.tolerance, problem.bars);
     residuals = form.update(v);
     if (contact_changed && !form.contact_changed()) return report;
     report.converged =
-        residuals.within(settings.tolerance) && friction_settled && !contact_changed &&
+        residuals.within(settings.tolerance) && friction_settled && bars_settled && !contact_changed &&
         std::max(left, residuals.pressure) <= std::min(tolerated, form.tolerated_energy(residuals));
     if (report.converged) break;
   }

@@ -69,6 +69,7 @@ struct FactorisedAdmm {
   double r = detail::penalty(problem, settings.penalty);
 
   bool prepare() {
+    set_bar_stiffness(problem.mu + r, problem.bars);
     assemble(
         problem, [&](int, int) { return problem.mu + r; }, system);
     if (!problem.friction.empty())

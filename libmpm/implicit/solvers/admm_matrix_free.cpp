@@ -168,6 +168,7 @@ void residual_3d(const YieldProblem<ThreeD>& problem, const std::vector<Vec<3>>&
     R.segment<3>(3 * i) = problem.nodes.mass[i] / problem.dt * (problem.nodes.v[i] - v[i]) -
                           (problem.drag.empty() ? 0.0 : problem.drag[i]) * v[i] + R.segment<3>(3 * i);
   add_penalty_forces<3>(problem.bound, problem.grid.cell_nodes, v, R);
+  add_penalty_forces<3>(problem.bars.points, problem.grid.cell_nodes, v, R);
   add_friction_forces_admm<3>(problem.friction, v, R);
   fold_mirrors<3>(problem.grid, R);
   mask(problem.fixed, R);
@@ -177,6 +178,7 @@ void residual_3d(const YieldProblem<ThreeD>& problem, const std::vector<Vec<3>>&
 
 bool MatrixFreeAdmm::prepare() {
   detail::lower_modulus(settings.most_bulk_stiffness, eta, problem);
+  set_bar_stiffness(eta, problem.bars);
   system.set_up(problem, settings.most_band_operations);
   return system.prepare(problem, eta);
 }

@@ -115,6 +115,7 @@ std::vector<Mat<3, 3>> MatrixFreeSystem::node_blocks(const YieldProblem<ThreeD>&
       G[grid.cell_nodes[c.cell][k]] += c.stiffness * N[k] * N[k] * c.normal * c.normal.transpose();
   }
   add_penalty_blocks(problem.bound, grid.cell_nodes, G);
+  add_penalty_blocks(problem.bars.points, grid.cell_nodes, G);
   fold_mirrors(grid, G);
   invert_blocks(problem.fixed, G);
   return G;
@@ -154,8 +155,9 @@ void MatrixFreeSystem::multiply(const YieldProblem<ThreeD>& problem, const Eigen
         free_diagonal_.segment<4>(4 * i).cwiseProduct(x.segment<4>(4 * i)) +
         free_.segment<4>(4 * i).cwiseProduct(batches.reduction().sum_at<float, 4>(i, forces));
   });
-  if (!problem.bound.empty()) {
+  if (!problem.bound.empty() || !problem.bars.points.empty()) {
     add_penalty_products(problem.bound, problem.grid.cell_nodes, x, out);
+    add_penalty_products(problem.bars.points, problem.grid.cell_nodes, x, out);
     for_each_block(out.size(), [&](Eigen::Index i, Eigen::Index size) {
       out.segment(i, size) = out.segment(i, size).cwiseProduct(free_.segment(i, size));
     });

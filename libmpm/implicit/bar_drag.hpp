@@ -1,0 +1,61 @@
+#pragma once
+
+// The drag of slender bars (libmpm/boundary/slender_bars.hpp) in a step's problem.
+
+#include "libmpm/constitutive/yield_law.hpp"
+#include "libmpm/implicit/state.hpp"
+
+namespace tremie::detail {
+
+/// Rates at which the viscosity of a law that is not Newtonian may be taken for the scale of its stresses [1/s].
+inline constexpr double typical_rates[2] = {0.01, 100.0};
+
+/// A point of a bar in cell c, with the drag of its piece: as much of it as the cell is full of concrete. In a law that
+/// is not Newtonian the viscosity is that at the rate |u|/D.
+template <class Geometry>
+void add_bar_point(const ImplicitBody<Geometry>& body, const YieldLaw& law, int source, int c,
+                   const Index<Geometry::dim>& cell, YieldProblem<Geometry>& problem) {
+  constexpr int D = Geometry::dim;
+  const auto& grid = problem.grid;
+  const BarPoint<D>& bar = body.bars[source];
+  PenaltyPoint<D> point;
+  point.cell = c, point.source = source;
+  point.N = stencil<D>(grid.axes, cell, local_coordinates<D>(grid.axes, cell, bar.x)).N;
+  double tau_y = 0.0, full = 1.0;
+  for (double one : problem.quadrature.tau_y[c]) tau_y += one / power(2, D);
+  for (const Axis& axis : grid.axes) full *= axis.h;
+  BarDrag<D> drag;
+  drag.source = source;
+  drag.scale += (bar_drag_along - 1.0) * bar.axis * bar.axis.transpose();
+  drag.velocity = bar.velocity;
+  const double length = bar.length * std::min(1.0, problem.quadrature.V_cell[c] / full);
+  drag.limit = bar_yield_drag * tau_y * bar.diameter * length;
+  drag.reach = length / bar.mobility;
+  const double rate = bar_velocity<D>(point, drag, grid.cell_nodes, body.v).norm() / bar.diameter;
+  drag.viscous =
+      (problem.mu + viscosity(law, std::clamp(rate, typical_rates[0], typical_rates[1]))) * drag.reach;
+  problem.bars.points.push_back(point);
+  problem.bars.drag.push_back(drag);
+}
+
+/// The points of bars that lie in active cells. Their forces go on from those of the last step.
+template <class Geometry>
+void add_bars(const ImplicitBody<Geometry>& body, const YieldLaw& law, YieldProblem<Geometry>& problem) {
+  constexpr int D = Geometry::dim;
+  for (std::size_t k = 0; k < body.bars.size(); ++k) {
+    const Index<D> cell = cell_of<D>(problem.grid.axes, body.bars[k].x);
+    if (const int c = problem.grid.cell_map.at(cell); c >= 0)
+      add_bar_point(body, law, static_cast<int>(k), c, cell, problem);
+  }
+  std::vector<int> last(body.bars.size(), -1);
+  for (std::size_t i = 0; i < body.bar_drag.drag.size(); ++i)
+    if (const int source = body.bar_drag.drag[i].source; source < static_cast<int>(last.size()))
+      last[source] = static_cast<int>(i);
+  for (BarDrag<D>& drag : problem.bars.drag)
+    if (const int i = last[drag.source]; i >= 0) {
+      drag.force = body.bar_drag.drag[i].force, drag.w = body.bar_drag.drag[i].w;
+      if (const double size = drag.force.norm(); size > drag.limit) drag.force *= drag.limit / size;
+    }
+}
+
+}  // namespace tremie::detail
