@@ -32,8 +32,8 @@ void visit(Archive& archive, AdmmState<Geometry>& state) {
   if constexpr (Geometry::dim == 3) archive(state.packed);
 }
 
-/// Stresses, rates, friction and the drag of bars stand by the cells and nodes that were active in the last step. A grid's axes and its
-/// blocks are the scene's; matrices and factors follow from the grid.
+/// Stresses, rates, friction and the drag of bars stand by the cells and nodes that were active in the last step. A
+/// grid's axes and its blocks are the scene's; matrices and factors follow from the grid.
 template <class Geometry>
 void visit(Archive& archive, ImplicitBody<Geometry>& body) {
   archive(body.points, body.time, body.dt, body.motion, body.walls.v);
