@@ -52,9 +52,28 @@ Kinetics kinetics_named(const std::string& name) {
       fmt::format("kinetics: \"{}\" is not allowed; allowed: \"gated\", \"roussel\", \"power\"", name));
 }
 
+FlowLaw law_named(const std::string& name) {
+  if (name == "bingham") return FlowLaw::bingham;
+  if (name == "herschel_bulkley") return FlowLaw::herschel_bulkley;
+  if (name == "auto") return FlowLaw::automatic;
+  throw scene::InputError(
+      fmt::format("law: \"{}\" is not allowed; allowed: \"bingham\", \"herschel_bulkley\", \"auto\"", name));
+}
+
 FitInput input_of(const Instrument& instrument, Optional omega, Optional rest, Optional tau_0, Optional mu,
-                  const std::string& kinetics, double gamma_c) {
-  return {instrument, tau_0, mu, omega, rest, kinetics_named(kinetics), gamma_c};
+                  const std::string& kinetics, double gamma_c, const std::string& law,
+                  Optional max_aggregate) {
+  const bool choose = kinetics == "auto";
+  return {.instrument = instrument,
+          .tau_0 = tau_0,
+          .mu = mu,
+          .omega = omega,
+          .rest = rest,
+          .kinetics = choose ? Kinetics::gated : kinetics_named(kinetics),
+          .max_aggregate = max_aggregate.value_or(0.0),
+          .choose_kinetics = choose,
+          .law = law_named(law),
+          .gamma_c = gamma_c};
 }
 
 TorqueRecord record_of(bool is_decay, const Numbers& x, const Numbers& torque) {
@@ -149,7 +168,7 @@ void add_rheometer(py::module_& module) {
       .def(py::init<double, double, double>(), "vane_radius"_a, "vane_height"_a, "container_radius"_a);
   py::class_<FitInput>(module, "FitInput")
       .def(py::init(&input_of), "instrument"_a, "omega"_a, "rest"_a, "tau_0"_a, "mu"_a, "kinetics"_a,
-           "gamma_c"_a);
+           "gamma_c"_a, "law"_a, "max_aggregate"_a);
   py::class_<Thixotropy>(module, "Thixotropy")
       .def(py::init([](double A_thix, double alpha, const std::string& kinetics, double gamma_c,
                        double exponent, Optional saturation) {

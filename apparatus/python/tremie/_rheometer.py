@@ -53,8 +53,10 @@ def fit(
     rest: Optional[Quantity] = None,
     yield_stress: Optional[Quantity] = None,
     plastic_viscosity: Optional[Quantity] = None,
-    kinetics: str = "gated",
+    kinetics: str = "auto",
     critical_shear_rate: Quantity = "0.1 1/s",
+    law: str = "bingham",
+    max_aggregate: Optional[Quantity] = None,
 ) -> Result:
     """Material parameters, each with its 95 % interval, from a torque record.
 
@@ -65,7 +67,10 @@ def fit(
     vane_radius, vane_height, container_radius  [m]; the ICAR rheometer's by default
     speed, rest                     of a decay [rad/s], [s]
     yield_stress, plastic_viscosity where they are known [Pa], [Pa s]
-    kinetics                        "gated" or "roussel"; critical_shear_rate [1/s] of the gate
+    kinetics                        of a decay: "gated", "roussel", "power" or "auto", which compares them;
+                                    critical_shear_rate [1/s] of the gate
+    law                             of a flow curve: "bingham", "herschel_bulkley" or "auto"
+    max_aggregate                   largest grain [m], to judge the gap by
 
     `.results` has the keys of the program's summary.json (yield_stress_Pa: value and ci95, or None where the record
     does not tell it), `.tables["fit.csv"]` the readings beside the fitted torques."""
@@ -78,6 +83,8 @@ def fit(
         mu=_optional("plastic_viscosity", plastic_viscosity, "Pa.s"),
         kinetics=kinetics,
         gamma_c=positive("critical_shear_rate", critical_shear_rate, "1/s"),
+        law=law,
+        max_aggregate=_optional("max_aggregate", max_aggregate, "m"),
     )
     if isinstance(t, (str, os.PathLike)):
         answer = _tremie.fit_file(os.fspath(t), given)
