@@ -6,8 +6,8 @@
 #include <chrono>
 #include <ctime>
 #include <stdexcept>
-#include <thread>
 
+#include "apparatus/run/free_processors.hpp"
 #include "apparatus/run/threads.hpp"
 #include "apparatus/scene/resolved.hpp"
 
@@ -88,7 +88,7 @@ int default_threads(const Scene& scene) {
   const SpaceKind space = model_of(scene).space;
   if (!test_run::is_3d(space)) return 1;  // spares the estimate
   return test_run::default_threads(estimate(scene)->points, space, model_of(scene).scheme,
-                                   static_cast<int>(std::thread::hardware_concurrency()));
+                                   test_run::free_processors());
 }
 
 Model& model_of(Scene& scene) { return scene.functions->model(scene.test); }

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "apparatus/run/free_processors.hpp"
 #include "apparatus/run/threads.hpp"
 
 namespace tremie::test_run {
@@ -35,4 +36,15 @@ TEST(Threads, NeverMoreThanTheMachineHas) {
 }
 
 }  // namespace
+// Processors that others use are not taken: /proc/loadavg has the mean over a minute, then what runs now, the asking
+// process included; cpu.max the quota and its period in microseconds.
+TEST(Threads, FollowWhatIsFree) {
+  EXPECT_EQ(free_processors(8, "0.05 0.10 0.20 1/200 4242", "max 100000"), 8);
+  EXPECT_EQ(free_processors(8, "3.20 1.00 0.20 4/200 4242", "max 100000"), 5);
+  EXPECT_EQ(free_processors(8, "3.20 1.00 0.20 1/200 4242", "max 100000"), 8);  // it has just ended
+  EXPECT_EQ(free_processors(2, "27.7 20.0 9.00 29/900 4242", "max 100000"), 1);
+  EXPECT_EQ(free_processors(8, "0.00 0.00 0.00 1/200 4242", "250000 100000"), 3);
+  EXPECT_EQ(free_processors(4, "", ""), 4);
+}
+
 }  // namespace tremie::test_run
