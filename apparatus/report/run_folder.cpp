@@ -38,11 +38,13 @@ bool is_there(const fs::path& path) {
 }
 
 bool is_earlier_result(const fs::path& folder) {
-  // a run leaves its scene, a fit its readings, a calibration its mix, a comparison its table, a verification its document
+  // a run leaves its scene, a fit its readings, a calibration its mix, a comparison its table, a verification its
+  // document
   if (is_there(folder / "VERIFICATION.md")) return true;
-  return is_there(folder / "summary.json") &&
-         (is_there(folder / "scene.toml") || is_there(folder / "fit.csv") || is_there(folder / "mix.toml") ||
-          is_there(folder / "compare.csv"));
+  if (!is_there(folder / "summary.json")) return false;
+  for (const char* file : {"scene.toml", "fit.csv", "fit_1.csv", "sections.csv", "mix.toml", "compare.csv"})
+    if (is_there(folder / file)) return true;
+  return false;
 }
 
 /// Holds nothing, or nothing but what a run writes into on its way there.

@@ -13,6 +13,7 @@
 #include "apparatus/cli/commands.hpp"
 #include "apparatus/cli/fit/fit_output.hpp"
 #include "apparatus/cli/fit/fit_protocol.hpp"
+#include "apparatus/cli/fit/protocol_report.hpp"
 #include "apparatus/cli/options/json_option.hpp"
 #include "apparatus/cli/options/quantity.hpp"
 #include "apparatus/cli/program.hpp"
@@ -232,7 +233,8 @@ Answer protocol(const Options& o, FitInput in, double factor) {
   }));
   Answer a{protocol_json(*reading),
            reading->reasons,
-           {{"sections.csv", protocol_csv(*reading)}},
+           {{"sections.csv", protocol_csv(*reading)},
+            {"report.html", protocol_html(record, *reading, file, "tremie fit " + file + " --protocol")}},
            protocol_charts(record, *reading),
            {}};
   a.results["understood"] = record.understood;

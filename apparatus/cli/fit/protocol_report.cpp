@@ -1,0 +1,118 @@
+#include "apparatus/cli/fit/protocol_report.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <numbers>
+
+#include "apparatus/report/page/charts.hpp"
+#include "apparatus/report/page/page.hpp"
+
+namespace tremie::cli {
+namespace {
+
+using report::Mark;
+constexpr double two_pi = 2.0 * std::numbers::pi;
+
+std::string text_of(const std::optional<double>& v) { return v ? fmt::format("{:.4g}", *v) : "–"; }
+
+std::string interval(const Estimate& e) {
+  return e.ci95 ? fmt::format("{:.3g} ({:.3g} to {:.3g})", e.value, e.ci95->low, e.ci95->high)
+                : fmt::format("{:.3g} (no interval)", e.value);
+}
+
+bool is_curve(const SectionReading& s) {
+  return s.section.kind == SectionKind::flow_curve_up || s.section.kind == SectionKind::flow_curve_down;
+}
+
+/// Torque of a section, thinned to some hundreds of readings, and the line of its fit.
+void add_section(const ProtocolRecord& record, const SectionReading& s, std::size_t number,
+                 report::Page& page) {
+  if (s.section.kind == SectionKind::rest) return;
+  report::LineChart chart{.title = fmt::format("Section {}: {}", number, name_of(s.section.kind)),
+                          .x_label = is_curve(s) ? "speed (rev/s)" : "time in the section (s)",
+                          .y_label = "torque (mN·m)"};
+  report::Curve readings{.label = "readings", .x = {}, .y = {}, .mark = Mark::points};
+  const double start = record.time[s.section.begin];
+  for (std::size_t k = s.section.begin; k < s.section.end; k += 1 + (s.section.end - s.section.begin) / 300) {
+    readings.x.push_back(is_curve(s) ? record.omega[k] / two_pi : record.time[k] - start);
+    readings.y.push_back(1e3 * record.torque[k]);
+  }
+  chart.curves = {readings};
+  if (s.fit) {
+    report::Curve line{.label = s.fit->model + (s.fit->reasons.empty() ? "" : " (does not fit)"),
+                       .x = s.fit->curve.x,
+                       .y = s.fit->curve.fitted};
+    for (double& x : line.x) x = is_curve(s) ? x / two_pi : x + s.fit_origin;
+    for (double& y : line.y) y *= 1e3;
+    chart.curves.push_back(line);
+  }
+  if (can_be_drawn(chart)) page.figures.push_back({fmt::format("section_{}", number), "", chart_svg(chart)});
+}
+
+void add_peaks(const Structuration& a, report::Page& page) {
+  report::LineChart chart{.title = "Static yield stress after rest",
+                          .x_label = "rest (s)",
+                          .y_label = "static yield stress (Pa)",
+                          .curves = {{"peaks of the start-ups", a.rest, a.stress, Mark::points}}};
+  if (a.A_thix && a.at_no_rest && a.rest.size() > 1) {
+    const double first = a.rest.front(), last = a.rest.back(), rate = a.A_thix->value;
+    chart.curves.push_back({fmt::format("line of {:.3g} Pa/s", rate),
+                            {first, last},
+                            {a.at_no_rest->value + rate * first, a.at_no_rest->value + rate * last}});
+  }
+  if (can_be_drawn(chart)) page.figures.push_back({"peaks", "", chart_svg(chart)});
+}
+
+std::vector<std::string> row(const SectionReading& s, std::size_t number) {
+  std::optional<double> peak, stress, modulus;
+  if (s.start_up)
+    peak = 1e3 * s.start_up->peak_torque, stress = s.start_up->static_yield_stress,
+    modulus = s.start_up->shear_modulus;
+  if (s.decay) peak = 1e3 * s.decay->peak_torque;
+  return {std::to_string(number),
+          std::string(name_of(s.section.kind)),
+          fmt::format("{:.4g}", s.section.omega / two_pi),
+          s.section.rest_before > 0.0 ? fmt::format("{:.4g}", s.section.rest_before) : "–",
+          text_of(peak),
+          text_of(stress),
+          text_of(modulus),
+          s.fit ? fmt::format("{}, {:.2g} %", s.fit->model, 100.0 * s.fit->scatter) : "–"};
+}
+
+}  // namespace
+
+std::string protocol_html(const ProtocolRecord& record, const ProtocolReading& reading,
+                          const std::string& file, const std::string& command) {
+  report::Page page;
+  const Structuration& a = reading.structuration;
+  page.headline = fmt::format("{}, a test of {} sections: {}",
+                              std::filesystem::path(file).filename().string(), reading.sections.size(),
+                              a.A_thix ? "A_thix " + interval(*a.A_thix) + " Pa/s" : "tells no A_thix");
+  page.title = "Tremie: " + page.headline;
+  const bool good = reading.reasons.empty();
+  page.verdict = {
+      good ? report::VerdictKind::agrees : report::VerdictKind::differs,
+      good ? "Each section is described by its model."
+           : "A section is not described by any of the models; what it would have told is left out."};
+  page.trust = {good, "Intervals hold 95 %.", reading.reasons};
+  add_peaks(a, page);
+  for (std::size_t i = 0; i < reading.sections.size(); ++i)
+    add_section(record, reading.sections[i], i + 1, page);
+  report::GridTable table{"Sections",
+                          {"", "kind", "speed (rev/s)", "rest before (s)", "peak (mN·m)",
+                           "static yield stress (Pa)", "shear modulus (Pa)", "model, scatter"},
+                          {}};
+  for (std::size_t i = 0; i < reading.sections.size(); ++i)
+    if (reading.sections[i].section.kind != SectionKind::rest)
+      table.rows.push_back(row(reading.sections[i], i + 1));
+  page.grids = {table};
+  page.remarks = a.notes;
+  for (const auto& note : record.understood) page.remarks.push_back("Read: " + note);
+  page.words = {"Static yield stress: of the peak of a start-up, over the vane's side.",
+                "A_thix: how fast rest builds the yield stress up."};
+  page.made = report::facts_of_this_run(command);
+  return to_html(page);
+}
+
+}  // namespace tremie::cli
