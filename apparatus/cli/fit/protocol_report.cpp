@@ -31,7 +31,8 @@ void add_section(const ProtocolRecord& record, const SectionReading& s, std::siz
   if (s.section.kind == SectionKind::rest) return;
   report::LineChart chart{.title = fmt::format("Section {}: {}", number, name_of(s.section.kind)),
                           .x_label = is_curve(s) ? "speed (rev/s)" : "time in the section (s)",
-                          .y_label = "torque (mN·m)"};
+                          .y_label = "torque (mN·m)",
+                          .curves = {}};
   report::Curve readings{.label = "readings", .x = {}, .y = {}, .mark = Mark::points};
   const double start = record.time[s.section.begin];
   for (std::size_t k = s.section.begin; k < s.section.end; k += 1 + (s.section.end - s.section.begin) / 300) {
