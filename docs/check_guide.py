@@ -6,7 +6,8 @@ takes with the same --set. A scene that a page shows must check, too. Nothing is
 import pathlib, re, shlex, subprocess, sys, tempfile
 
 program = str(pathlib.Path(sys.argv[1]).resolve())
-scratch = pathlib.Path(tempfile.mkdtemp())
+folder = tempfile.TemporaryDirectory()
+scratch = pathlib.Path(folder.name)
 wrong, lines = [], 0
 
 
