@@ -91,7 +91,7 @@ double outline(const Points<D>& points, double cell, Reaches reaches) {
 }
 
 /// Directions over the full turn; opposite ones make a diameter. Points stand in rows: by 16 directions the
-/// outline of one body, turned, would differ by two millimetres (three_d.md).
+/// outline of one body, turned, would differ by two millimetres (docs/archive/three_d.md).
 constexpr int turn = 64;
 
 /// Mean of the reaches beyond `least` in all directions; a quarter has some of its own. Empty where one

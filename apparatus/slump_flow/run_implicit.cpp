@@ -13,7 +13,7 @@ namespace tremie::slump_flow {
 namespace {
 
 /// In three dimensions a body that flows is solved with less exact stresses, four thousandths instead of one:
-/// half of the cost, and a spread that differs by less than half a millimetre (three_d.md). One that creeps
+/// half of the cost, and a spread that differs by less than half a millimetre (docs/archive/three_d.md). One that creeps
 /// is not, or what they leave would keep it from coming to rest.
 constexpr double flowing_tolerance = 4e-3, creeping = 1e-3;  // [1], [m/s]
 

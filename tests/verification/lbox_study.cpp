@@ -1,5 +1,5 @@
 // The L-box over cells, yield stresses and modes: the profile against the closed form at rest, the films on
-// the column's walls against their drainage, CPU seconds. Writes lbox_study.md, .csv, lbox_profiles.csv and,
+// the column's walls against their drainage, CPU seconds. Writes lbox_tables.md, lbox_study.csv, lbox_profiles.csv and,
 // with gnuplot, lbox_study.svg into the folder given.
 
 #include <fmt/format.h>
@@ -94,39 +94,6 @@ constexpr const char* head =
     "mm | borne mm | films | t200 s | t400 s | volume | stopped s | steps | CPU s |\n"
     "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
 
-/// Written by hand.
-constexpr const char* tried = R"(
-## What was tried
-
-| 10 mm, 180 s | |
-|---|---|
-| steps up to 1.8 s, gravity where the concrete was at the step's start | waves of 70 to 85 mm in a fluid without yield stress, at 1 to 20 cm/s, that never die; steps of 0.1 s level within 1 % |
-| gravity where the step leaves the surface, steps up to 1.8 s | level, but a film ran away at 133 s; at most 0.3 s does not |
-| stresses at the places of a full cell | a film of 1.5 mm, which 50 Pa hold, slides at 8 mm/s (tests/libmpm/test_thin_films.cpp): the films drip off too early on coarse cells, too late on fine ones |
-| the hydrostatic part of the pressure within each cell | nothing gained, one run lost |
-| cells inside the body filled up faster than the flow deforms them, at 0.1 to 10 /s | closes the holes below the gate, but piles up the points: on 20 mm cells up to 2.5 full, and the profile of 50 Pa off by 7 to 17 % (without: 1.6 %) |
-| points evened out three or ten times as fast as the flow deforms their cells | fills the cells at the end wall, but the others 1.5 to 1.9; the profile off by 4 to 9 % |
-| cells inside the body that lack concrete under pressure close at 0.1 to 10 /s, in the step's momentum balance | the profile off by 1.9 to 5 %, 20 mm cells up to 1.25 to 1.5 full, the end wall's cells as empty as before |
-| depths where a ruler meets the surface (rows of cells, from the floor up to the first that is less than half full, counted full) | ratios of 0.746, 0.710 and 0.629 on 20, 10 and 5 mm cells |
-
-Where detached_share and films fall the surface is loose: cells there are 0.85 to 0.95 full down to 30 mm below it, for a cell with concrete in all its neighbours is taken for full and yields no more than a full one. And the cells at the end wall lack 0.15 to 0.3 of their concrete: the velocity vanishes with the distance from the wall, and so does the speed at which points come nearer. Both leave the volume where it is; so depths are read by volume, off the walls.
-
-## In space
-
-50 Pa, 30 Pa·s, cells of 20 mm, 8×4×4 points a cell (the first number along the channel), after 60 s; `tremie run apparatus/scenes/l_box.toml --set model.space=half --set model.cell="20 mm" --set model.points_per_cell=[8,4] --set test.duration="60 s" --set test.bars=0`. Side walls that slip have no key (`Scene::side_walls_slip`).
-
-| | H1 mm | H2 mm | ratio | CPU s |
-|---|---|---|---|---|
-| plane | 82.4 | 57.0 | 0.692 | 3 |
-| half, side walls that slip | 81.6 | 58.3 | 0.714 | 70 |
-| plane with side walls | 88.4 | 48.3 | 0.546 | 3 |
-| half, no bars | 87.8 | 50.6 | 0.576 | 70 |
-| half, 2 bars: not to be trusted | 81.2 | 48.1 | 0.592 | 80 |
-| half, 3 bars: not to be trusted | 82.0 | 47.4 | 0.578 | 80 |
-
-Without bars space agrees with the sections within 1 % in H1, 2 to 5 % in H2 and 3 to 5 % in the ratio. The front is up to 7 % faster on coarse cells: partly filled cells keep the places of full ones (cut_cell_rule.hpp is for sections), which leaves what is thin less friction. The rows with bars are of boundary points on their surface, which on cells of 20 mm act as bars thicker than theirs; bars.md has what is done instead.
-)";
-
 /// The films of 50 Pa in the plane, over time, by cell size [mm].
 using Films = std::map<double, std::vector<std::array<double, 2>>, std::greater<>>;
 
@@ -154,9 +121,9 @@ void write_films(const Films& all, std::ofstream& md) {
 
 int main(int argc, char** argv) {
   const std::string folder = argc > 1 ? argv[1] : ".";
-  std::ofstream md(folder + "/lbox_study.md"), csv(folder + "/lbox_study.csv"),
+  std::ofstream md(folder + "/lbox_tables.md"), csv(folder + "/lbox_study.csv"),
       profiles(folder + "/lbox_profiles.csv");
-  md << "# The L-box: error against run time\n\n" << study::made_by("study_lbox") << "\n\n";
+  md << "# The L-box: all figures\n\n" << study::made_by("study_lbox") << "\n\n";
   md << "μ = 30 Pa·s, K = 5 MPa, gate at 30 cm/s, 16×4 points a cell, 180 s at most. H1 and H2 are the "
         "volume "
         "that stands on the floor over its area, 20 to 80 mm from the back of the column and from the end "
@@ -198,7 +165,6 @@ int main(int argc, char** argv) {
   for (double zeta : {0.0, 100.0})
     row({.tau_0 = 15.0, .cell_mm = 20.0, .alternating_viscosity = zeta}, md, csv, profiles);
   write_films(films, md);
-  md << tried;
   profiles.close();
   csv.close();
   study::draw(folder, "lbox_study.gp");

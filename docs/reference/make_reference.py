@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+"""The reference, from the program itself: make_reference.py PROGRAM [--check].
+
+Writes scenes.md (what `tremie new` prints), commands.md (every command's --help) and results.md (what brief runs leave in summary.json, with the
+words and units that the report uses) beside this file. With --check nothing is
+written: exit 1 where a stored page differs from what the program says. A command that is not in this build has no help and is left out of the check."""
+import json, pathlib, re, subprocess, sys, tempfile
+
+program, check = sys.argv[1], "--check" in sys.argv[2:]
+here = pathlib.Path(__file__).resolve().parent
+
+
+def says(*arguments):
+    done = subprocess.run([program, *arguments], capture_output=True, text=True)
+    return done.stdout.strip() if done.returncode == 0 else None
+
+
+def section(title, language, text):
+    lines = [line.rstrip() for line in text.splitlines()]
+    return f"## {title}\n\n```{language}\n" + "\n".join(lines) + "\n```\n"
+
+
+def words():
+    """The report's own table of words, and the endings that tell a unit."""
+    text = (here.parent.parent / "apparatus/report/run_files/glossary.cpp").read_text()
+    pairs = re.findall(r'\{"([^"]+)",\s*"([^"]+)"\}', text)
+    return {k: v for k, v in pairs if not k.startswith("_")}, [(k, v) for k, v in pairs if k.startswith("_")]
+
+
+def flat(results, prefix=""):
+    for name, value in results.items():
+        yield from flat(value, prefix + name + ".") if isinstance(value, dict) else [prefix + name]
+
+
+def readings(name):
+    """The names in `results` of a brief run, whatever it is worth."""
+    scene = {"slump_flow": 'mix = "mix_a"\n[test]\nduration = "0.02 s"\n[output]\nframes = false\n',
+             "l_box": 'mix = "mix_a"\n[test]\nduration = "0.02 s"\n[output]\nframes = false\n[model]\ncell = "50 mm"\n',
+             "icar_vane": 'mix = "mix_a"\n[test]\nrest = "60 s"\nduration = "1 s"\n[output]\nframes = false\n',
+             "cell": 'mix = "mix_a"\n[[history]]\nduration = "1 s"\nfrom = "0 1/s"\nto = "1 1/s"\n'}[name]
+    with tempfile.TemporaryDirectory() as folder:
+        (pathlib.Path(folder) / "scene.toml").write_text(f'apparatus = "{name}"\n' + scene)
+        command = "cell" if name == "cell" else "run"
+        subprocess.run([program, command, folder + "/scene.toml", "--out", folder + "/out", "--quiet"], capture_output=True)
+        return list(flat(json.loads((pathlib.Path(folder) / "out/summary.json").read_text())["results"]))
+
+
+def table(name):
+    known, endings = words()
+    row = lambda key: f"| `{key}` | {next((unit for end, unit in endings if key.endswith(end)), '')} | {known.get(key, '')} |"
+    return f"## `results`: {known[name]}\n\n| key | unit | what |\n|---|---|---|\n" + "\n".join(row(key) for key in readings(name)) + "\n"
+
+
+results_head = """# Every field of a result
+
+A run fills a folder ([which files](../guide/slump_flow.md#what-a-run-leaves)); `summary.json` is the result in one object. Keys end in their unit; what does not apply is null, never 0.
+
+| part | fields |
+|---|---|
+| `schema` | version of this layout, 1 |
+| `tremie` | `version`, `commit`, `compiler` |
+| `apparatus`, `status` | which test; `completed`, `interrupted` or `failed` |
+| `results` | the readings, below |
+| `checks` | `volume_change` (ΣV/V0 − 1), `mass_error`, `unconverged_steps`, `points_lost`, `max_speed_end_m_per_s`, `stability_limit_exceeded`, `reasons` |
+| `cost` | `wall_s`, `cpu_s`, `steps`, `points`, `cells_active`, `bytes_per_point`, `peak_rss_bytes`, `threads`, `simulated_s` |
+| `error` | with `--with-error` or `--accuracy`: half-widths by reading, `basis` (how they were found), `cpu_s` |
+
+`checks.reasons` is a list of sentences; where it is not empty the result is not to be trusted, and the exit code is 3. The same series as in
+`timeseries.csv` are in `results.h5`, with the points over time and where the numbers come from.
+"""
+apparatus = ["slump_flow", "l_box", "icar_vane", "cell"]
+listed = says("--commands")
+commands = [line.split("\t")[0] for line in listed.splitlines()] if listed else []
+pages = {
+    "scenes.md": (
+        "# Every key of a scene\n\nWhat `tremie new APPARATUS` prints: every key with its default, a comment and the words it takes. "
+        "A value with a dimension is a string with a unit.\n",
+        [section(f"`apparatus = \"{name}\"`", "toml", says("new", name) or "") for name in apparatus]),
+    "commands.md": (
+        "# Every command\n\nWhat `tremie COMMAND --help` prints.\n",
+        [section("`tremie`", "text", says("--help") or "")]
+        + [section(f"`tremie {name}`", "text", text) for name in commands if (text := says(name, "--help"))]),
+    "results.md": (results_head, [table(name) for name in apparatus]),
+}
+
+differ = False
+for name, (head, sections) in pages.items():
+    file = here / name
+    if check:
+        stored = file.read_text()
+        for s in sections:
+            if s not in stored:
+                differ = True
+                print(f"docs/reference/{name}: not what the program says:", s.splitlines()[0][3:])
+    else:
+        file.write_text(head + "\n" + "\n".join(sections))
+if differ:
+    print("To mend it: python3 docs/reference/make_reference.py build/release/tremie")
+sys.exit(differ)
