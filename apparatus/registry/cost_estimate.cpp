@@ -14,7 +14,10 @@ constexpr double start_and_end = 0.12;   ///< CPU of reading, charts and files [
 constexpr double program = 21e6;         ///< memory without points [bytes]
 constexpr double page = 0.5e6;           ///< of files without frames [bytes]
 constexpr double frame_of_point = 85.0;  ///< in frames/ and results.h5 [bytes]
-constexpr double most_counted = 1e6;     ///< frames
+constexpr double most_shown = 20000.0;   ///< points of a frame
+constexpr double solver_of_cell =
+    12e3;                             ///< of the linear system without a matrix, in three dimensions [bytes]
+constexpr double most_counted = 1e6;  ///< frames
 
 /// Frames that are written over a time, as run_loop takes them and the files thin them.
 double frames_over(const Scene& scene, double time, double points) {
@@ -36,11 +39,12 @@ CostEstimate cost_of(const Scene& scene, const Estimate& e) {
   cost.cpu_low = cost.cpu / factor, cost.cpu_high = cost.cpu * factor;
   cost.cpu_most = factor * (start_and_end + per_step * static_cast<double>(e.steps));
   const bool explicit_scheme = model_of(scene).scheme != SchemeKind::implicit;
-  const double shown_and_solver = explicit_scheme                          ? 320.0
-                                  : test_run::is_3d(model_of(scene).space) ? 1500.0
-                                                                           : 500.0;
+  const bool space = test_run::is_3d(model_of(scene).space);
+  const double shown_and_solver = explicit_scheme ? 320.0 : space ? 150.0 : 500.0;
   cost.memory = program + points * (static_cast<double>(e.bytes_per_point) + shown_and_solver);
-  cost.disk = page + frame_of_point * points * frames_over(scene, e.time_expected, points);
+  if (space && !explicit_scheme) cost.memory += solver_of_cell * static_cast<double>(e.cells_active);
+  cost.disk =
+      page + frame_of_point * std::min(points, most_shown) * frames_over(scene, e.time_expected, points);
   return cost;
 }
 

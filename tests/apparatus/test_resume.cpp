@@ -18,9 +18,10 @@ class Refused : public ::testing::Test {
  protected:
   void SetUp() override {
     test::write_file(folder_ / "scene.toml", test::killed_scenes.front().text);
-    // Interrupted by itself after a while: a run in a group of its own that gets SIGINT.
-    const auto run = tremie("(sleep 0.4; kill -INT $$) & exec '" TREMIE_PROGRAM
-                            "' run scene.toml --set 'test.duration=\"100 s\"' --out out");
+    // Interrupted by itself after a while: a run of seconds, in a group of its own, that gets SIGINT.
+    const auto run =
+        tremie("(sleep 0.4; kill -INT $$) & exec '" TREMIE_PROGRAM
+               "' run scene.toml --set 'test.duration=\"100 s\"' --set 'model.cell=\"4 mm\"' --out out");
     ASSERT_EQ(run.code, 130) << run.text;
     ASSERT_TRUE(std::filesystem::exists(folder_ / "out/checkpoint/state"));
   }
