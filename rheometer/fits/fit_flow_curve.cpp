@@ -239,7 +239,10 @@ Fitted choose(const Readings& r, const FitInput& input, FitResult& result) {
     aicc.push_back(fits.size() > 1 && at_bound(f)
                        ? HUGE_VAL
                        : corrected_akaike(mean_square(f.fit), n, static_cast<int>(f.free.size())));
-  const auto best = static_cast<std::size_t>(std::min_element(aicc.begin(), aicc.end()) - aicc.begin());
+  // Bingham, the law of fewer parameters, unless Herschel-Bulkley is clearly better: within 4 the data support both
+  // (Burnham and Anderson 2002), and the last digits of the torques would choose.
+  constexpr double clearly = 4.0;
+  const std::size_t best = fits.size() > 1 && aicc[1] < aicc[0] - clearly ? 1 : 0;
   for (std::size_t i = 0; i < fits.size(); ++i) {
     const bool finite = std::isfinite(aicc[i]);
     result.candidates.push_back({name_of(fits[i].law), static_cast<int>(fits[i].free.size()),
@@ -249,7 +252,9 @@ Fitted choose(const Readings& r, const FitInput& input, FitResult& result) {
                                  misfit(r, fits[i].fit).empty(), i == best});
   }
   if (fits.size() > 1)
-    result.choice = std::string("law ") + name_of(fits[best].law) + ": the smaller AICc of the two on " +
+    result.choice = std::string("law ") + name_of(fits[best].law) +
+                    (best == 1 ? ": its AICc is smaller by more than 4, on "
+                               : ": Herschel-Bulkley's AICc is not smaller by more than 4, on ") +
                     std::to_string(r.size()) + " readings";
   return fits[best];
 }
