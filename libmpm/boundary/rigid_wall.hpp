@@ -33,6 +33,7 @@ inline constexpr double contact_relaxation = 1e-3;
 /// 10 mm/s (lift.md).
 inline double slow_wall_factor(double speed) {
   constexpr double fast = 0.15, most = 100.0;  // [m/s], [1]
+  if (speed <= 0.0) return 1.0;                // a wall that stands is not passed
   return std::clamp(std::pow(fast / std::max(speed, 1e-3 * fast), 2.3), 1.0, most);
 }
 
