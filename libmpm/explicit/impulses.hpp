@@ -61,65 +61,50 @@ void look_around_wall(const RigidWall<Geometry::dim>& wall, double time, Explici
       }
 }
 
-/// The three nodes of a stencil in one direction.
-struct Side {
-  std::array<int, 3> block, within;  ///< their parts of where a node is on the grid
-  std::array<double, 3> w;           ///< values of the shape functions
-  std::array<HeldBy, 3> held;
-};
-
-template <class Geometry>
-Side side_of(const ExplicitState<Geometry>& state, const Tile<Geometry::dim>& tile,
-             const Weights<Geometry::dim>& weights, std::size_t l, int d) {
-  constexpr int D = Geometry::dim;
-  const Axis& a = state.grid.axes[d];
-  const int first = weights.base[l] / stride<D>(tile_span, d) % tile_span;
-  Side side;
-  for (std::size_t o = 0; o < 3; ++o) {
-    const int local = first + static_cast<int>(o), node = tile.at[d] * tile_cells - 1 + local;
-    side.block[o] = local / tile_cells * stride<D>(2, d);
-    side.within[o] = local % tile_cells * stride<D>(tile_cells, d);
-    side.w[o] = weights.w[d][o][l];
-    const bool low = a.wall_low() && node == state.shape.low_wall();
-    const bool high = a.wall_high() && node == a.n_cells + 1;
-    const bool sticks = (low && a.low == FaceKind::no_slip) || (high && a.high == FaceKind::no_slip);
-    side.held[o] = static_cast<HeldBy>(sticks ? 7 : low || high ? 1 << d : 0);
-  }
-  return side;
-}
-
 /// The velocity that a unit impulse along the normal gives the k-th node of a point.
 template <int D>
 f64x4 given_by_push(const WallPoint<D>& p, std::size_t k) {
   return p.N[k] * (*p.node[k])[D] * (p.normal * left_by[p.held[k]]);
 }
 
+/// Which components of a push a node's place along axis d takes.
+template <int D>
+HeldBy held_along(const Axis& a, const Shape<D>& shape, int node, int d) {
+  const bool low = a.wall_low() && node == shape.low_wall(), high = a.wall_high() && node == a.n_cells + 1;
+  const bool sticks = (low && a.low == FaceKind::no_slip) || (high && a.high == FaceKind::no_slip);
+  return static_cast<HeldBy>(sticks ? 7 : low || high ? 1 << d : 0);
+}
+
 /// The nodes of lane l, and what a push along the normal does to them.
 template <class Geometry>
 void enter_controls(ExplicitState<Geometry>& state, const Tile<Geometry::dim>& tile,
-                    const Weights<Geometry::dim>& weights, std::size_t l, WallPoint<Geometry::dim>& p) {
+                    const Weights<double, Geometry::dim>& weights, std::size_t l,
+                    WallPoint<Geometry::dim>& p) {
   constexpr int D = Geometry::dim;
-  Side side[D];
-  for (int d = 0; d < D; ++d) side[d] = side_of(state, tile, weights, l, d);
-  f64x4 inertia = {};
-  const auto enter = [&](int block, int within, double N, int held) {
-    if (N == 0.0) return;
-    const auto b = static_cast<std::size_t>(tile.block[static_cast<std::size_t>(block)]);
-    const auto k = static_cast<std::size_t>(p.n++);
-    p.node[k] = &state.grid.v[b][static_cast<std::size_t>(within)];
-    p.N[k] = N, p.held[k] = static_cast<HeldBy>(held);
-    inertia += N * given_by_push(p, k) * (p.normal * left_by[p.held[k]]);
-  };
-  const Side &first = side[0], &second = side[1], &last = side[D - 1];
-  for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t j = 0; j < 3; ++j) {
-      const int block = first.block[i] + second.block[j], within = first.within[i] + second.within[j],
-                held = first.held[i] | second.held[j];
-      const double N = first.w[i] * second.w[j];
-      for (std::size_t k = 0; k < 3 && D == 3; ++k)
-        enter(block + last.block[k], within + last.within[k], N * last.w[k], held | last.held[k]);
-      if (D == 2) enter(block, within, N, held);
+  int block[D][3], within[D][3], held[D][3];
+  for (int d = 0; d < D; ++d)
+    for (int o = 0; o < 3; ++o) {
+      const int local = weights.base[l] / stride<D>(tile_span, d) % tile_span + o;
+      block[d][o] = local / tile_cells * stride<D>(2, d);
+      within[d][o] = local % tile_cells * stride<D>(tile_cells, d);
+      held[d][o] = held_along(state.grid.axes[d], state.shape, tile.at[d] * tile_cells - 1 + local, d);
     }
+  f64x4 inertia = {};
+  for (int i = 0; i < power(3, D); ++i) {
+    const Index<D> o = local_offset<D>(i);
+    int in_tile = 0, in_block = 0, held_by = 0;
+    double N = 1.0;
+    for (int d = 0; d < D; ++d) {
+      in_tile += block[d][o[d]], in_block += within[d][o[d]], held_by |= held[d][o[d]];
+      N *= weights.w[d][o[d]][l];
+    }
+    if (N == 0.0) continue;
+    const auto b = static_cast<std::size_t>(tile.block[static_cast<std::size_t>(in_tile)]);
+    const auto k = static_cast<std::size_t>(p.n++);
+    p.node[k] = &state.grid.v[b][static_cast<std::size_t>(in_block)];
+    p.N[k] = N, p.held[k] = static_cast<HeldBy>(held_by);
+    inertia += N * given_by_push(p, k) * (p.normal * left_by[p.held[k]]);
+  }
   for (int d = 0; d < D; ++d) p.inertia += inertia[d];
 }
 
@@ -134,7 +119,7 @@ std::vector<WallPoint<Geometry::dim>> find_wall_points(const RigidWall<Geometry:
   const auto& axes = state.grid.axes;
   const double reach = gap_min + 0.1 * axes[0].h;
   touching.reserve(last - first);
-  Weights<D> weights;
+  Weights<double, D> weights;
   int weighed = -1;
   for (std::size_t i = first; i < last; ++i) {
     const auto& [t, g, l] = state.near_wall[i];
@@ -144,7 +129,8 @@ std::vector<WallPoint<Geometry::dim>> find_wall_points(const RigidWall<Geometry:
     const auto view = wall(x, time);
     if (!view || view->gap > reach) continue;
     if (weighed != g) {
-      weigh<D>(axes, state.shape, tile.at, places_of<D>(state.points, static_cast<std::size_t>(g)), weights);
+      weigh<double, D>({axes, state.shape, tile.at}, places_of<D>(state.points, static_cast<std::size_t>(g)),
+                       weights);
       weighed = g;
     }
     WallPoint<D>& p = touching.emplace_back();

@@ -1,7 +1,7 @@
 #pragma once
 
 // Velocity gradients to strain rates and stresses to tractions, in each space: the rows of geometries.hpp summed
-// over a stencil, for one number or many at a time. T: double, f64x8 or f32x16.
+// over a stencil, for one number or many at a time. T: double, f64x8 or f32x8.
 
 #include <type_traits>
 
