@@ -70,9 +70,9 @@ class PressureCells {
   /// Reads the divergence of all cells, when all points have entered.
   void read(const Cube& v) {
     for_each_row([&](std::size_t cell, double share, int base, const auto& weights, double x_0) {
-      const auto at = gather<D, Real>(&v[static_cast<std::size_t>(base)], weights);
+      const auto at = gather<D, 1, Real>(&v[static_cast<std::size_t>(base)], weights);
       double divergence = hooped ? static_cast<double>(at.value[0]) / x_0 : 0.0;
-      for (int d = 0; d < D; ++d) divergence += static_cast<double>(at.along[d][d]);
+      for (int d = 0; d < D; ++d) divergence += static_cast<double>(at.along[0][d][d]);
       divergence_[cell] += share * divergence;
     });
   }
@@ -94,11 +94,11 @@ class PressureCells {
   void scatter_impulses(Cube& sums) {
     for_each_row([&](std::size_t cell, double share, int base, const auto& weights, double x_0) {
       const double impulse = share * impulse_[cell];
-      AtPoint<Real, D> push = {};
+      AtPoint<Real, D, 1> push = {};
       if (hooped) push.value[0] = static_cast<Real>(impulse / x_0);
-      for (int d = 0; d < D; ++d) push.along[d][d] = static_cast<Real>(impulse);
+      for (int d = 0; d < D; ++d) push.along[0][d][d] = static_cast<Real>(impulse);
       RowOf<Real> rows[power(3, D - 1)] = {};
-      scatter<D, Real>(weights, push, rows);
+      scatter<D, 1, Real>(weights, push, rows);
       add_rows<D, Real>(rows, &sums[static_cast<std::size_t>(base)]);
     });
   }
@@ -157,7 +157,7 @@ class PressureCells {
       if (points_[cell] == 0) continue;
       const Index<D> at = index_of(cell);
       const auto with_row = [&](const Vec<D>& place, double share) {
-        PointWeights<Real, D> weights{};
+        PointWeights<Real, D, 1> weights{};
         int base = 0;
         for (int d = 0; d < D; ++d) base = base * tile_span + at[d] + (splines_ ? 1 : 2);
         for (int d = 0; d < D; ++d) row_along(d, at[d], place[d], weights);
@@ -173,16 +173,16 @@ class PressureCells {
   }
 
   /// A row's weights in direction d: three nodes, or the cell's two corners.
-  void row_along(int d, int cell, double place, PointWeights<Real, D>& weights) const {
+  void row_along(int d, int cell, double place, PointWeights<Real, D, 1>& weights) const {
     const double slope = 1.0 / axes_[d].h;
     const SplineValues one = splines_ ? splines(axes_[d], tile_[d] * tile_cells + cell, place)
                                       : SplineValues{{1.0 - place, place, 0.0}, {-slope, slope, 0.0}};
     for (int k = 0; k < 3; ++k) {
       const auto w = static_cast<Real>(one.N[k]), a = static_cast<Real>(one.dN[k]);
       if (d < D - 1)
-        weights.w[d][k] = w, weights.a[d][k] = a;
+        weights.w[d][k] = w, weights.a[0][d][k] = a;
       else
-        weights.w_row[k] = w, weights.a_row[k] = a;
+        weights.w_row[k] = w, weights.a_row[0][k] = a;
     }
   }
 

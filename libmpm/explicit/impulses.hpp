@@ -13,24 +13,13 @@
 
 namespace tremie::detail {
 
-/// Components of a push that flat walls take from a node, one bit each.
-using HeldBy = std::uint8_t;
-
-/// Ones, but for the components that are held.
-inline constexpr std::array<f64x4, 8> left_by = [] {
-  std::array<f64x4, 8> left{};
-  for (std::size_t held = 0; held < left.size(); ++held)
-    left[held] = f64x4{held & 1 ? 0.0 : 1.0, held & 2 ? 0.0 : 1.0, held & 4 ? 0.0 : 1.0, 1.0};
-  return left;
-}();
-
 /// A point that may touch the wall in this step.
 template <int D>
 struct WallPoint {
   int n = 0;  ///< nodes that it reaches
   std::array<f64x4*, power(3, D)> node;
   std::array<double, power(3, D)> N;
-  std::array<HeldBy, power(3, D)> held;
+  std::array<f64x4, power(3, D)> push;  ///< velocity that a unit impulse along the normal gives each
   f64x4 normal = {};
   double target = 0.0;   ///< least normal velocity [m/s]
   double inertia = 0.0;  ///< 1/kg: of the nodes against an impulse along the normal
@@ -61,51 +50,35 @@ void look_around_wall(const RigidWall<Geometry::dim>& wall, double time, Explici
       }
 }
 
-/// The velocity that a unit impulse along the normal gives the k-th node of a point.
-template <int D>
-f64x4 given_by_push(const WallPoint<D>& p, std::size_t k) {
-  return p.N[k] * (*p.node[k])[D] * (p.normal * left_by[p.held[k]]);
-}
-
-/// Which components of a push a node's place along axis d takes.
-template <int D>
-HeldBy held_along(const Axis& a, const Shape<D>& shape, int node, int d) {
-  const bool low = a.wall_low() && node == shape.low_wall(), high = a.wall_high() && node == a.n_cells + 1;
-  const bool sticks = (low && a.low == FaceKind::no_slip) || (high && a.high == FaceKind::no_slip);
-  return static_cast<HeldBy>(sticks ? 7 : low || high ? 1 << d : 0);
-}
-
-/// The nodes of lane l, and what a push along the normal does to them.
+/// The nodes of lane l, and what a push along the normal does to them: flat walls take what goes into them.
 template <class Geometry>
 void enter_controls(ExplicitState<Geometry>& state, const Tile<Geometry::dim>& tile,
                     const Weights<double, Geometry::dim>& weights, std::size_t l,
                     WallPoint<Geometry::dim>& p) {
   constexpr int D = Geometry::dim;
-  int block[D][3], within[D][3], held[D][3];
-  for (int d = 0; d < D; ++d)
-    for (int o = 0; o < 3; ++o) {
-      const int local = weights.base[l] / stride<D>(tile_span, d) % tile_span + o;
-      block[d][o] = local / tile_cells * stride<D>(2, d);
-      within[d][o] = local % tile_cells * stride<D>(tile_cells, d);
-      held[d][o] = held_along(state.grid.axes[d], state.shape, tile.at[d] * tile_cells - 1 + local, d);
-    }
-  f64x4 inertia = {};
   for (int i = 0; i < power(3, D); ++i) {
     const Index<D> o = local_offset<D>(i);
-    int in_tile = 0, in_block = 0, held_by = 0;
+    int block = 0, within = 0;
     double N = 1.0;
+    f64x4 normal = p.normal;
     for (int d = 0; d < D; ++d) {
-      in_tile += block[d][o[d]], in_block += within[d][o[d]], held_by |= held[d][o[d]];
+      const Axis& a = state.grid.axes[d];
+      const int local = weights.base[l] / stride<D>(tile_span, d) % tile_span + o[d],
+                node = tile.at[d] * tile_cells - 1 + local;
+      block += local / tile_cells * stride<D>(2, d), within += local % tile_cells * stride<D>(tile_cells, d);
       N *= weights.w[d][o[d]][l];
+      const bool low = a.wall_low() && node == state.shape.low_wall(),
+                 high = a.wall_high() && node == a.n_cells + 1;
+      if (low || high) normal[d] = 0.0;
+      if ((low && a.low == FaceKind::no_slip) || (high && a.high == FaceKind::no_slip)) normal = f64x4{};
     }
     if (N == 0.0) continue;
-    const auto b = static_cast<std::size_t>(tile.block[static_cast<std::size_t>(in_tile)]);
+    const auto b = static_cast<std::size_t>(tile.block[static_cast<std::size_t>(block)]);
     const auto k = static_cast<std::size_t>(p.n++);
-    p.node[k] = &state.grid.v[b][static_cast<std::size_t>(in_block)];
-    p.N[k] = N, p.held[k] = static_cast<HeldBy>(held_by);
-    inertia += N * given_by_push(p, k) * (p.normal * left_by[p.held[k]]);
+    p.node[k] = &state.grid.v[b][static_cast<std::size_t>(within)];
+    p.N[k] = N, p.push[k] = N * (*p.node[k])[D] * normal;
+    for (int d = 0; d < D; ++d) p.inertia += N * p.push[k][d] * normal[d];
   }
-  for (int d = 0; d < D; ++d) p.inertia += inertia[d];
 }
 
 /// Of the points first ... last - 1 that are near the wall those that may touch it; it must see half a cell
@@ -155,7 +128,7 @@ void push_off(WallPoint<D>& p) {
   const double total = std::max(0.0, p.given + (p.target - u) / p.inertia), more = total - p.given;
   p.given = total;
   if (more == 0.0) return;
-  for (std::size_t k = 0; k < n; ++k) *p.node[k] += more * given_by_push(p, k);
+  for (std::size_t k = 0; k < n; ++k) *p.node[k] += more * p.push[k];
 }
 
 /// Holds the concrete back at the wall at `time`, the end of a step of length dt.

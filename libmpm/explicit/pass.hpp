@@ -23,28 +23,17 @@ struct PassInput {
   double impulse_dt = 0.0;  ///< of the impulses: the step that they act in [s]
 };
 
-/// Reduced over the points of a tile, then over the tiles in their order.
+/// Reduced over the groups of a tile, lane by lane, then over the tiles in their order.
 struct PassSums {
-  double farthest = 0.0;  ///< largest move along an axis, in cells
-  double speed2 = 0.0;    ///< largest, squared [m^2/s^2]
-  double volume = 0.0, volume_rate = 0.0, lambda = 0.0;
-  bool ran_away = false;
-
-  void add(const PassSums& other) {
-    farthest = std::max(farthest, other.farthest), speed2 = std::max(speed2, other.speed2);
-    volume += other.volume, volume_rate += other.volume_rate;
-    lambda = std::max(lambda, other.lambda), ran_away = ran_away || other.ran_away;
-  }
-};
-
-/// The same for each lane, while a tile's groups are visited.
-struct LaneSums {
-  f64x8 farthest = {}, speed2 = {}, volume = {}, volume_rate = {}, lambda = {};
+  f64x8 farthest = {};  ///< largest move along an axis, in cells
+  f64x8 speed2 = {};    ///< largest, squared [m^2/s^2]
+  f64x8 volume = {}, volume_rate = {}, lambda = {};
   i64x8 ran_away = {};
 
-  PassSums reduced() const {
-    return {largest(farthest), largest(speed2), sum(volume),
-            sum(volume_rate),  largest(lambda), any(ran_away)};
+  void add(const PassSums& other) {
+    farthest = max(farthest, other.farthest), speed2 = max(speed2, other.speed2);
+    volume += other.volume, volume_rate += other.volume_rate;
+    lambda = max(lambda, other.lambda), ran_away |= other.ran_away;
   }
 };
 
@@ -65,13 +54,13 @@ struct TilePass {
   const HeldCells<D>* held;             ///< its cells at walls that hold
   bool cells;                           ///< pressures go by the cell, and there are any in this pass
   PressureCells<Real, Geometry>&before, &pressed;  ///< cells of the points as they were, and as they push
-  LaneSums& reduced;
+  PassSums& reduced;
 };
 
 /// Updates the flocculation of group g over dt, and gives its static yield stress [Pa].
 template <int D>
 f64x8 update_yield_stress(const Mix& mix, double dt, const f64x8& gamma_dot, LanePoints<D>& points,
-                          std::size_t g, LaneSums& sums) {
+                          std::size_t g, PassSums& sums) {
   if (!points.thixotropic()) {
     if (!points.gamma_dot.empty()) points.gamma_dot[g] = gamma_dot;
     return all_lanes(mix.tau_0);
@@ -93,18 +82,22 @@ f64x8 hold_of_group(const HeldCells<D>* held, const GroupCells& cell) {
   return of;
 }
 
-/// Stress update of group g: volume, flocculation, and the impulses that its stress gives the nodes. `rates`: velocity
-/// and its slopes. Where pressures go by the cell, they are not among the impulses.
+/// One vector a component, in each direction.
+template <class Real, int D>
+using Along = SimdOf<Real>[D][4];
+
+/// Stress update of group g: volume, flocculation, and what its stress pushes with, `impulse`. slope[b][a] = dv_a/dx_b; v_0:
+/// first component of the velocity. Where pressures go by the cell, they are not in the stress. Gives the hoop stress.
 template <class Real, class Geometry>
-void update_stress(TilePass<Real, Geometry>& in, std::size_t g, const AtPoints<Real, Geometry::dim>& rates,
-                   AtPoints<Real, Geometry::dim>& impulse, f64x8& pressure) {
+f64x8 update_stress(TilePass<Real, Geometry>& in, std::size_t g, const SimdOf<Real>& v_0,
+                    const Along<Real, Geometry::dim>& slope, Along<Real, Geometry::dim>& impulse,
+                    f64x8& pressure) {
   constexpr int D = Geometry::dim, ns = Geometry::n_strain;
   LanePoints<D>& points = in.points;
-  const f64x8& x_0 = points.x[0][g];
   f64x8 L[D][D], q[ns], divergence;
   for (int a = 0; a < D; ++a)
-    for (int b = 0; b < D; ++b) L[a][b] = to_double(rates.along[b][a]);
-  strain_rate_of<Geometry, f64x8>(L, to_double(rates.value[0]), x_0, q, divergence);
+    for (int b = 0; b < D; ++b) L[a][b] = to_double(slope[b][a]);
+  strain_rate_of<Geometry, f64x8>(L, to_double(v_0), points.x[0][g], q, divergence);
   f64x8 q2 = q[0] * q[0];
   for (int k = 1; k < ns; ++k) q2 += q[k] * q[k];
   const f64x8 gamma_dot = sqrt(q2);
@@ -122,23 +115,22 @@ void update_stress(TilePass<Real, Geometry>& in, std::size_t g, const AtPoints<R
   f64x8 sigma[D][D], hoop;
   for (f64x8& component : q) component *= viscosity;
   stress_tensor_of<Geometry, f64x8>(q, in.cells ? f64x8{} : pressure, sigma, hoop);
-  const double dt = in.input.impulse_dt;
   for (int a = 0; a < D; ++a)
-    for (int b = 0; b < D; ++b) impulse.along[b][a] = to_real<Real>(-dt * sigma[a][b]);
-  if (std::is_same_v<Geometry, Axisymmetric>) impulse.value[0] = to_real<Real>(-dt * hoop);
+    for (int b = 0; b < D; ++b) impulse[b][a] = to_real<Real>(-in.input.impulse_dt * sigma[a][b]);
+  return hoop;
 }
 
 /// Moves group g with the velocities that it has read. Walls keep the points.
 template <class Real, class Geometry>
-void move_points(TilePass<Real, Geometry>& in, std::size_t g, const AtPoints<Real, Geometry::dim>& read,
-                 const AtPoints<Real, Geometry::dim>& start) {
+void move_points(TilePass<Real, Geometry>& in, std::size_t g, const SimdOf<Real> (&read)[4],
+                 const SimdOf<Real> (&start)[4]) {
   constexpr int D = Geometry::dim;
   const Transfer& transfer = in.settings.transfer;
   f64x8 speed2 = {};
   for (int d = 0; d < D; ++d) {
     f64x8 &x = in.points.x[d][g], &v = in.points.v[d][g];
-    const f64x8 grid_v = to_double(read.value[d]);
-    v = transfer.flip ? grid_v + transfer.flip_blend * (v - to_double(start.value[d])) : grid_v;
+    const f64x8 grid_v = to_double(read[d]);
+    v = transfer.flip ? grid_v + transfer.flip_blend * (v - to_double(start[d])) : grid_v;
     x += in.input.dt * grid_v;
     const Axis& a = in.axes[d];
     if (a.wall_low()) x = max(x, all_lanes(a.origin + 1e-6 * a.h));
@@ -151,73 +143,79 @@ void move_points(TilePass<Real, Geometry>& in, std::size_t g, const AtPoints<Rea
   in.reduced.speed2 = max(in.reduced.speed2, speed2);
 }
 
-/// Moments about the points to affine velocities, C[a][b] in along[b][a]; none with FLIP. On a wall one node has all the
+/// Moments about the points to affine velocities, C[a][b] in C[b][a]; none with FLIP. On a wall one node has all the
 /// weight: no slope can be seen there, and none is given.
 template <class Real, class Geometry>
 void affine_from_moments(TilePass<Real, Geometry>& in, std::size_t g,
-                         const Weights<Real, Geometry::dim>& weights, AtPoints<Real, Geometry::dim>& read) {
+                         const Weights<Real, Geometry::dim>& weights, Along<Real, Geometry::dim>& C) {
   constexpr int D = Geometry::dim;
   using V = SimdOf<Real>;
   for (int b = 0; b < D; ++b) {
     const Real h = in.frame.axis[b].h;
-    const V& inertia = weights.inertia[b];
-    const auto seen = inertia > static_cast<Real>(1e-12) * h * h;
-    const V inverse = seen ? 1 / (seen ? inertia : 1 - V{}) : V{};
+    const auto seen = weights.inertia[b] > static_cast<Real>(1e-12) * h * h;
+    const V inverse = seen && !in.settings.transfer.flip ? 1 / (seen ? weights.inertia[b] : 1 - V{}) : V{};
     for (int a = 0; a < D; ++a) {
-      V& C = read.along[b][a];
-      C = in.settings.transfer.flip ? V{} : C * inverse;
-      if (!in.points.C[0].empty()) in.points.C[a * D + b][g] = to_double(C);
+      C[b][a] *= inverse;
+      if (!in.points.C[0].empty()) in.points.C[a * D + b][g] = to_double(C[b][a]);
     }
   }
 }
 
-/// Mass, momentum and what goes with the arms from the points of group g.
-template <class Real, int D>
-AtPoints<Real, D> momenta_of(const LanePoints<D>& points, std::size_t g, const AtPoints<Real, D>& affine) {
-  AtPoints<Real, D> momenta;
-  const auto mass = momenta.value[D] = to_real<Real>(points.mass[g]);
-  for (int a = 0; a < D; ++a) {
-    momenta.value[a] = mass * to_real<Real>(points.v[a][g]);
-    for (int b = 0; b < D; ++b) momenta.along[b][a] = mass * affine.along[b][a];
-  }
-  return momenta;
+/// Slopes of the weights for stresses, arms for motion.
+template <Pass pass, class Real, int D>
+auto other_weights(const Weights<Real, D>& weights) {
+  if constexpr (pass.stress && pass.move)
+    return OtherWeights<Real, 2>{weights.dw, weights.wa};
+  else
+    return OtherWeights<Real, 1>{pass.stress ? weights.dw : weights.wa};
 }
 
 /// Eight points: the material point method from top to bottom.
 template <Pass pass, class Real, class Geometry>
 void visit_group(TilePass<Real, Geometry>& in, std::size_t g) {
-  constexpr int D = Geometry::dim;
-  const bool flip = in.settings.transfer.flip;
-  const int n = filled<D>(in.points, g);
+  constexpr int D = Geometry::dim, sets = pass.stress && pass.move ? 2 : 1;
+  LanePoints<D>& points = in.points;
+  const int n = filled<D>(points, g);
   Weights<Real, D> weights;
-  AtPoints<Real, D> rates, affine, start, impulse;
-  f64x8 pressure = {};
-  weigh<Real, D, pass.stress, pass.move>(in.frame, places_of<D>(in.points, g), weights);
+  const auto a = other_weights<pass>(weights);
+  AtPoints<Real, D, sets> read, start, given, impulses;
+  auto &C = read.along[sets - 1], &momenta = given.along[sets - 1];  // in the order of other_weights
+  f64x8 pressure = {}, hoop = {};
+  weigh<Real, D, pass.stress, pass.move>(in.frame, places_of<D>(points, g), weights);
   // Grid to points.
-  if (pass.gather && pass.stress) gather<Real, D>(in.v, weights, weights.dw, rates);
-  if (pass.gather && pass.move) gather<Real, D>(in.v, weights, weights.wa, affine);
-  if (pass.gather && pass.move && flip) gather<Real, D>(in.v_start, weights, weights.wa, start);
+  if (pass.gather) gather<Real, D, sets>(in.v, weights, a, read);
+  if (pass.gather && pass.move && in.settings.transfer.flip)
+    gather<Real, D, sets>(in.v_start, weights, a, start);
   // Stress.
-  if (pass.stress) update_stress(in, g, rates, impulse, pressure);
+  if (pass.stress)
+    hoop = update_stress<Real, Geometry>(in, g, read.value[0], read.along[0], impulses.along[0], pressure);
   // Motion.
   if (pass.gather && pass.move) {
-    move_points(in, g, affine, start);
-    affine_from_moments(in, g, weights, affine);
-    weigh<Real, D, pass.stress, pass.move>(in.frame, places_of<D>(in.points, g), weights);
-  } else if (pass.move && !in.points.C[0].empty()) {
+    move_points<Real, Geometry>(in, g, read.value, start.value);
+    affine_from_moments<Real, Geometry>(in, g, weights, C);
+    weigh<Real, D, pass.stress, pass.move>(in.frame, places_of<D>(points, g), weights);
+  } else if (pass.move && !points.C[0].empty()) {
     for (int b = 0; b < D; ++b)
-      for (int a = 0; a < D; ++a) affine.along[b][a] = to_real<Real>(in.points.C[a * D + b][g]);
+      for (int i = 0; i < D; ++i) C[b][i] = to_real<Real>(points.C[i * D + b][g]);
   }
-  // Points to grid.
-  if (pass.move) scatter<Real, D>(weights, weights.wa, momenta_of<Real, D>(in.points, g, affine), n, in.sums);
-  if (!pass.stress) return;
+  // Points to grid: pressures, the other stresses, mass and momentum.
   if (in.cells) {
-    const GroupCells cell = cells_of_group(in.frame, in.points, g);
-    if (pass.move) in.pressed.enter(in.points, g, cell);
+    const GroupCells cell = cells_of_group(in.frame, points, g);
+    if (pass.move) in.pressed.enter(points, g, cell);
     in.pressed.push(cell, n, in.input.impulse_dt * pressure);
   }
-  if (std::is_same_v<Geometry, Axisymmetric>) impulse.value[0] /= to_real<Real>(in.points.x[0][g]);
-  scatter<Real, D>(weights, weights.dw, impulse, n, in.impulses);
+  if (std::is_same_v<Geometry, Axisymmetric>)
+    impulses.value[0] = to_real<Real>(-in.input.impulse_dt * hoop / points.x[0][g]);
+  const bool apart = &in.impulses != &in.sums;
+  if (apart || !pass.move) scatter<Real, D, sets>(weights, a, impulses, n, in.impulses);
+  if (!pass.move) return;
+  if (!apart) given = impulses;
+  const SimdOf<Real> mass = given.value[D] = to_real<Real>(points.mass[g]);
+  for (int i = 0; i < D; ++i) {
+    given.value[i] += mass * to_real<Real>(points.v[i][g]);
+    for (int b = 0; b < D; ++b) momenta[b][i] = mass * C[b][i];
+  }
+  scatter<Real, D, sets>(weights, a, given, n, in.sums);
 }
 
 /// One tile.
@@ -238,11 +236,9 @@ PassSums pass_over_tile(const Mix& mix, const YieldLaw& law, const ExplicitSetti
   const HeldCells<D>* held = pass.stress ? state.holding.of(static_cast<int>(t)) : nullptr;
   const bool cells = pass.stress && settings.cell_pressure;
   const StencilFrame<Real, D> frame(grid.axes, state.shape, tile.at);
-  const auto no_cells = [&](bool wanted) {
-    return PressureCells<Real, Geometry>(grid.axes, tile.at, frame, settings.stress, held, wanted);
-  };
-  PressureCells<Real, Geometry> before = no_cells(cells), after = no_cells(cells && pass.move);
-  LaneSums reduced;
+  PressureCells<Real, Geometry> before(grid.axes, tile.at, frame, settings.stress, held, cells),
+      after(grid.axes, tile.at, frame, settings.stress, held, cells && pass.move);
+  PassSums reduced;
   TilePass<Real, Geometry> in{mix,      law,          settings, input,   grid.axes,
                               frame,    state.points, v,        v_start, sums,
                               impulses, held,         cells,    before,  pass.move ? after : before,
@@ -256,7 +252,7 @@ PassSums pass_over_tile(const Mix& mix, const YieldLaw& law, const ExplicitSetti
   }
   for (std::size_t g = first; g < last; ++g) visit_group<pass>(in, g);
   if (cells) in.pressed.scatter_impulses(impulses);
-  return reduced.reduced();
+  return reduced;
 }
 
 /// A pass over the points of all tiles, with the velocities that the nodes have. Tiles hold unequal numbers of points:

@@ -28,7 +28,7 @@ void for_each_block(const TileGrid<D>& grid, Update update) {
 /// Sorts the points where they have drifted, and looks into the cells at walls.
 template <class Real, class Geometry>
 void follow_points(const ExplicitSettings& settings, ExplicitState<Geometry>& state) {
-  if (state.drift > drift_allowed) sort_points<Real>(settings, state);
+  if (state.drift > drift_allowed(settings)) sort_points<Real>(settings, state);
   look_into_wall_cells(state);
 }
 
@@ -95,13 +95,14 @@ void end_step(const ExplicitSettings& settings, const PassSums& sums, Body<Geome
               ExplicitState<Geometry>& state, ExplicitReport& report) {
   body.time += report.dt;
   body.dt = report.dt;
-  report.max_speed = state.max_speed = std::sqrt(sums.speed2);
-  report.shear_rate_mean = sums.volume > 0.0 ? sums.volume_rate / sums.volume : 0.0;
-  state.lambda_max = sums.lambda;
-  state.drift += sums.farthest;
-  state.holding.drift += sums.farthest;
-  state.wall_drift += sums.farthest * body.grid.axes[0].h + settings.wall_speed * report.dt;
-  report.failed = sums.ran_away || !(state.drift < 1.0);
+  report.max_speed = state.max_speed = std::sqrt(largest(sums.speed2));
+  const double volume = sum(sums.volume), farthest = largest(sums.farthest);
+  report.shear_rate_mean = volume > 0.0 ? sum(sums.volume_rate) / volume : 0.0;
+  state.lambda_max = largest(sums.lambda);
+  state.drift += farthest;
+  state.holding.drift += farthest;
+  state.wall_drift += farthest * body.grid.axes[0].h + settings.wall_speed * report.dt;
+  report.failed = any(sums.ran_away) || !(state.drift < 1.0);
 }
 
 }  // namespace detail

@@ -4,10 +4,9 @@
 // of its own.
 
 #include <algorithm>
+#include <compare>
 #include <cstdint>
-#include <limits>
 #include <span>
-#include <stdexcept>
 #include <vector>
 
 #include "libmpm/grid/tiles.hpp"
@@ -123,36 +122,13 @@ void take_points(Points<D>& points, bool affine, bool rates, LanePoints<D>& lane
 
 namespace detail {
 
-/// Where a point is sorted to (tiles in their order, and the cells of each) and where it was (eight times its
-/// group plus its lane), in one number: half of the memory that two would take.
-struct SortKey {
-  std::uint64_t both;
-
-  SortKey(std::uint64_t cell, std::size_t slot) : both(cell << 32 | slot) {}
-  std::uint64_t cell() const { return both >> 32; }
-  std::int32_t slot() const { return static_cast<std::int32_t>(both & 0xffffffffU); }
-  auto operator<=>(const SortKey&) const = default;
-};
-
-/// The tiles' positions are those of cells in a box that holds all points.
+/// Where a point is sorted to (tiles in their order, and the cells of each) and where it was: eight times its group
+/// plus its lane.
 template <int D>
-struct TileBox {
-  Index<D> low, size;
-  std::uint64_t number(const Index<D>& tile) const {
-    std::uint64_t n = 0;
-    for (int d = 0; d < D; ++d)
-      n = n * static_cast<std::uint64_t>(size[d]) + static_cast<std::uint64_t>(tile[d] - low[d]);
-    return n;
-  }
-  Index<D> tile(std::uint64_t number) const {
-    Index<D> at;
-    for (int d = D - 1; d >= 0; --d) {
-      const auto n = static_cast<std::uint64_t>(size[d]);
-      at[d] = low[d] + static_cast<int>(number % n);
-      number /= n;
-    }
-    return at;
-  }
+struct SortKey {
+  Index<D> tile;
+  std::int32_t cell, slot;
+  auto operator<=>(const SortKey&) const = default;
 };
 
 /// Tile of a cell on an axis.
@@ -162,40 +138,23 @@ inline int tile_of(const Axis& axis, int cell) {
 
 /// Keys of all points in their order. The last direction of a tile's cells runs fastest.
 template <int D>
-TileBox<D> sort_keys(const std::array<Axis, D>& axes, double stencil_shift, const LanePoints<D>& lanes,
-                     std::vector<SortKey>& keys) {
-  const auto cell_of = [&](int d, std::size_t g, std::size_t l) {
-    return static_cast<int>(std::floor((lanes.x[d][g][l] - axes[d].origin) / axes[d].h + stencil_shift));
-  };
-  const auto each = [&](auto visit) {
-    for (std::size_t g = 0; g < lanes.groups(); ++g)
-      for (std::size_t l = 0; l < f64x8_size && lanes.id[g][l] >= 0; ++l) visit(g, l);
-  };
-  TileBox<D> box;
-  Index<D> high;
-  box.low.fill(std::numeric_limits<int>::max()), high.fill(std::numeric_limits<int>::min());
-  each([&](std::size_t g, std::size_t l) {
-    for (int d = 0; d < D; ++d) {
-      const int tile = tile_of(axes[d], cell_of(d, g, l));
-      box.low[d] = std::min(box.low[d], tile), high[d] = std::max(high[d], tile);
-    }
-  });
-  std::uint64_t cells = power(tile_cells, D);
-  for (int d = 0; d < D; ++d) cells *= static_cast<std::uint64_t>(box.size[d] = high[d] - box.low[d] + 1);
-  if (cells >> 32 != 0) throw std::length_error("the points lie further apart than 4e9 cells can tell");
+std::vector<SortKey<D>> sort_keys(const std::array<Axis, D>& axes, double stencil_shift,
+                                  const LanePoints<D>& lanes) {
+  std::vector<SortKey<D>> keys;
   keys.reserve(lanes.n);
-  each([&](std::size_t g, std::size_t l) {
-    Index<D> tile;
-    std::uint64_t cell = 0;
-    for (int d = 0; d < D; ++d) {
-      const int c = cell_of(d, g, l);
-      tile[d] = tile_of(axes[d], c);
-      cell = cell * tile_cells + static_cast<std::uint64_t>(((c % tile_cells) + tile_cells) % tile_cells);
+  for (std::size_t g = 0; g < lanes.groups(); ++g)
+    for (std::size_t l = 0; l < f64x8_size && lanes.id[g][l] >= 0; ++l) {
+      SortKey<D>& key = keys.emplace_back();
+      key.slot = static_cast<std::int32_t>(g * f64x8_size + l);
+      for (int d = 0; d < D; ++d) {
+        const int c =
+            static_cast<int>(std::floor((lanes.x[d][g][l] - axes[d].origin) / axes[d].h + stencil_shift));
+        key.tile[d] = tile_of(axes[d], c);
+        key.cell = key.cell * tile_cells + ((c % tile_cells) + tile_cells) % tile_cells;
+      }
     }
-    keys.emplace_back(box.number(tile) * power(tile_cells, D) + cell, g * f64x8_size + l);
-  });
   std::sort(keys.begin(), keys.end());
-  return box;
+  return keys;
 }
 
 /// Slots that make up each group, -1 for what fills it up.
@@ -253,20 +212,16 @@ template <int D>
 std::vector<Tile<D>> sort_into_tiles(const std::array<Axis, D>& axes, double stencil_shift,
                                      LanePoints<D>& lanes) {
   detail::wrap_points<D>(axes, lanes);
-  std::vector<detail::SortKey> keys;
-  const auto box = detail::sort_keys<D>(axes, stencil_shift, lanes, keys);
   std::vector<Tile<D>> tiles;
   std::vector<detail::GroupSlots> groups;
   std::size_t filled = f64x8_size;  // of the last group
-  for (const detail::SortKey& key : keys) {
-    const Index<D> at = box.tile(key.cell() / power(tile_cells, D));
-    const bool new_tile = tiles.empty() || tiles.back().at != at;
-    if (new_tile) tiles.push_back({.at = at, .first_group = static_cast<int>(groups.size())});
+  for (const detail::SortKey<D>& key : detail::sort_keys<D>(axes, stencil_shift, lanes)) {
+    const bool new_tile = tiles.empty() || tiles.back().at != key.tile;
+    if (new_tile) tiles.push_back({.at = key.tile, .first_group = static_cast<int>(groups.size())});
     if (new_tile || filled == f64x8_size) groups.emplace_back().fill(-1), filled = 0;
-    groups.back()[filled++] = key.slot();
+    groups.back()[filled++] = key.slot;
     tiles.back().last_group = static_cast<int>(groups.size());
   }
-  keys = {};
   detail::permute_points<D>(groups, lanes);
   return tiles;
 }

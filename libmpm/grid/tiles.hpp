@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "libmpm/grid/active_grid.hpp"
-#include "libmpm/parallel/simd_real.hpp"
+#include "libmpm/parallel/simd.hpp"
 
 namespace tremie {
 
@@ -31,6 +31,7 @@ template <class Real>
 using NodeOf = std::conditional_t<std::is_same_v<Real, float>, f32x4, f64x4>;
 
 /// Four nodes of a row (the last direction) as one vector, or as two.
+using f32x16 [[gnu::vector_size(64)]] = float;
 struct f64x16 {
   f64x8 low, high;
 };

@@ -5,8 +5,8 @@
 // A row of four nodes is one vector, so that a point reads and adds to its 3^(D-1) rows one vector each,
 // wherever its stencil begins: points of different cells cost what those of one cell do. Each direction is
 // factored out in turn. What a sum has beside the values goes with weights a in place of w in one direction
-// at a time: the slopes of the weights (gradients and what stresses push with) or their arms from the point
-// (moments, and momenta of affine velocities).
+// at a time: the slopes of the weights (gradients and what stresses push with), their arms from the point
+// (moments, and momenta of affine velocities), or first the ones and then the others: N sets of them.
 
 #include "libmpm/transfer/shape_functions.hpp"
 #ifdef __AVX512F__
@@ -16,23 +16,22 @@
 namespace tremie {
 
 /// Weights of one point: of the directions across the rows, and along them.
-template <class Real, int D>
+template <class Real, int D, int N>
 struct PointWeights {
-  Real w[D - 1][3], a[D - 1][3];
-  NodeOf<Real> w_row, a_row;  ///< entry k: of a row's k-th node; the last is 0
+  Real w[D - 1][3], a[N][D - 1][3];
+  NodeOf<Real> w_row, a_row[N];  ///< entry k: of a row's k-th node; the last is 0
 };
 
 /// A nodal vector field at one point, or what a point gives its nodes: values, and what goes with a in each
 /// direction.
-template <class Real, int D>
+template <class Real, int D, int N>
 struct AtPoint {
-  NodeOf<Real> value, along[D];
+  NodeOf<Real> value, along[N][D];
 };
 
 namespace detail {
 
-/// The same node four times, and each of its entries four times. By shuffles where the processor has them: the compiler
-/// would go through memory or number by number.
+/// The same node four times, and each of its entries four times; the compiler would go through memory.
 [[gnu::always_inline]] inline f32x16 repeat(const f32x4& a) {
 #ifdef __AVX512F__
   return _mm512_maskz_broadcast_f32x4(0xffff, a);
@@ -71,16 +70,18 @@ template <class Real>
 
 /// A nodal field at a point whose stencil begins at `node`. The weights w of a direction add up to 1 and the a to 0: the
 /// differences of the outer nodes from the middle one are all that they see.
-template <int D, class Real>
-[[gnu::always_inline]] inline AtPoint<Real, D> gather(const NodeOf<Real>* node,
-                                                      const PointWeights<Real, D>& p) {
+template <int D, int N, class Real>
+[[gnu::always_inline]] inline AtPoint<Real, D, N> gather(const NodeOf<Real>* node,
+                                                         const PointWeights<Real, D, N>& p) {
   using Row = RowOf<Real>;
   const auto with_w = [&p](int d, const Row(&of)[3]) {
     return of[1] + p.w[d][0] * of[0] + p.w[d][2] * of[2];
   };
-  const auto with_a = [&p](int d, const Row(&of)[3]) { return p.a[d][0] * of[0] + p.a[d][2] * of[2]; };
+  const auto with_a = [&p](int n, int d, const Row(&of)[3]) {
+    return p.a[n][d][0] * of[0] + p.a[n][d][2] * of[2];
+  };
   const auto to_differences = [](Row(&of)[3]) { of[0] = of[0] - of[1], of[2] = of[2] - of[1]; };
-  Row sum[3], turned[3];
+  Row sum[3], turned[N][3];
 #pragma GCC unroll 3
   for (int i = 0; i < 3; ++i) {
     const NodeOf<Real>* line = node + i * stride<D>(tile_span, 0);
@@ -90,38 +91,49 @@ template <int D, class Real>
       Row row[3] = {load_row<Real>(line), load_row<Real>(line + tile_span),
                     load_row<Real>(line + 2 * tile_span)};
       to_differences(row);
-      sum[i] = with_w(1, row), turned[i] = with_a(1, row);
+      sum[i] = with_w(1, row);
+      for (int n = 0; n < N; ++n) turned[n][i] = with_a(n, 1, row);
     }
   }
   to_differences(sum);
-  const Row w = detail::repeat_each(p.w_row), a = detail::repeat_each(p.a_row), value = with_w(0, sum);
-  AtPoint<Real, D> at;
+  const Row w = detail::repeat_each(p.w_row), value = with_w(0, sum);
+  AtPoint<Real, D, N> at;
   at.value = detail::sum_of_row<Real>(w * value);
-  at.along[0] = detail::sum_of_row<Real>(w * with_a(0, sum));
-  if constexpr (D == 3) {
-    to_differences(turned);
-    at.along[1] = detail::sum_of_row<Real>(w * with_w(0, turned));
+  for (int n = 0; n < N; ++n) {
+    at.along[n][0] = detail::sum_of_row<Real>(w * with_a(n, 0, sum));
+    if constexpr (D == 3) {
+      to_differences(turned[n]);
+      at.along[n][1] = detail::sum_of_row<Real>(w * with_w(0, turned[n]));
+    }
+    at.along[n][D - 1] = detail::sum_of_row<Real>(detail::repeat_each(p.a_row[n]) * value);
   }
-  at.along[D - 1] = detail::sum_of_row<Real>(a * value);
   return at;
 }
 
 /// The adjoint of gather(), added to the rows of a stencil.
-template <int D, class Real>
-[[gnu::always_inline]] inline void scatter(const PointWeights<Real, D>& p, const AtPoint<Real, D>& of,
+template <int D, int N, class Real>
+[[gnu::always_inline]] inline void scatter(const PointWeights<Real, D, N>& p, const AtPoint<Real, D, N>& of,
                                            RowOf<Real> (&rows)[power(3, D - 1)]) {
   using Row = RowOf<Real>;
-  const Row w = detail::repeat_each(p.w_row), a = detail::repeat_each(p.a_row);
-  const Row value = w * detail::repeat(of.value) + a * detail::repeat(of.along[D - 1]);
-  const Row along_0 = w * detail::repeat(of.along[0]), along_1 = w * detail::repeat(of.along[1]);
+  const Row w = detail::repeat_each(p.w_row);
+  Row value = w * detail::repeat(of.value), first[3] = {}, second[3] = {};
+  for (int n = 0; n < N; ++n) {
+    value = value + detail::repeat_each(p.a_row[n]) * detail::repeat(of.along[n][D - 1]);
+    const Row along_0 = w * detail::repeat(of.along[n][0]), along_1 = w * detail::repeat(of.along[n][1]);
+#pragma GCC unroll 3
+    for (int k = 0; k < 3; ++k) {
+      first[k] = first[k] + p.a[n][0][k] * along_0;
+      if constexpr (D == 3) second[k] = second[k] + p.a[n][1][k] * along_1;
+    }
+  }
 #pragma GCC unroll 3
   for (int i = 0; i < 3; ++i) {
-    const Row sum = p.w[0][i] * value + p.a[0][i] * along_0, turned = p.w[0][i] * along_1;
+    const Row sum = first[i] + p.w[0][i] * value;
     if constexpr (D == 2) {
       rows[i] = rows[i] + sum;
     } else {
 #pragma GCC unroll 3
-      for (int j = 0; j < 3; ++j) rows[3 * i + j] = rows[3 * i + j] + p.w[1][j] * sum + p.a[1][j] * turned;
+      for (int j = 0; j < 3; ++j) rows[3 * i + j] = rows[3 * i + j] + p.w[1][j] * sum + p.w[0][i] * second[j];
     }
   }
 }
@@ -137,10 +149,14 @@ template <int D, class Real>
 }
 
 /// The same at eight points, one lane a point; entry 3 of along is not used.
-template <class Real, int D>
+template <class Real, int D, int N>
 struct AtPoints {
-  SimdOf<Real> value[4] = {}, along[D][4] = {};
+  SimdOf<Real> value[4] = {}, along[N][D][4] = {};
 };
+
+/// The weights a of eight points, N sets.
+template <class Real, int N>
+using OtherWeights = std::array<const SimdOf<Real> (*)[3], N>;
 
 namespace detail {
 
@@ -182,22 +198,30 @@ template <class Real>
 }
 
 /// Weights of eight points one by one.
-template <class Real, int D>
+template <class Real, int D, int N>
 struct WeightsOfLanes {
   const Weights<Real, D>& weights;
-  const SimdOf<Real> (&a)[D][3];
-  NodeOf<Real> w_row[f64x8_size], a_row[f64x8_size];
+  const OtherWeights<Real, N>& a;
+  NodeOf<Real> w_row[f64x8_size], a_row[N][f64x8_size];
 
-  WeightsOfLanes(const Weights<Real, D>& of, const SimdOf<Real> (&other)[D][3]) : weights(of), a(other) {
-    const auto &w = of.w[D - 1], &last = a[D - 1];
-    const SimdOf<Real> three_w[4] = {w[0], w[1], w[2], {}}, three_a[4] = {last[0], last[1], last[2], {}};
-    to_nodes<Real>(three_w, w_row), to_nodes<Real>(three_a, a_row);
+  WeightsOfLanes(const Weights<Real, D>& of, const OtherWeights<Real, N>& other) : weights(of), a(other) {
+    const auto row_of = [](const SimdOf<Real>(&w)[3], NodeOf<Real>(&row)[f64x8_size]) {
+      const SimdOf<Real> three[4] = {w[0], w[1], w[2], {}};
+      to_nodes<Real>(three, row);
+    };
+    row_of(of.w[D - 1], w_row);
+    for (int n = 0; n < N; ++n) row_of(a[n][D - 1], a_row[n]);
   }
-  [[gnu::always_inline]] PointWeights<Real, D> operator[](int l) const {
-    PointWeights<Real, D> one;
+  [[gnu::always_inline]] PointWeights<Real, D, N> operator[](int l) const {
+    PointWeights<Real, D, N> one;
+    one.w_row = w_row[l];
     for (int d = 0; d < D - 1; ++d)
-      for (int k = 0; k < 3; ++k) one.w[d][k] = weights.w[d][k][l], one.a[d][k] = a[d][k][l];
-    one.w_row = w_row[l], one.a_row = a_row[l];
+      for (int k = 0; k < 3; ++k) one.w[d][k] = weights.w[d][k][l];
+    for (int n = 0; n < N; ++n) {
+      one.a_row[n] = a_row[n][l];
+      for (int d = 0; d < D - 1; ++d)
+        for (int k = 0; k < 3; ++k) one.a[n][d][k] = a[n][d][k][l];
+    }
     return one;
   }
 };
@@ -205,38 +229,42 @@ struct WeightsOfLanes {
 }  // namespace detail
 
 /// Grid to eight points.
-template <class Real, int D>
+template <class Real, int D, int N>
 [[gnu::noinline]] void gather(const NodeCube<Real, D>& v, const Weights<Real, D>& weights,
-                              const SimdOf<Real> (&a)[D][3], AtPoints<Real, D>& points) {
-  const detail::WeightsOfLanes<Real, D> of(weights, a);
-  NodeOf<Real> value[f64x8_size], along[D][f64x8_size];
+                              const OtherWeights<Real, N>& a, AtPoints<Real, D, N>& points) {
+  const detail::WeightsOfLanes<Real, D, N> of(weights, a);
+  NodeOf<Real> value[f64x8_size], along[N][D][f64x8_size];
   for (int l = 0; l < f64x8_size; ++l) {
     const auto base = static_cast<std::size_t>(weights.base[static_cast<std::size_t>(l)]);
-    const auto at = gather<D, Real>(&v[base], of[l]);
+    const auto at = gather<D, N, Real>(&v[base], of[l]);
     value[l] = at.value;
-    for (int d = 0; d < D; ++d) along[d][l] = at.along[d];
+    for (int n = 0; n < N; ++n)
+      for (int d = 0; d < D; ++d) along[n][d][l] = at.along[n][d];
   }
   detail::to_lanes<Real>(value, points.value);
-  for (int d = 0; d < D; ++d) detail::to_lanes<Real>(along[d], points.along[d]);
+  for (int n = 0; n < N; ++n)
+    for (int d = 0; d < D; ++d) detail::to_lanes<Real>(along[n][d], points.along[n][d]);
 }
 
 /// The first n of eight points to the grid. The rows of a stencil are summed up while points of the same follow. noipa:
 /// g++ 12 sees a loop that writes to no memory, and drops the call.
-template <class Real, int D>
-[[gnu::noipa]] void scatter(const Weights<Real, D>& weights, const SimdOf<Real> (&a)[D][3],
-                            const AtPoints<Real, D>& points, int n, NodeCube<Real, D>& sums) {
-  const detail::WeightsOfLanes<Real, D> of(weights, a);
-  NodeOf<Real> value[f64x8_size], along[D][f64x8_size];
+template <class Real, int D, int N>
+[[gnu::noipa]] void scatter(const Weights<Real, D>& weights, const OtherWeights<Real, N>& a,
+                            const AtPoints<Real, D, N>& points, int n, NodeCube<Real, D>& sums) {
+  const detail::WeightsOfLanes<Real, D, N> of(weights, a);
+  NodeOf<Real> value[f64x8_size], along[N][D][f64x8_size];
   detail::to_nodes<Real>(points.value, value);
-  for (int d = 0; d < D; ++d) detail::to_nodes<Real>(points.along[d], along[d]);
+  for (int s = 0; s < N; ++s)
+    for (int d = 0; d < D; ++d) detail::to_nodes<Real>(points.along[s][d], along[s][d]);
   RowOf<Real> rows[power(3, D - 1)] = {};
   for (int l = 0; l < n;) {
     const int base = weights.base[static_cast<std::size_t>(l)];
     do {
-      AtPoint<Real, D> one;
+      AtPoint<Real, D, N> one;
       one.value = value[l];
-      for (int d = 0; d < D; ++d) one.along[d] = along[d][l];
-      scatter<D, Real>(of[l], one, rows);
+      for (int s = 0; s < N; ++s)
+        for (int d = 0; d < D; ++d) one.along[s][d] = along[s][d][l];
+      scatter<D, N, Real>(of[l], one, rows);
     } while (++l < n && weights.base[static_cast<std::size_t>(l)] == base);
     add_rows<D, Real>(rows, &sums[static_cast<std::size_t>(base)]);
   }

@@ -29,7 +29,7 @@ template <class Real, int D>
 struct EightPoints {
   Weights<Real, D> weights;
   NodeCube<Real, D> v;
-  AtPoints<Real, D> given;
+  AtPoints<Real, D, 1> given;
 
   explicit EightPoints(ShapeFunctions kind) {
     std::mt19937 random(3);
@@ -43,7 +43,7 @@ struct EightPoints {
     };
     for (auto& node : v) fill(node, 4, 1.0);
     for (auto& component : given.value) fill(component, f64x8_size, 1.0);
-    for (auto& of_direction : given.along)
+    for (auto& of_direction : given.along[0])
       for (int c = 0; c < D; ++c) fill(of_direction[c], f64x8_size, 1.0);
   }
 };
@@ -76,11 +76,11 @@ constexpr double rounding(double size) {
 // `size`: of the weights a.
 template <class Real, int D>
 void sums_are_the_plain_ones(const EightPoints<Real, D>& points, const SimdOf<Real> (&a)[D][3], double size) {
-  AtPoints<Real, D> got;
+  AtPoints<Real, D, 1> got;
   NodeCube<Real, D> sums{};
-  gather<Real, D>(points.v, points.weights, a, got);
+  gather<Real, D, 1>(points.v, points.weights, {a}, got);
   constexpr int n = 7;  // the last fills up the group
-  scatter<Real, D>(points.weights, a, points.given, n, sums);
+  scatter<Real, D, 1>(points.weights, {a}, points.given, n, sums);
   std::array<std::array<double, 4>, power(tile_span, D)> expected{};
   for (int l = 0; l < f64x8_size; ++l) {
     const int base = points.weights.base[static_cast<std::size_t>(l)];
@@ -91,7 +91,7 @@ void sums_are_the_plain_ones(const EightPoints<Real, D>& points, const SimdOf<Re
       for (int c = 0; c < 4; ++c) {
         double give = w[0] * static_cast<double>(points.given.value[c][l]);
         for (int e = 0; e <= D; ++e) read[e][c] += w[e] * static_cast<double>(points.v[node][c]);
-        for (int d = 0; d < D; ++d) give += w[d + 1] * static_cast<double>(points.given.along[d][c][l]);
+        for (int d = 0; d < D; ++d) give += w[d + 1] * static_cast<double>(points.given.along[0][d][c][l]);
         if (l < n) expected[node][c] += give;
       }
     }
@@ -99,7 +99,7 @@ void sums_are_the_plain_ones(const EightPoints<Real, D>& points, const SimdOf<Re
       EXPECT_NEAR(static_cast<double>(got.value[c][l]), read[0][c], rounding<Real>(1.0));
     for (int d = 0; d < D; ++d)
       for (int c = 0; c < D; ++c)
-        EXPECT_NEAR(static_cast<double>(got.along[d][c][l]), read[d + 1][c], rounding<Real>(size));
+        EXPECT_NEAR(static_cast<double>(got.along[0][d][c][l]), read[d + 1][c], rounding<Real>(size));
   }
   for (std::size_t i = 0; i < expected.size(); ++i)
     for (int c = 0; c < 4; ++c)
@@ -126,9 +126,9 @@ TYPED_TEST(TileSums, AreThePlainOnes) {
 TYPED_TEST(TileSums, ImpulsesAddUpToNothing) {
   constexpr int D = 3;
   EightPoints<TypeParam, D> points(ShapeFunctions::gimp);
-  for (auto& value : points.given.value) value = {};
+  for (auto& value : points.given.value) value = SimdOf<TypeParam>{};
   NodeCube<TypeParam, D> sums{};
-  scatter<TypeParam, D>(points.weights, points.weights.dw, points.given, f64x8_size, sums);
+  scatter<TypeParam, D, 1>(points.weights, {points.weights.dw}, points.given, f64x8_size, sums);
   double total = 0.0, hardest = 0.0;
   for (const auto& node : sums)
     total += static_cast<double>(node[0]),

@@ -140,14 +140,14 @@ void gradients(ExplicitState<Geometry>& state, std::vector<Mat<D, D>>& L) {
     for (int g = tile.first_group; g < tile.last_group; ++g) {
       const auto group = static_cast<std::size_t>(g);
       Weights<double, D> weights;
-      AtPoints<double, D> at;
+      AtPoints<double, D, 1> at;
       weigh<double, D>({state.grid.axes, state.shape, tile.at}, places_of<D>(state.points, group), weights);
-      gather<double, D>(v, weights, weights.dw, at);
+      gather<double, D, 1>(v, weights, {weights.dw}, at);
       for (int l = 0; l < filled<D>(state.points, group); ++l)
         for (int a = 0; a < D; ++a)
           for (int b = 0; b < D; ++b)
             L[static_cast<std::size_t>(state.points.id[group][static_cast<std::size_t>(l)])](a, b) =
-                at.along[b][a][l];
+                at.along[0][b][a][l];
     }
   }
 }
