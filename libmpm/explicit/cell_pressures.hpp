@@ -69,11 +69,11 @@ class PressureCells {
 
   /// Reads the divergence of all cells, when all points have entered.
   void read(const Cube& v) {
-    for_each_row([&](std::size_t cell, double share, int base, const auto& weights, double x_0) {
-      const auto at = gather<D, 1, Real>(&v[static_cast<std::size_t>(base)], weights);
-      double divergence = hooped ? static_cast<double>(at.value[0]) / x_0 : 0.0;
-      for (int d = 0; d < D; ++d) divergence += static_cast<double>(at.along[0][d][d]);
-      divergence_[cell] += share * divergence;
+    for_each_row([&](std::size_t cell, double share, std::size_t base, const Rows& rows) {
+      RowOf<Real> sum = {};
+      for_each_node_row([&](int r) { sum = sum + rows[r] * load_row<Real>(&v[base] + row_offset<D>(r)); });
+      const NodeOf<Real> along = detail::sum_of_row<Real>(sum);
+      for (int d = 0; d < D; ++d) divergence_[cell] += share * static_cast<double>(along[d]);
     });
   }
 
@@ -92,19 +92,19 @@ class PressureCells {
 
   /// Gives the nodes the impulses of all cells, when all points have pushed.
   void scatter_impulses(Cube& sums) {
-    for_each_row([&](std::size_t cell, double share, int base, const auto& weights, double x_0) {
-      const double impulse = share * impulse_[cell];
-      AtPoint<Real, D, 1> push = {};
-      if (hooped) push.value[0] = static_cast<Real>(impulse / x_0);
-      for (int d = 0; d < D; ++d) push.along[0][d][d] = static_cast<Real>(impulse);
-      RowOf<Real> rows[power(3, D - 1)] = {};
-      scatter<D, 1, Real>(weights, push, rows);
-      add_rows<D, Real>(rows, &sums[static_cast<std::size_t>(base)]);
+    for_each_row([&](std::size_t cell, double share, std::size_t base, const Rows& rows) {
+      const Real impulse = static_cast<Real>(share * impulse_[cell]);
+      for_each_node_row([&](int r) {
+        NodeOf<Real>* to = &sums[base] + row_offset<D>(r);
+        store_row<Real>(load_row<Real>(to) + impulse * rows[r], to);
+      });
     });
   }
 
  private:
   static constexpr bool hooped = std::is_same_v<Geometry, Axisymmetric>;
+  /// What a velocity of each node is in the divergence of a cell, and a pressure's impulse at it.
+  using Rows = RowOf<Real>[power(3, D - 1)];
 
   static Index<D> index_of(std::size_t cell) {
     Index<D> at{};
@@ -150,19 +150,22 @@ class PressureCells {
     return false;
   }
 
-  /// use(cell, share, base, weights, first coordinate) for the rows of all cells with points.
+  /// use(cell, share, base, rows) for all cells with points.
   template <class Use>
   void for_each_row(Use use) {
+    const bool same = !follows_ && !held_ && !hooped;  // in every cell
+    Rows rows;
+    bool made = false;
     for (std::size_t cell = 0; cell < n; ++cell) {
       if (points_[cell] == 0) continue;
       const Index<D> at = index_of(cell);
       const auto with_row = [&](const Vec<D>& place, double share) {
-        PointWeights<Real, D, 1> weights{};
-        int base = 0;
-        for (int d = 0; d < D; ++d) base = base * tile_span + at[d] + (splines_ ? 1 : 2);
-        for (int d = 0; d < D; ++d) row_along(d, at[d], place[d], weights);
-        use(cell, share, base, weights,
-            axes_[0].origin + (tile_[0] * tile_cells + at[0] + place[0]) * axes_[0].h);
+        std::size_t base = 0;
+        for (int d = 0; d < D; ++d)
+          base = base * tile_span + static_cast<std::size_t>(at[d] + (splines_ ? 1 : 2));
+        if (!same || !made) make_rows(at, place, rows);
+        made = true;
+        use(cell, share, base, rows);
       };
       if (splines_ && leaves_out_a_corner(cell, at))
         for (std::size_t p = 0; p < points_[cell]; ++p)
@@ -170,6 +173,24 @@ class PressureCells {
       else
         with_row(place_of(cell, at), 1.0);
     }
+  }
+
+  /// use(r) for the rows of nodes that a cell's row reaches: with hats, those of its corners.
+  template <class Use>
+  void for_each_node_row(Use use) const {
+    for (int r = 0; r < power(3, D - 1); ++r)
+      if (splines_ || (r % 3 < 2 && r / 3 < 2)) use(r);
+  }
+
+  void make_rows(const Index<D>& cell, const Vec<D>& place, Rows& rows) const {
+    PointWeights<Real, D, 1> weights{};
+    AtPoint<Real, D, 1> one = {};
+    for (int d = 0; d < D; ++d) row_along(d, cell[d], place[d], weights), one.along[0][d][d] = 1;
+    if (hooped)
+      one.value[0] = static_cast<Real>(
+          1.0 / (axes_[0].origin + (tile_[0] * tile_cells + cell[0] + place[0]) * axes_[0].h));
+    for (RowOf<Real>& row : rows) row = RowOf<Real>{};
+    scatter<D, 1, false, Real>(weights, one, rows);
   }
 
   /// A row's weights in direction d: three nodes, or the cell's two corners.

@@ -46,6 +46,7 @@ struct TilePass {
   const YieldLaw& law;
   const ExplicitSettings& settings;
   const PassInput& input;
+  const Tile<D>& tile;
   const std::array<Axis, D>& axes;
   const StencilFrame<Real, D>& frame;
   LanePoints<D>& points;
@@ -53,8 +54,13 @@ struct TilePass {
   NodeCube<Real, D>&sums, &impulses;    ///< what points add to; the same unless FLIP must tell them apart
   const HeldCells<D>* held;             ///< its cells at walls that hold
   bool cells;                           ///< pressures go by the cell, and there are any in this pass
+  const GroupCells* cell;               ///< of each group as it was, where `cells` or `held` needs them
   PressureCells<Real, Geometry>&before, &pressed;  ///< cells of the points as they were, and as they push
   PassSums& reduced;
+
+  GroupCells cells_of(std::size_t g) const {
+    return cell ? cell[g - static_cast<std::size_t>(tile.first_group)] : GroupCells{};
+  }
 };
 
 /// Updates the flocculation of group g over dt, and gives its static yield stress [Pa].
@@ -103,8 +109,7 @@ f64x8 update_stress(TilePass<Real, Geometry>& in, std::size_t g, const SimdOf<Re
   const f64x8 gamma_dot = sqrt(q2);
   const f64x8 tau_y = update_yield_stress<D>(in.mix, in.input.dt, gamma_dot, points, g, in.reduced);
 
-  GroupCells cell{};
-  if (in.cells || in.held) cell = cells_of_group(in.frame, points, g);
+  const GroupCells cell = in.cells_of(g);
   points.ln_J[g] += in.input.dt * (in.cells ? in.before.divergence(cell) : divergence);
   const f64x8 volume = points.V0[g] * exp(points.ln_J[g]);
   in.reduced.volume += volume, in.reduced.volume_rate += volume * gamma_dot;
@@ -170,6 +175,15 @@ auto other_weights(const Weights<Real, D>& weights) {
     return OtherWeights<Real, 1>{pass.stress ? weights.dw : weights.wa};
 }
 
+/// What update_stress and the motion do not write.
+template <class Real, int D, int N>
+void clear_unused(AtPoints<Real, D, N>& given) {
+  for (SimdOf<Real>& value : given.value) value = SimdOf<Real>{};
+  for (auto& of_set : given.along)
+    for (auto& along : of_set)
+      for (int c = D; c < 4; ++c) along[c] = SimdOf<Real>{};
+}
+
 /// Eight points: the material point method from top to bottom.
 template <Pass pass, class Real, class Geometry>
 void visit_group(TilePass<Real, Geometry>& in, std::size_t g) {
@@ -178,7 +192,14 @@ void visit_group(TilePass<Real, Geometry>& in, std::size_t g) {
   const int n = filled<D>(points, g);
   Weights<Real, D> weights;
   const auto a = other_weights<pass>(weights);
-  AtPoints<Real, D, sets> read, start, given, impulses;
+  const bool apart = &in.impulses != &in.sums;
+  AtPoints<Real, D, sets> read, start, given, forced;
+  if (!pass.gather) read = {};  // no velocities: no rates
+  if (apart)
+    given = forced = {};
+  else
+    clear_unused(given);
+  AtPoints<Real, D, sets>& impulses = apart ? forced : given;
   auto &C = read.along[sets - 1], &momenta = given.along[sets - 1];  // in the order of other_weights
   f64x8 pressure = {}, hoop = {};
   weigh<Real, D, pass.stress, pass.move>(in.frame, places_of<D>(points, g), weights);
@@ -194,22 +215,21 @@ void visit_group(TilePass<Real, Geometry>& in, std::size_t g) {
     move_points<Real, Geometry>(in, g, read.value, start.value);
     affine_from_moments<Real, Geometry>(in, g, weights, C);
     weigh<Real, D, pass.stress, pass.move>(in.frame, places_of<D>(points, g), weights);
-  } else if (pass.move && !points.C[0].empty()) {
+  } else if (pass.move) {
     for (int b = 0; b < D; ++b)
-      for (int i = 0; i < D; ++i) C[b][i] = to_real<Real>(points.C[i * D + b][g]);
+      for (int i = 0; i < D; ++i)
+        C[b][i] = points.C[0].empty() ? SimdOf<Real>{} : to_real<Real>(points.C[i * D + b][g]);
   }
   // Points to grid: pressures, the other stresses, mass and momentum.
   if (in.cells) {
-    const GroupCells cell = cells_of_group(in.frame, points, g);
+    const GroupCells cell = pass.gather && pass.move ? cells_of_group(in.frame, points, g) : in.cells_of(g);
     if (pass.move) in.pressed.enter(points, g, cell);
     in.pressed.push(cell, n, in.input.impulse_dt * pressure);
   }
   if (std::is_same_v<Geometry, Axisymmetric>)
     impulses.value[0] = to_real<Real>(-in.input.impulse_dt * hoop / points.x[0][g]);
-  const bool apart = &in.impulses != &in.sums;
   if (apart || !pass.move) scatter<Real, D, sets>(weights, a, impulses, n, in.impulses);
   if (!pass.move) return;
-  if (!apart) given = impulses;
   const SimdOf<Real> mass = given.value[D] = to_real<Real>(points.mass[g]);
   for (int i = 0; i < D; ++i) {
     given.value[i] += mass * to_real<Real>(points.v[i][g]);
@@ -239,17 +259,32 @@ PassSums pass_over_tile(const Mix& mix, const YieldLaw& law, const ExplicitSetti
   PressureCells<Real, Geometry> before(grid.axes, tile.at, frame, settings.stress, held, cells),
       after(grid.axes, tile.at, frame, settings.stress, held, cells && pass.move);
   PassSums reduced;
-  TilePass<Real, Geometry> in{mix,      law,          settings, input,   grid.axes,
-                              frame,    state.points, v,        v_start, sums,
-                              impulses, held,         cells,    before,  pass.move ? after : before,
-                              reduced};
   const auto first = static_cast<std::size_t>(tile.first_group),
              last = static_cast<std::size_t>(tile.last_group);
-  if (cells && pass.gather) {
-    for (std::size_t g = first; g < last; ++g)
-      before.enter(state.points, g, cells_of_group(frame, state.points, g));
-    before.read(v);
+  std::vector<GroupCells> cell(cells || held ? last - first : 0);
+  for (std::size_t i = 0; i < cell.size(); ++i) {
+    cell[i] = cells_of_group(frame, state.points, first + i);
+    if (cells && pass.gather) before.enter(state.points, first + i, cell[i]);
   }
+  if (cells && pass.gather) before.read(v);
+  TilePass<Real, Geometry> in{mix,
+                              law,
+                              settings,
+                              input,
+                              tile,
+                              grid.axes,
+                              frame,
+                              state.points,
+                              v,
+                              v_start,
+                              sums,
+                              impulses,
+                              held,
+                              cells,
+                              cell.empty() ? nullptr : cell.data(),
+                              before,
+                              pass.move ? after : before,
+                              reduced};
   for (std::size_t g = first; g < last; ++g) visit_group<pass>(in, g);
   if (cells) in.pressed.scatter_impulses(impulses);
   return reduced;

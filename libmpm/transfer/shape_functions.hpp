@@ -61,6 +61,7 @@ struct Weights {
   SimdOf<Real> w[D][3], dw[D][3], wa[D][3];
   SimdOf<Real> inertia[D];  ///< sum of w times arm squared [m^2]
   std::array<int, f64x8_size> base;
+  bool middle_counts;  ///< the middle node has a quarter of the weight or more in each direction
 };
 
 namespace detail {
@@ -110,6 +111,7 @@ void weigh(const StencilFrame<Real, D>& frame, const std::array<f64x8, D>& x, We
   using V = SimdOf<Real>;
   const V low = -1 - V{}, high = tile_cells - V{};
   V base = {};
+  weights.middle_counts = true;
 #pragma GCC unroll 3
   for (int d = 0; d < D; ++d) {
     const StencilAxis<Real>& axis = frame.axis[d];
@@ -118,6 +120,7 @@ void weigh(const StencilFrame<Real, D>& frame, const std::array<f64x8, D>& x, We
     const auto one =
         gimp ? detail::gimp_weights(axis, at, X - at) : detail::b_spline_weights(axis, at, X - at);
     base = base * tile_span + (at + 1);
+    if (!gimp && axis.walls) weights.middle_counts = false;
     weights.inertia[d] = V{};
     for (int k = 0; k < 3; ++k) {
       weights.w[d][k] = one.w[k];

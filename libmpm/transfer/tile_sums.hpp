@@ -22,12 +22,17 @@ struct PointWeights {
   NodeOf<Real> w_row, a_row[N];  ///< entry k: of a row's k-th node; the last is 0
 };
 
-/// A nodal vector field at one point, or what a point gives its nodes: values, and what goes with a in each
-/// direction.
+/// What a point gives its nodes: values, and what goes with a in each direction.
 template <class Real, int D, int N>
 struct AtPoint {
   NodeOf<Real> value, along[N][D];
 };
+
+/// Distance of row r of a stencil from its first node in a tile's cube.
+template <int D>
+constexpr int row_offset(int r) {
+  return D == 2 ? r * tile_span : (r / 3 * tile_span + r % 3) * tile_span;
+}
 
 namespace detail {
 
@@ -68,11 +73,39 @@ template <class Real>
 
 }  // namespace detail
 
-/// A nodal field at a point whose stencil begins at `node`. The weights w of a direction add up to 1 and the a to 0: the
-/// differences of the outer nodes from the middle one are all that they see.
+/// The rows of one stencil: in space, those that differ in the second direction alone by the differences of the outer
+/// ones from the middle one.
+template <class Real, int D>
+struct StencilRows {
+  RowOf<Real> at[3][D == 2 ? 1 : 3];
+
+  [[gnu::always_inline]] void load(const NodeOf<Real>* node) {
+#pragma GCC unroll 3
+    for (int i = 0; i < 3; ++i) {
+      const NodeOf<Real>* line = node + i * stride<D>(tile_span, 0);
+      at[i][0] = load_row<Real>(line);
+      if constexpr (D == 3) {
+        at[i][1] = load_row<Real>(line + tile_span);
+        at[i][0] = at[i][0] - at[i][1];
+        at[i][2] = load_row<Real>(line + 2 * tile_span) - at[i][1];
+      }
+    }
+  }
+};
+
+/// What the rows of points are once the other directions are summed up: with their weights, and for each n with a[n] in
+/// place of w in each of them.
+template <class Real, int D, int N>
+struct alignas(64) GatheredRows {
+  NodeOf<Real> row[1 + N * (D - 1)][f64x8_size][4];
+};
+
+/// Those of point l, with this stencil. The weights w of a direction add up to 1 and the a to 0: the differences of the
+/// outer nodes from the middle one are all that they see.
 template <int D, int N, class Real>
-[[gnu::always_inline]] inline AtPoint<Real, D, N> gather(const NodeOf<Real>* node,
-                                                         const PointWeights<Real, D, N>& p) {
+[[gnu::always_inline]] inline void gather_rows(const StencilRows<Real, D>& rows,
+                                               const PointWeights<Real, D, N>& p, int l,
+                                               GatheredRows<Real, D, N>& to) {
   using Row = RowOf<Real>;
   const auto with_w = [&p](int d, const Row(&of)[3]) {
     return of[1] + p.w[d][0] * of[0] + p.w[d][2] * of[2];
@@ -84,34 +117,27 @@ template <int D, int N, class Real>
   Row sum[3], turned[N][3];
 #pragma GCC unroll 3
   for (int i = 0; i < 3; ++i) {
-    const NodeOf<Real>* line = node + i * stride<D>(tile_span, 0);
     if constexpr (D == 2) {
-      sum[i] = load_row<Real>(line);
+      sum[i] = rows.at[i][0];
     } else {
-      Row row[3] = {load_row<Real>(line), load_row<Real>(line + tile_span),
-                    load_row<Real>(line + 2 * tile_span)};
-      to_differences(row);
-      sum[i] = with_w(1, row);
-      for (int n = 0; n < N; ++n) turned[n][i] = with_a(n, 1, row);
+      sum[i] = with_w(1, rows.at[i]);
+      for (int n = 0; n < N; ++n) turned[n][i] = with_a(n, 1, rows.at[i]);
     }
   }
   to_differences(sum);
-  const Row w = detail::repeat_each(p.w_row), value = with_w(0, sum);
-  AtPoint<Real, D, N> at;
-  at.value = detail::sum_of_row<Real>(w * value);
+  store_row<Real>(with_w(0, sum), to.row[0][l]);
   for (int n = 0; n < N; ++n) {
-    at.along[n][0] = detail::sum_of_row<Real>(w * with_a(n, 0, sum));
+    store_row<Real>(with_a(n, 0, sum), to.row[1 + n * (D - 1)][l]);
     if constexpr (D == 3) {
       to_differences(turned[n]);
-      at.along[n][1] = detail::sum_of_row<Real>(w * with_w(0, turned[n]));
+      store_row<Real>(with_w(0, turned[n]), to.row[2 + 2 * n][l]);
     }
-    at.along[n][D - 1] = detail::sum_of_row<Real>(detail::repeat_each(p.a_row[n]) * value);
   }
-  return at;
 }
 
-/// The adjoint of gather(), added to the rows of a stencil.
-template <int D, int N, class Real>
+/// What a point gives, added to the rows of its stencil. `outer`: a middle row stands for the sum of the three, which
+/// needs no weights, until add_rows() leaves it what the outer ones do not have.
+template <int D, int N, bool outer, class Real>
 [[gnu::always_inline]] inline void scatter(const PointWeights<Real, D, N>& p, const AtPoint<Real, D, N>& of,
                                            RowOf<Real> (&rows)[power(3, D - 1)]) {
   using Row = RowOf<Real>;
@@ -121,37 +147,49 @@ template <int D, int N, class Real>
     value = value + detail::repeat_each(p.a_row[n]) * detail::repeat(of.along[n][D - 1]);
     const Row along_0 = w * detail::repeat(of.along[n][0]), along_1 = w * detail::repeat(of.along[n][1]);
 #pragma GCC unroll 3
-    for (int k = 0; k < 3; ++k) {
-      first[k] = first[k] + p.a[n][0][k] * along_0;
-      if constexpr (D == 3) second[k] = second[k] + p.a[n][1][k] * along_1;
+    for (int k = 0; k < 3; k += outer ? 2 : 1) {
+      first[k] = n == 0 ? p.a[n][0][k] * along_0 : first[k] + p.a[n][0][k] * along_0;
+      if constexpr (D == 3) second[k] = n == 0 ? p.a[n][1][k] * along_1 : second[k] + p.a[n][1][k] * along_1;
     }
   }
 #pragma GCC unroll 3
   for (int i = 0; i < 3; ++i) {
-    const Row sum = first[i] + p.w[0][i] * value;
+    const bool all_i = outer && i == 1;
+    const Row sum = all_i ? value : first[i] + p.w[0][i] * value;
     if constexpr (D == 2) {
       rows[i] = rows[i] + sum;
     } else {
 #pragma GCC unroll 3
-      for (int j = 0; j < 3; ++j) rows[3 * i + j] = rows[3 * i + j] + p.w[1][j] * sum + p.w[0][i] * second[j];
+      for (int j = 0; j < 3; ++j) {
+        Row& row = rows[3 * i + j];
+        if (outer && j == 1)
+          row = row + sum;
+        else
+          row = row + p.w[1][j] * sum + (all_i ? second[j] : p.w[0][i] * second[j]);
+      }
     }
   }
 }
 
 /// Adds rows to the stencil that begins at `node`, and clears them.
-template <int D, class Real>
+template <int D, bool outer, class Real>
 [[gnu::always_inline]] inline void add_rows(RowOf<Real> (&rows)[power(3, D - 1)], NodeOf<Real>* node) {
+  if constexpr (outer) {
+    for (int i = 0; i < 3 && D == 3; ++i) rows[3 * i + 1] = rows[3 * i + 1] - (rows[3 * i] + rows[3 * i + 2]);
+    constexpr int n = power(3, D - 2);
+    for (int j = 0; j < n; ++j) rows[n + j] = rows[n + j] - (rows[j] + rows[2 * n + j]);
+  }
   for (int r = 0; r < power(3, D - 1); ++r) {
-    NodeOf<Real>* to = node + (D == 2 ? r * tile_span : (r / 3 * tile_span + r % 3) * tile_span);
+    NodeOf<Real>* to = node + row_offset<D>(r);
     store_row<Real>(load_row<Real>(to) + rows[r], to);
     rows[r] = RowOf<Real>{};
   }
 }
 
-/// The same at eight points, one lane a point; entry 3 of along is not used.
+/// A nodal vector field at eight points, or what they give their nodes, one lane a point; entry 3 of along is not used.
 template <class Real, int D, int N>
 struct AtPoints {
-  SimdOf<Real> value[4] = {}, along[N][D][4] = {};
+  SimdOf<Real> value[4], along[N][D][4];
 };
 
 /// The weights a of eight points, N sets.
@@ -160,15 +198,15 @@ using OtherWeights = std::array<const SimdOf<Real> (*)[3], N>;
 
 namespace detail {
 
-/// Nodes, one a point, to one vector a component, and back.
+/// The k-th nodes of rows, one a point, to one vector a component, and back.
 template <class Real>
-[[gnu::always_inline]] inline void to_lanes(const NodeOf<Real> (&node)[f64x8_size],
+[[gnu::always_inline]] inline void to_lanes(const NodeOf<Real> (&node)[f64x8_size][4], int k,
                                             SimdOf<Real> (&lanes)[4]) {
   using V = SimdOf<Real>;
   V even[2], odd[2];  // components 0 and 2, 1 and 3 of points 0-3 and 4-7
   for (int i = 0; i < 2; ++i) {
-    const V a = __builtin_shufflevector(node[4 * i], node[4 * i + 2], 0, 1, 2, 3, 4, 5, 6, 7),
-            b = __builtin_shufflevector(node[4 * i + 1], node[4 * i + 3], 0, 1, 2, 3, 4, 5, 6, 7);
+    const V a = __builtin_shufflevector(node[4 * i][k], node[4 * i + 2][k], 0, 1, 2, 3, 4, 5, 6, 7),
+            b = __builtin_shufflevector(node[4 * i + 1][k], node[4 * i + 3][k], 0, 1, 2, 3, 4, 5, 6, 7);
     even[i] = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
     odd[i] = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
   }
@@ -215,16 +253,23 @@ struct WeightsOfLanes {
   [[gnu::always_inline]] PointWeights<Real, D, N> operator[](int l) const {
     PointWeights<Real, D, N> one;
     one.w_row = w_row[l];
+    for (int n = 0; n < N; ++n) one.a_row[n] = a_row[n][l];
     for (int d = 0; d < D - 1; ++d)
-      for (int k = 0; k < 3; ++k) one.w[d][k] = weights.w[d][k][l];
-    for (int n = 0; n < N; ++n) {
-      one.a_row[n] = a_row[n][l];
-      for (int d = 0; d < D - 1; ++d)
-        for (int k = 0; k < 3; ++k) one.a[n][d][k] = a[n][d][k][l];
-    }
+      for (int k = 0; k < 3; ++k) {
+        one.w[d][k] = weights.w[d][k][l];
+        for (int n = 0; n < N; ++n) one.a[n][d][k] = a[n][d][k][l];
+      }
     return one;
   }
 };
+
+/// The nodes of eight points' rows side by side: the middle one, and the differences of the others from it.
+template <class Real>
+[[gnu::always_inline]] inline void to_differences(const NodeOf<Real> (&row)[f64x8_size][4],
+                                                  SimdOf<Real> (&node)[3][4]) {
+  for (int k = 0; k < 3; ++k) to_lanes<Real>(row, k, node[k]);
+  for (int c = 0; c < 4; ++c) node[0][c] -= node[1][c], node[2][c] -= node[1][c];
+}
 
 }  // namespace detail
 
@@ -232,25 +277,35 @@ struct WeightsOfLanes {
 template <class Real, int D, int N>
 [[gnu::noinline]] void gather(const NodeCube<Real, D>& v, const Weights<Real, D>& weights,
                               const OtherWeights<Real, N>& a, AtPoints<Real, D, N>& points) {
-  const detail::WeightsOfLanes<Real, D, N> of(weights, a);
-  NodeOf<Real> value[f64x8_size], along[N][D][f64x8_size];
-  for (int l = 0; l < f64x8_size; ++l) {
-    const auto base = static_cast<std::size_t>(weights.base[static_cast<std::size_t>(l)]);
-    const auto at = gather<D, N, Real>(&v[base], of[l]);
-    value[l] = at.value;
-    for (int n = 0; n < N; ++n)
-      for (int d = 0; d < D; ++d) along[n][d][l] = at.along[n][d];
+  const detail::WeightsOfLanes<Real, D, N> one(weights, a);
+  GatheredRows<Real, D, N> of;
+  StencilRows<Real, D> rows;
+  for (int l = 0, loaded = -1; l < f64x8_size; ++l) {
+    const int base = weights.base[static_cast<std::size_t>(l)];
+    if (base != loaded) rows.load(&v[static_cast<std::size_t>(loaded = base)]);
+    gather_rows<D, N, Real>(rows, one[l], l, of);
   }
-  detail::to_lanes<Real>(value, points.value);
+  const auto& w = weights.w[D - 1];
+  SimdOf<Real> node[3][4];
+  const auto with_w = [&](int c) { return node[1][c] + w[0] * node[0][c] + w[2] * node[2][c]; };
+  detail::to_differences<Real>(of.row[0], node);
+  for (int c = 0; c < 4; ++c) {
+    points.value[c] = with_w(c);
+    for (int n = 0; n < N; ++n)
+      points.along[n][D - 1][c] = a[n][D - 1][0] * node[0][c] + a[n][D - 1][2] * node[2][c];
+  }
   for (int n = 0; n < N; ++n)
-    for (int d = 0; d < D; ++d) detail::to_lanes<Real>(along[n][d], points.along[n][d]);
+    for (int d = 0; d < D - 1; ++d) {
+      detail::to_differences<Real>(of.row[1 + n * (D - 1) + d], node);
+      for (int c = 0; c < 4; ++c) points.along[n][d][c] = with_w(c);
+    }
 }
 
-/// The first n of eight points to the grid. The rows of a stencil are summed up while points of the same follow. noipa:
-/// g++ 12 sees a loop that writes to no memory, and drops the call.
-template <class Real, int D, int N>
-[[gnu::noipa]] void scatter(const Weights<Real, D>& weights, const OtherWeights<Real, N>& a,
-                            const AtPoints<Real, D, N>& points, int n, NodeCube<Real, D>& sums) {
+/// The first n of eight points to the grid, `outer` as above. The rows of a stencil are summed up while points of the
+/// same follow. noipa: g++ 12 sees a loop that writes to no memory, and drops the call.
+template <class Real, int D, int N, bool outer>
+[[gnu::noipa]] void scatter_runs(const Weights<Real, D>& weights, const OtherWeights<Real, N>& a,
+                                 const AtPoints<Real, D, N>& points, int n, NodeCube<Real, D>& sums) {
   const detail::WeightsOfLanes<Real, D, N> of(weights, a);
   NodeOf<Real> value[f64x8_size], along[N][D][f64x8_size];
   detail::to_nodes<Real>(points.value, value);
@@ -264,10 +319,21 @@ template <class Real, int D, int N>
       one.value = value[l];
       for (int s = 0; s < N; ++s)
         for (int d = 0; d < D; ++d) one.along[s][d] = along[s][d][l];
-      scatter<D, N, Real>(of[l], one, rows);
+      scatter<D, N, outer, Real>(of[l], one, rows);
     } while (++l < n && weights.base[static_cast<std::size_t>(l)] == base);
-    add_rows<D, Real>(rows, &sums[static_cast<std::size_t>(base)]);
+    add_rows<D, outer, Real>(rows, &sums[static_cast<std::size_t>(base)]);
   }
+}
+
+/// What a middle node is left must not be the rounding of the others: in single precision splines next to a wall, where it
+/// may have next to no weight, go node by node.
+template <class Real, int D, int N>
+void scatter(const Weights<Real, D>& weights, const OtherWeights<Real, N>& a,
+             const AtPoints<Real, D, N>& points, int n, NodeCube<Real, D>& sums) {
+  if (std::is_same_v<Real, double> || weights.middle_counts)
+    scatter_runs<Real, D, N, true>(weights, a, points, n, sums);
+  else
+    scatter_runs<Real, D, N, false>(weights, a, points, n, sums);
 }
 
 }  // namespace tremie
