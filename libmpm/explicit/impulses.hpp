@@ -50,27 +50,50 @@ void look_around_wall(const RigidWall<Geometry::dim>& wall, double time, Explici
       }
 }
 
+/// One of a point's three nodes in a direction.
+struct NodeAlong {
+  int block, within;  ///< its share in the numbers of the tile's block and of the node in it
+  double w;
+  bool on_wall, stuck;  ///< stuck: to a wall without slip
+};
+
+/// Those of lane l in direction d.
+template <class Geometry>
+std::array<NodeAlong, 3> nodes_along(const ExplicitState<Geometry>& state, const Tile<Geometry::dim>& tile,
+                                     const Weights<double, Geometry::dim>& weights, std::size_t l, int d) {
+  constexpr int D = Geometry::dim;
+  const Axis& a = state.grid.axes[d];
+  std::array<NodeAlong, 3> nodes;
+  for (int k = 0; k < 3; ++k) {
+    const int local = weights.base[l] / stride<D>(tile_span, d) % tile_span + k,
+              node = tile.at[d] * tile_cells - 1 + local;
+    const bool low = a.wall_low() && node == state.shape.low_wall(),
+               high = a.wall_high() && node == a.n_cells + 1;
+    nodes[k] = {local / tile_cells * stride<D>(2, d), local % tile_cells * stride<D>(tile_cells, d),
+                weights.w[d][k][l], low || high,
+                (low && a.low == FaceKind::no_slip) || (high && a.high == FaceKind::no_slip)};
+  }
+  return nodes;
+}
+
 /// The nodes of lane l, and what a push along the normal does to them: flat walls take what goes into them.
 template <class Geometry>
 void enter_controls(ExplicitState<Geometry>& state, const Tile<Geometry::dim>& tile,
                     const Weights<double, Geometry::dim>& weights, std::size_t l,
                     WallPoint<Geometry::dim>& p) {
   constexpr int D = Geometry::dim;
+  std::array<std::array<NodeAlong, 3>, D> along;
+  for (int d = 0; d < D; ++d) along[d] = nodes_along(state, tile, weights, l, d);
   for (int i = 0; i < power(3, D); ++i) {
     const Index<D> o = local_offset<D>(i);
     int block = 0, within = 0;
     double N = 1.0;
     f64x4 normal = p.normal;
     for (int d = 0; d < D; ++d) {
-      const Axis& a = state.grid.axes[d];
-      const int local = weights.base[l] / stride<D>(tile_span, d) % tile_span + o[d],
-                node = tile.at[d] * tile_cells - 1 + local;
-      block += local / tile_cells * stride<D>(2, d), within += local % tile_cells * stride<D>(tile_cells, d);
-      N *= weights.w[d][o[d]][l];
-      const bool low = a.wall_low() && node == state.shape.low_wall(),
-                 high = a.wall_high() && node == a.n_cells + 1;
-      if (low || high) normal[d] = 0.0;
-      if ((low && a.low == FaceKind::no_slip) || (high && a.high == FaceKind::no_slip)) normal = f64x4{};
+      const NodeAlong& at = along[d][o[d]];
+      block += at.block, within += at.within, N *= at.w;
+      if (at.on_wall) normal[d] = 0.0;
+      if (at.stuck) normal = f64x4{};
     }
     if (N == 0.0) continue;
     const auto b = static_cast<std::size_t>(tile.block[static_cast<std::size_t>(block)]);

@@ -29,7 +29,7 @@ template <class Real, int D>
 struct EightPoints {
   Weights<Real, D> weights;
   NodeCube<Real, D> v;
-  AtPoints<Real, D, 1> given;
+  AtPoints<Real, D, 1> given = {};
 
   explicit EightPoints(ShapeFunctions kind) {
     std::mt19937 random(3);
