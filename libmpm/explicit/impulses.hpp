@@ -54,7 +54,7 @@ void look_around_wall(const RigidWall<Geometry::dim>& wall, double time, Explici
 struct NodeAlong {
   int block, within;  ///< its share in the numbers of the tile's block and of the node in it
   double w;
-  bool on_wall, stuck;  ///< stuck: to a wall without slip
+  f64x4 kept;  ///< 1 for the components of a push that its flat walls leave, else 0
 };
 
 /// Those of lane l in direction d.
@@ -69,9 +69,11 @@ std::array<NodeAlong, 3> nodes_along(const ExplicitState<Geometry>& state, const
               node = tile.at[d] * tile_cells - 1 + local;
     const bool low = a.wall_low() && node == state.shape.low_wall(),
                high = a.wall_high() && node == a.n_cells + 1;
+    f64x4 kept = {1.0, 1.0, 1.0, 1.0};
+    if (low || high) kept[d] = 0.0;
+    if ((low && a.low == FaceKind::no_slip) || (high && a.high == FaceKind::no_slip)) kept = f64x4{};
     nodes[k] = {local / tile_cells * stride<D>(2, d), local % tile_cells * stride<D>(tile_cells, d),
-                weights.w[d][k][l], low || high,
-                (low && a.low == FaceKind::no_slip) || (high && a.high == FaceKind::no_slip)};
+                weights.w[d][k][l], kept};
   }
   return nodes;
 }
@@ -84,24 +86,24 @@ void enter_controls(ExplicitState<Geometry>& state, const Tile<Geometry::dim>& t
   constexpr int D = Geometry::dim;
   std::array<std::array<NodeAlong, 3>, D> along;
   for (int d = 0; d < D; ++d) along[d] = nodes_along(state, tile, weights, l, d);
+  double inertia = 0.0;
   for (int i = 0; i < power(3, D); ++i) {
-    const Index<D> o = local_offset<D>(i);
     int block = 0, within = 0;
     double N = 1.0;
     f64x4 normal = p.normal;
-    for (int d = 0; d < D; ++d) {
-      const NodeAlong& at = along[d][o[d]];
-      block += at.block, within += at.within, N *= at.w;
-      if (at.on_wall) normal[d] = 0.0;
-      if (at.stuck) normal = f64x4{};
+    for (int d = D - 1, rest = i; d >= 0; --d, rest /= 3) {
+      const NodeAlong& at = along[d][rest % 3];
+      block += at.block, within += at.within, N *= at.w, normal *= at.kept;
     }
     if (N == 0.0) continue;
     const auto b = static_cast<std::size_t>(tile.block[static_cast<std::size_t>(block)]);
     const auto k = static_cast<std::size_t>(p.n++);
-    p.node[k] = &state.grid.v[b][static_cast<std::size_t>(within)];
-    p.N[k] = N, p.push[k] = N * (*p.node[k])[D] * normal;
-    for (int d = 0; d < D; ++d) p.inertia += N * p.push[k][d] * normal[d];
+    f64x4& node = state.grid.v[b][static_cast<std::size_t>(within)];
+    const f64x4 push = N * node[D] * normal, gain = N * push * normal;
+    p.node[k] = &node, p.N[k] = N, p.push[k] = push;
+    for (int d = 0; d < D; ++d) inertia += gain[d];
   }
+  p.inertia = inertia;
 }
 
 /// Of the points first ... last - 1 that are near the wall those that may touch it; it must see half a cell
