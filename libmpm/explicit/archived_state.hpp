@@ -18,7 +18,8 @@ void visit(Archive& archive, LanePoints<D>& points) {
 /// The axes are the scene's.
 template <int D>
 void visit(Archive& archive, TileGrid<D>& grid) {
-  archive(grid.tiles, grid.blocks, grid.v, grid.v_start, grid.sums, grid.forces, grid.single_sums, grid.rows);
+  archive(grid.tiles, grid.blocks, grid.v, grid.v_start);
+  for (auto* buffers : {&grid.sums, &grid.impulses}) archive(std::get<0>(*buffers), std::get<1>(*buffers));
 }
 
 template <int D>
@@ -30,8 +31,7 @@ template <class Geometry>
 void visit(Archive& archive, ExplicitState<Geometry>& state) {
   archive(state.points, state.grid, state.next_dt, state.drift, state.max_speed, state.lambda_max,
           state.limits);
-  archive(state.holding, state.near_wall, state.wall_drift, state.sorts, state.mixed_groups,
-          state.mixed_since);
+  archive(state.holding, state.near_wall, state.wall_drift, state.sorts);
 }
 
 /// The body's points are those on the tiles.

@@ -9,6 +9,7 @@
 #include "libmpm/body/body.hpp"
 #include "libmpm/explicit/stability_limits.hpp"
 #include "libmpm/explicit/tiled_particles.hpp"
+#include "libmpm/transfer/shape_functions.hpp"
 
 namespace tremie {
 
@@ -21,7 +22,7 @@ struct ExplicitSettings {
   StressUpdate stress = StressUpdate::last;
   Transfer transfer;
   bool cell_pressure = true;       ///< one divergence and one pressure row a cell, against locking
-  bool single_precision = false;   ///< shape functions, sums and the law; stress first, no FLIP
+  bool single_precision = false;   ///< shape functions, sums and the law
   bool keep_affine = true;         ///< affine velocities in the points: no step reads them there
   bool keep_shear_rates = false;   ///< in the points, where thixotropy does not need them
   std::optional<double> fixed_dt;  ///< [s]; empty: `safety` times the stability limit
@@ -79,8 +80,6 @@ struct ExplicitState {
   std::vector<std::array<int, 3>> near_wall;  ///< tile, group and lane of what may touch a rigid wall soon
   double wall_drift = 1e300;                  ///< since they were looked for [m]
   std::int64_t sorts = 0;
-  std::int64_t mixed_groups = 0;  ///< PassSums::mixed when they were sorted; below 0: not known yet
-  std::int64_t mixed_since = 0;   ///< more than that, summed over the passes since
 };
 
 }  // namespace tremie

@@ -13,24 +13,13 @@
 
 namespace tremie::detail {
 
-/// Components of a push that flat walls take from a node, one bit each.
-using HeldBy = std::uint8_t;
-
-/// Ones, but for the components that are held.
-inline constexpr std::array<f64x4, 8> left_by = [] {
-  std::array<f64x4, 8> left{};
-  for (std::size_t held = 0; held < left.size(); ++held)
-    left[held] = f64x4{held & 1 ? 0.0 : 1.0, held & 2 ? 0.0 : 1.0, held & 4 ? 0.0 : 1.0, 1.0};
-  return left;
-}();
-
 /// A point that may touch the wall in this step.
 template <int D>
 struct WallPoint {
   int n = 0;  ///< nodes that it reaches
   std::array<f64x4*, power(3, D)> node;
   std::array<double, power(3, D)> N;
-  std::array<HeldBy, power(3, D)> held;
+  std::array<f64x4, power(3, D)> push;  ///< velocity that a unit impulse along the normal gives each
   f64x4 normal = {};
   double target = 0.0;   ///< least normal velocity [m/s]
   double inertia = 0.0;  ///< 1/kg: of the nodes against an impulse along the normal
@@ -61,66 +50,60 @@ void look_around_wall(const RigidWall<Geometry::dim>& wall, double time, Explici
       }
 }
 
-/// The three nodes of a stencil in one direction.
-struct Side {
-  std::array<int, 3> block, within;  ///< their parts of where a node is on the grid
-  std::array<double, 3> w;           ///< values of the shape functions
-  std::array<HeldBy, 3> held;
+/// One of a point's three nodes in a direction.
+struct NodeAlong {
+  int block, within;  ///< its share in the numbers of the tile's block and of the node in it
+  double w;
+  f64x4 kept;  ///< 1 for the components of a push that its flat walls leave, else 0
 };
 
+/// Those of lane l in direction d.
 template <class Geometry>
-Side side_of(const ExplicitState<Geometry>& state, const Tile<Geometry::dim>& tile,
-             const Weights<Geometry::dim>& weights, std::size_t l, int d) {
+std::array<NodeAlong, 3> nodes_along(const ExplicitState<Geometry>& state, const Tile<Geometry::dim>& tile,
+                                     const Weights<double, Geometry::dim>& weights, std::size_t l, int d) {
   constexpr int D = Geometry::dim;
   const Axis& a = state.grid.axes[d];
-  const int first = weights.base[l] / stride<D>(tile_span, d) % tile_span;
-  Side side;
-  for (std::size_t o = 0; o < 3; ++o) {
-    const int local = first + static_cast<int>(o), node = tile.at[d] * tile_cells - 1 + local;
-    side.block[o] = local / tile_cells * stride<D>(2, d);
-    side.within[o] = local % tile_cells * stride<D>(tile_cells, d);
-    side.w[o] = weights.w[d][o][l];
-    const bool low = a.wall_low() && node == state.shape.low_wall();
-    const bool high = a.wall_high() && node == a.n_cells + 1;
-    const bool sticks = (low && a.low == FaceKind::no_slip) || (high && a.high == FaceKind::no_slip);
-    side.held[o] = static_cast<HeldBy>(sticks ? 7 : low || high ? 1 << d : 0);
+  std::array<NodeAlong, 3> nodes;
+  for (int k = 0; k < 3; ++k) {
+    const int local = weights.base[l] / stride<D>(tile_span, d) % tile_span + k,
+              node = tile.at[d] * tile_cells - 1 + local;
+    const bool low = a.wall_low() && node == state.shape.low_wall(),
+               high = a.wall_high() && node == a.n_cells + 1;
+    f64x4 kept = {1.0, 1.0, 1.0, 1.0};
+    if (low || high) kept[d] = 0.0;
+    if ((low && a.low == FaceKind::no_slip) || (high && a.high == FaceKind::no_slip)) kept = f64x4{};
+    nodes[k] = {local / tile_cells * stride<D>(2, d), local % tile_cells * stride<D>(tile_cells, d),
+                weights.w[d][k][l], kept};
   }
-  return side;
+  return nodes;
 }
 
-/// The velocity that a unit impulse along the normal gives the k-th node of a point.
-template <int D>
-f64x4 given_by_push(const WallPoint<D>& p, std::size_t k) {
-  return p.N[k] * (*p.node[k])[D] * (p.normal * left_by[p.held[k]]);
-}
-
-/// The nodes of lane l, and what a push along the normal does to them.
+/// The nodes of lane l, and what a push along the normal does to them: flat walls take what goes into them.
 template <class Geometry>
 void enter_controls(ExplicitState<Geometry>& state, const Tile<Geometry::dim>& tile,
-                    const Weights<Geometry::dim>& weights, std::size_t l, WallPoint<Geometry::dim>& p) {
+                    const Weights<double, Geometry::dim>& weights, std::size_t l,
+                    WallPoint<Geometry::dim>& p) {
   constexpr int D = Geometry::dim;
-  Side side[D];
-  for (int d = 0; d < D; ++d) side[d] = side_of(state, tile, weights, l, d);
-  f64x4 inertia = {};
-  const auto enter = [&](int block, int within, double N, int held) {
-    if (N == 0.0) return;
+  std::array<std::array<NodeAlong, 3>, D> along;
+  for (int d = 0; d < D; ++d) along[d] = nodes_along(state, tile, weights, l, d);
+  double inertia = 0.0;
+  for (int i = 0; i < power(3, D); ++i) {
+    int block = 0, within = 0;
+    double N = 1.0;
+    f64x4 normal = p.normal;
+    for (int d = D - 1, rest = i; d >= 0; --d, rest /= 3) {
+      const NodeAlong& at = along[d][rest % 3];
+      block += at.block, within += at.within, N *= at.w, normal *= at.kept;
+    }
+    if (N == 0.0) continue;
     const auto b = static_cast<std::size_t>(tile.block[static_cast<std::size_t>(block)]);
     const auto k = static_cast<std::size_t>(p.n++);
-    p.node[k] = &state.grid.v[b][static_cast<std::size_t>(within)];
-    p.N[k] = N, p.held[k] = static_cast<HeldBy>(held);
-    inertia += N * given_by_push(p, k) * (p.normal * left_by[p.held[k]]);
-  };
-  const Side &first = side[0], &second = side[1], &last = side[D - 1];
-  for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t j = 0; j < 3; ++j) {
-      const int block = first.block[i] + second.block[j], within = first.within[i] + second.within[j],
-                held = first.held[i] | second.held[j];
-      const double N = first.w[i] * second.w[j];
-      for (std::size_t k = 0; k < 3 && D == 3; ++k)
-        enter(block + last.block[k], within + last.within[k], N * last.w[k], held | last.held[k]);
-      if (D == 2) enter(block, within, N, held);
-    }
-  for (int d = 0; d < D; ++d) p.inertia += inertia[d];
+    f64x4& node = state.grid.v[b][static_cast<std::size_t>(within)];
+    const f64x4 push = N * node[D] * normal, gain = N * push * normal;
+    p.node[k] = &node, p.N[k] = N, p.push[k] = push;
+    for (int d = 0; d < D; ++d) inertia += gain[d];
+  }
+  p.inertia = inertia;
 }
 
 /// Of the points first ... last - 1 that are near the wall those that may touch it; it must see half a cell
@@ -134,7 +117,7 @@ std::vector<WallPoint<Geometry::dim>> find_wall_points(const RigidWall<Geometry:
   const auto& axes = state.grid.axes;
   const double reach = gap_min + 0.1 * axes[0].h;
   touching.reserve(last - first);
-  Weights<D> weights;
+  Weights<double, D> weights;
   int weighed = -1;
   for (std::size_t i = first; i < last; ++i) {
     const auto& [t, g, l] = state.near_wall[i];
@@ -144,7 +127,8 @@ std::vector<WallPoint<Geometry::dim>> find_wall_points(const RigidWall<Geometry:
     const auto view = wall(x, time);
     if (!view || view->gap > reach) continue;
     if (weighed != g) {
-      weigh<D>(axes, state.shape, tile.at, places_of<D>(state.points, static_cast<std::size_t>(g)), weights);
+      weigh<double, D>({axes, state.shape, tile.at}, places_of<D>(state.points, static_cast<std::size_t>(g)),
+                       weights);
       weighed = g;
     }
     WallPoint<D>& p = touching.emplace_back();
@@ -169,7 +153,7 @@ void push_off(WallPoint<D>& p) {
   const double total = std::max(0.0, p.given + (p.target - u) / p.inertia), more = total - p.given;
   p.given = total;
   if (more == 0.0) return;
-  for (std::size_t k = 0; k < n; ++k) *p.node[k] += more * given_by_push(p, k);
+  for (std::size_t k = 0; k < n; ++k) *p.node[k] += more * p.push[k];
 }
 
 /// Holds the concrete back at the wall at `time`, the end of a step of length dt.

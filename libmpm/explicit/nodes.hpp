@@ -42,111 +42,56 @@ Index<D> control_of(const Index<D>& block, int k) {
   return node;
 }
 
-/// Which nodes of the block at `block` lie on flat walls.
-template <int D>
-std::uint64_t nodes_on_walls(const std::array<Axis, D>& axes, const Shape<D>& shape, const Index<D>& block) {
-  std::uint64_t on_walls = 0;
-  for (int k = 0; k < power(tile_cells, D); ++k) {
-    const Index<D> node = control_of<D>(block, k);
-    for (int d = 0; d < D; ++d)
-      if ((axes[d].wall_low() && node[d] == shape.low_wall()) ||
-          (axes[d].wall_high() && node[d] == axes[d].n_cells + 1))
-        on_walls |= std::uint64_t{1} << k;
-  }
-  return on_walls;
-}
-
-/// Makes the velocities of block b's nodes from the sums over the tiles: `update(totals, at)` those of the
-/// four nodes from number `at` of the block on. Flat walls come after it.
-template <class Geometry, class Buffer, class Update>
-void update_block(const Body<Geometry>& body, double friction_coefficient, const std::vector<Buffer>& buffers,
+/// Makes the velocities of block b's nodes from the sums over the tiles: update(v, total, k) at its k-th node. Flat
+/// walls come after it.
+template <class Geometry, class Buffers, class Update>
+void update_block(const Body<Geometry>& body, double friction_coefficient, const Buffers& buffers,
                   std::size_t b, ExplicitState<Geometry>& state, Update update) {
   constexpr int D = Geometry::dim;
-  TileGrid<D>& grid = state.grid;
-  const NodeBlock<D>& block = grid.blocks[b];
-  sum_tiles<D>(grid, block, buffers, [&](int row, const FourNodes& total) {
-    const int first = row * tile_cells;
-    f64x4* const v = &grid.v[b][static_cast<std::size_t>(first)];
-    update(total, static_cast<std::size_t>(first));
-    for (std::uint64_t on_walls = block.on_walls >> first & 0xf; on_walls != 0; on_walls &= on_walls - 1) {
-      const int i = __builtin_ctzll(on_walls);
-      if (v[i][D] > 0.0)
-        apply_walls<D>(grid.axes, state.shape, body.walls, friction_coefficient,
-                       control_of<D>(block.at, first + i), v[i]);
-    }
+  const NodeBlock<D>& block = state.grid.blocks[b];
+  sum_tiles<D>(block, buffers, [&](int k, const f64x4& total) {
+    f64x4& v = state.grid.v[b][static_cast<std::size_t>(k)];
+    update(v, total, static_cast<std::size_t>(k));
+    if (v[D] > 0.0)
+      apply_walls<D>(state.grid.axes, state.shape, body.walls, friction_coefficient,
+                     control_of<D>(block.at, k), v);
   });
 }
 
-/// 1/mass of two nodes, which their velocities have in entry D, in all their entries.
+/// A velocity as a node has it.
 template <int D>
-two_f64x4 inverse_mass_of(const two_f64x4& two) {
-  return __builtin_shufflevector(two, two, D, D, D, D, D + 4, D + 4, D + 4, D + 4);
+f64x4 to_node(const Vec<D>& v) {
+  f64x4 node = {};
+  for (int d = 0; d < D; ++d) node[d] = v[d];
+  return node;
 }
 
-/// Velocities, and 1/mass in its place.
-template <int D>
-two_f64x4 with_mass(const two_f64x4& v, const two_f64x4& inverse_mass) {
-  if constexpr (D == 3)
-    return __builtin_shufflevector(v, inverse_mass, 0, 1, 2, 8, 4, 5, 6, 12);
-  else
-    return __builtin_shufflevector(v, inverse_mass, 0, 1, 8, 3, 4, 5, 12, 7);
-}
-
-/// 1/mass of four nodes in all their entries, 0 where there is none.
-template <int D>
-FourNodes inverse_masses(const FourNodes& total) {
-  const f64x4 mass = __builtin_shufflevector(total.low, total.high, D, D + 4, D + 8, D + 12);
-  const auto there = mass > 0.0;
-  const f64x4 inverse = there ? 1.0 / (there ? mass : f64x4{} + 1.0) : f64x4{};
-  return {__builtin_shufflevector(inverse, inverse, 0, 0, 0, 0, 1, 1, 1, 1),
-          __builtin_shufflevector(inverse, inverse, 2, 2, 2, 2, 3, 3, 3, 3)};
-}
-
-/// The same for two nodes.
-template <int D>
-two_f64x4 for_two(const Vec<D>& a) {
-  f64x4 one = {};
-  for (int d = 0; d < D; ++d) one[d] = a[d];
-  return both(one, one);
-}
-
-/// Velocities of block b from the momenta (with the impulses of the stresses already in them), and gravity.
-template <class Geometry>
-void velocities_from_sums(const Body<Geometry>& body, double friction,
+/// Velocities of block b from the momenta (with the impulses of the stresses that are in them), and gravity.
+template <class Geometry, class Buffers>
+void velocities_from_sums(const Body<Geometry>& body, double friction, const Buffers& sums,
                           const Vec<Geometry::dim>& gravity_impulse, std::size_t b,
                           ExplicitState<Geometry>& state) {
   constexpr int D = Geometry::dim;
-  const two_f64x4 pull = for_two<D>(gravity_impulse);
-  const auto velocity = [&pull](const two_f64x4& total, const two_f64x4& inverse) {
-    const two_f64x4 moving = total * inverse + pull;
-    return with_mass<D>(inverse > 0.0 ? moving : two_f64x4{}, inverse);
-  };
-  const auto divide = [&](const FourNodes& total, std::size_t at) {
-    const FourNodes inverse = inverse_masses<D>(total);
-    store_row({velocity(total.low, inverse.low), velocity(total.high, inverse.high)}, &state.grid.v[b][at]);
-  };
-  if (state.grid.single)
-    update_block(body, friction, state.grid.single_sums, b, state, divide);
-  else
-    update_block(body, friction, state.grid.sums, b, state, divide);
+  const f64x4 pull = to_node<D>(gravity_impulse);
+  update_block(body, friction, sums, b, state, [&pull](f64x4& v, const f64x4& total, std::size_t) {
+    const double inverse = total[D] > 0.0 ? 1.0 / total[D] : 0.0;
+    v = inverse > 0.0 ? total * inverse + pull : f64x4{};
+    v[D] = inverse;
+  });
 }
 
 /// Adds impulses of the stresses and gravity to velocities of block b that are there already.
-template <class Geometry, class Buffer>
-void add_impulses(const Body<Geometry>& body, double friction, const std::vector<Buffer>& impulses, bool flip,
+template <class Geometry, class Buffers>
+void add_impulses(const Body<Geometry>& body, double friction, const Buffers& impulses, bool flip,
                   const Vec<Geometry::dim>& gravity_impulse, std::size_t b, ExplicitState<Geometry>& state) {
   constexpr int D = Geometry::dim;
-  const two_f64x4 pull = for_two<D>(gravity_impulse);
-  const auto faster = [&pull](const two_f64x4& v, const two_f64x4& impulse) {
-    const two_f64x4 inverse = inverse_mass_of<D>(v), moving = v + (impulse * inverse + pull);
-    return with_mass<D>(inverse > 0.0 ? moving : v, inverse);
-  };
-  const auto add = [&](const FourNodes& total, std::size_t at) {
-    const FourNodes v = load_row(&state.grid.v[b][at]);
-    if (flip) store_row(v, &state.grid.v_start[b][at]);
-    store_row({faster(v.low, total.low), faster(v.high, total.high)}, &state.grid.v[b][at]);
-  };
-  update_block(body, friction, impulses, b, state, add);
+  const f64x4 pull = to_node<D>(gravity_impulse);
+  update_block(body, friction, impulses, b, state, [&](f64x4& v, const f64x4& impulse, std::size_t k) {
+    if (flip) state.grid.v_start[b][k] = v;
+    const double inverse = v[D];
+    if (inverse > 0.0) v += impulse * inverse + pull;
+    v[D] = inverse;
+  });
 }
 
 }  // namespace tremie::detail

@@ -14,42 +14,26 @@ void write_back(ExplicitState<Geometry>& state, Body<Geometry>& body) {
 
 namespace detail {
 
-/// Points are sorted anew before any can have left the cells that its tile sees: one cell beyond its own. A
-/// step may add half a cell.
-inline constexpr double drift_allowed = 0.45;
+/// How far points may drift, in cells, before they are sorted anew: a step may add half a cell, and a tile sees one
+/// beyond its own. Rows that follow the points miss what has come into their cell from the next tile: sooner for them.
+inline double drift_allowed(const ExplicitSettings& settings) {
+  return settings.stress == StressUpdate::last && settings.cell_pressure ? 0.1 : 0.45;
+}
 
-/// Sorting takes as long as this many passes over points that are no longer with those of their cell, more
-/// than over those that are.
-inline constexpr double passes_for_sorting = 4.0;
-/// In single precision it takes as long as this many runs of one stencil more, for each group.
-inline constexpr double runs_for_sorting = 60.0;
-
-template <class Geometry>
+template <class Real, class Geometry>
 void sort_points(const ExplicitSettings& settings, ExplicitState<Geometry>& state) {
   constexpr int D = Geometry::dim;
-  auto sorted = sort_into_tiles<D>(state.grid.axes, state.shape.stencil_shift(), state.points,
-                                   settings.single_precision);
-  lay_tiles(state.grid, std::move(sorted.tiles), settings.transfer.flip);
-  for (NodeBlock<D>& block : state.grid.blocks)
-    block.on_walls = nodes_on_walls<D>(state.grid.axes, state.shape, block.at);
+  lay_tiles<Real, D>(state.grid,
+                     sort_into_tiles<D>(state.grid.axes, state.shape.stencil_shift(), state.points),
+                     settings.transfer.flip);
   state.drift = 0.0;
-  state.mixed_groups = settings.single_precision ? -1 : sorted.mixed;
-  state.mixed_since = 0;
   state.wall_drift = state.holding.drift = 1e300;
   ++state.sorts;
 }
 
-/// Whether the points have drifted too far, or sorting them again pays.
-template <class Geometry>
-bool should_sort(const ExplicitState<Geometry>& state) {
-  const double paid = static_cast<double>(state.mixed_since),
-               price = state.grid.single ? runs_for_sorting : passes_for_sorting;
-  return state.drift > drift_allowed || paid > price * static_cast<double>(state.points.groups());
-}
-
 /// The limits of the step to come, and its length.
-template <class Geometry, class Law>
-void choose_next_step(const Body<Geometry>& body, const Law& law, const ExplicitSettings& settings,
+template <class Geometry>
+void choose_next_step(const Body<Geometry>& body, const YieldLaw& law, const ExplicitSettings& settings,
                       ExplicitState<Geometry>& state) {
   double h = state.grid.axes[0].h;
   for (const Axis& a : state.grid.axes) h = std::min(h, a.h);

@@ -31,8 +31,8 @@
 #include <limits>
 
 #include "libmpm/constitutive/mix.hpp"
-#include "libmpm/constitutive/simd_laws.hpp"
-#include "libmpm/transfer/simd_stencils.hpp"
+#include "libmpm/constitutive/yield_law.hpp"
+#include "libmpm/transfer/shape_functions.hpp"
 
 namespace tremie {
 

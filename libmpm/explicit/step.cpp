@@ -4,79 +4,83 @@
 
 #include "libmpm/explicit/impulses.hpp"
 #include "libmpm/explicit/nodes.hpp"
-#include "libmpm/explicit/single_precision.hpp"
+#include "libmpm/explicit/pass.hpp"
 #include "libmpm/explicit/wall_fill.hpp"
 
 namespace tremie {
 
-template <class Geometry>
-ExplicitState<Geometry> start_explicit(Body<Geometry>& body, const YieldLaw& law,
-                                       const ExplicitSettings& settings, const Shape<Geometry::dim>& shape) {
-  ExplicitState<Geometry> state;
-  state.shape = shape;
-  state.grid.axes = body.grid.axes;
-  state.grid.single = settings.single_precision;
-  for (double lambda : body.points.lambda) state.lambda_max = std::max(state.lambda_max, lambda);
-  take_points<Geometry::dim>(body.points, !settings.transfer.flip, settings.keep_shear_rates, state.points);
-  detail::sort_points(settings, state);
-  detail::choose_next_step(body, law, settings, state);
-  look_into_wall_cells(state);
-  const detail::PassInput input{.impulse_dt = state.next_dt};
-  if (settings.stress == StressUpdate::last)
-    detail::pass_over_points<detail::first_sums>(body.mix, law, settings, input, state);
-  else
-    detail::pass_over_points<detail::first_momenta>(body.mix, law, settings, input, state);
-  if (!settings.keep_affine)
-    for (std::vector<f64x8>& C : state.points.C) release(C);
-  return state;
+namespace detail {
+
+/// use(Real{}) with the precision of shape functions, sums and the law.
+template <class Use>
+auto in_precision(const ExplicitSettings& settings, Use use) {
+  return settings.single_precision ? use(float{}) : use(double{});
 }
 
-namespace detail {
+/// update(block) for each block of nodes: it writes velocities that only the block has.
+template <int D, class Update>
+void for_each_block(const TileGrid<D>& grid, Update update) {
+  const std::size_t n = grid.blocks.size();
+#pragma omp parallel for schedule(static)
+  for (std::size_t b = 0; b < n; ++b) update(b);
+}
+
+/// Sorts the points where they have drifted, and looks into the cells at walls.
+template <class Real, class Geometry>
+void follow_points(const ExplicitSettings& settings, ExplicitState<Geometry>& state) {
+  if (state.drift > drift_allowed(settings)) sort_points<Real>(settings, state);
+  look_into_wall_cells(state);
+}
 
 /// Updates the stress last (USL): the velocities at the end of a step deform and move the points. Points to
 /// grid for the step to come happens in the same pass, with the impulses that the new stresses give in it.
-template <class Geometry, class Law>
-PassSums stress_last(Body<Geometry>& body, const Law& law, const ExplicitSettings& settings,
+template <class Real, class Geometry>
+PassSums stress_last(Body<Geometry>& body, const YieldLaw& law, const ExplicitSettings& settings,
                      const RigidWall<Geometry::dim>& wall, double dt, ExplicitState<Geometry>& state) {
+  using Buffers = typename TileGrid<Geometry::dim>::template Buffers<Real>;
   const Vec<Geometry::dim> pull = dt * body.gravity, none = Vec<Geometry::dim>::Zero();
   const double friction = settings.friction_coefficient;
   const bool flip = settings.transfer.flip;
+  const Buffers &sums = std::get<Buffers>(state.grid.sums),
+                &impulses = std::get<Buffers>(state.grid.impulses);
   // Momentum balance on the grid; the stresses' impulses are in the momenta, but for FLIP.
   for_each_block(state.grid, [&](std::size_t block) {
-    velocities_from_sums(body, flip ? 0.0 : friction, flip ? none : pull, block, state);
-    if (flip) add_impulses(body, friction, state.grid.forces, flip, pull, block, state);
+    velocities_from_sums(body, flip ? 0.0 : friction, sums, flip ? none : pull, block, state);
+    if (flip) add_impulses(body, friction, impulses, flip, pull, block, state);
   });
   push_off_wall(wall, body.time + dt, dt, settings.wall_gap, state);
-  if (should_sort(state)) sort_points(settings, state);
-  look_into_wall_cells(state);
+  follow_points<Real>(settings, state);
   // Grid to points, stress, motion, points to grid.
-  return pass_over_points<whole_pass>(body.mix, law, settings, {dt, state.next_dt}, state);
+  return pass_over_points<whole_pass, Real>(body.mix, law, settings, {dt, state.next_dt}, state);
 }
 
 /// Updates the stress first (USF), the paper's order: with the points' velocities as the grid has them before
 /// the forces act.
-template <class Geometry, class Law>
-PassSums stress_first(Body<Geometry>& body, const Law& law, const ExplicitSettings& settings,
+template <class Real, class Geometry>
+PassSums stress_first(Body<Geometry>& body, const YieldLaw& law, const ExplicitSettings& settings,
                       const RigidWall<Geometry::dim>& wall, double dt, ExplicitState<Geometry>& state) {
+  using Buffers = typename TileGrid<Geometry::dim>::template Buffers<Real>;
   const Vec<Geometry::dim> pull = dt * body.gravity, none = Vec<Geometry::dim>::Zero();
-  for_each_block(state.grid, [&](std::size_t block) { velocities_from_sums(body, 0.0, none, block, state); });
-  if (should_sort(state)) sort_points(settings, state);
-  look_into_wall_cells(state);
-  PassSums sums = pass_over_points<stress_pass>(body.mix, law, settings, {dt, dt}, state);
-  const auto add_from = [&](const auto& of_tiles) {
-    for_each_block(state.grid, [&](std::size_t block) {
-      add_impulses(body, settings.friction_coefficient, of_tiles, settings.transfer.flip, pull, block, state);
-    });
-  };
-  state.grid.single ? add_from(state.grid.single_sums) : add_from(state.grid.sums);
+  const double friction = settings.friction_coefficient;
+  const Buffers& sums = std::get<Buffers>(state.grid.sums);
+  for_each_block(state.grid,
+                 [&](std::size_t block) { velocities_from_sums(body, 0.0, sums, none, block, state); });
+  follow_points<Real>(settings, state);
+  // Grid to points, stress, its impulses to the grid.
+  PassSums all = pass_over_points<stress_pass, Real>(body.mix, law, settings, {dt, dt}, state);
+  // Momentum balance on the grid.
+  for_each_block(state.grid, [&](std::size_t block) {
+    add_impulses(body, friction, sums, settings.transfer.flip, pull, block, state);
+  });
   push_off_wall(wall, body.time + dt, dt, settings.wall_gap, state);
-  sums.add(pass_over_points<motion_pass>(body.mix, law, settings, {dt, 0.0}, state));
-  return sums;
+  // Grid to points, motion, points to grid.
+  all.add(pass_over_points<motion_pass, Real>(body.mix, law, settings, {dt, 0.0}, state));
+  return all;
 }
 
 /// The step to come, with what is known of the last.
-template <class Geometry, class Law>
-ExplicitReport begin_step(const Body<Geometry>& body, const Law& law, const ExplicitSettings& settings,
+template <class Geometry>
+ExplicitReport begin_step(const Body<Geometry>& body, const YieldLaw& law, const ExplicitSettings& settings,
                           ExplicitState<Geometry>& state) {
   ExplicitReport report;
   report.dt = state.next_dt;
@@ -91,24 +95,50 @@ void end_step(const ExplicitSettings& settings, const PassSums& sums, Body<Geome
               ExplicitState<Geometry>& state, ExplicitReport& report) {
   body.time += report.dt;
   body.dt = report.dt;
-  report.max_speed = state.max_speed = std::sqrt(sums.speed2);
-  report.shear_rate_mean = sums.volume > 0.0 ? sums.volume_rate / sums.volume : 0.0;
-  state.lambda_max = sums.lambda;
-  state.drift += sums.farthest;
-  state.holding.drift += sums.farthest;
-  state.wall_drift += sums.farthest * body.grid.axes[0].h + settings.wall_speed * report.dt;
-  report.failed = sums.ran_away || !(state.drift < 1.0);
+  report.max_speed = state.max_speed = std::sqrt(largest(sums.speed2));
+  const double volume = sum(sums.volume), farthest = largest(sums.farthest);
+  report.shear_rate_mean = volume > 0.0 ? sum(sums.volume_rate) / volume : 0.0;
+  state.lambda_max = largest(sums.lambda);
+  state.drift += farthest;
+  state.holding.drift += farthest;
+  state.wall_drift += farthest * body.grid.axes[0].h + settings.wall_speed * report.dt;
+  report.failed = any(sums.ran_away) || !(state.drift < 1.0);
 }
 
 }  // namespace detail
 
 template <class Geometry>
+ExplicitState<Geometry> start_explicit(Body<Geometry>& body, const YieldLaw& law,
+                                       const ExplicitSettings& settings, const Shape<Geometry::dim>& shape) {
+  ExplicitState<Geometry> state;
+  state.shape = shape;
+  state.grid.axes = body.grid.axes;
+  for (double lambda : body.points.lambda) state.lambda_max = std::max(state.lambda_max, lambda);
+  take_points<Geometry::dim>(body.points, !settings.transfer.flip, settings.keep_shear_rates, state.points);
+  detail::choose_next_step(body, law, settings, state);
+  const detail::PassInput input{.impulse_dt = state.next_dt};
+  detail::in_precision(settings, [&]<class Real>(Real) {
+    detail::sort_points<Real>(settings, state);
+    look_into_wall_cells(state);
+    settings.stress == StressUpdate::last
+        ? detail::pass_over_points<detail::first_sums, Real>(body.mix, law, settings, input, state)
+        : detail::pass_over_points<detail::first_momenta, Real>(body.mix, law, settings, input, state);
+  });
+  if (!settings.keep_affine)
+    for (std::vector<f64x8>& C : state.points.C) release(C);
+  return state;
+}
+
+template <class Geometry>
 ExplicitReport explicit_step(Body<Geometry>& body, const YieldLaw& law, const ExplicitSettings& settings,
                              ExplicitState<Geometry>& state, const RigidWall<Geometry::dim>& wall) {
   ExplicitReport report = detail::begin_step(body, law, settings, state);
-  const auto step = settings.stress == StressUpdate::last ? detail::stress_last<Geometry, YieldLaw>
-                                                          : detail::stress_first<Geometry, YieldLaw>;
-  detail::end_step(settings, step(body, law, settings, wall, report.dt, state), body, state, report);
+  const detail::PassSums sums = detail::in_precision(settings, [&]<class Real>(Real) {
+    return settings.stress == StressUpdate::last
+               ? detail::stress_last<Real>(body, law, settings, wall, report.dt, state)
+               : detail::stress_first<Real>(body, law, settings, wall, report.dt, state);
+  });
+  detail::end_step(settings, sums, body, state, report);
   return report;
 }
 

@@ -4,13 +4,12 @@
 // of its own.
 
 #include <algorithm>
+#include <compare>
 #include <cstdint>
-#include <limits>
 #include <span>
-#include <stdexcept>
 #include <vector>
 
-#include "libmpm/explicit/tile_layout.hpp"
+#include "libmpm/grid/tiles.hpp"
 #include "libmpm/parallel/buffers.hpp"
 #include "libmpm/parallel/simd.hpp"
 #include "libmpm/particles/particles.hpp"
@@ -123,36 +122,13 @@ void take_points(Points<D>& points, bool affine, bool rates, LanePoints<D>& lane
 
 namespace detail {
 
-/// Where a point is sorted to (tiles in their order, and the cells of each) and where it was (eight times its
-/// group plus its lane), in one number: half of the memory that two would take.
-struct SortKey {
-  std::uint64_t both;
-
-  SortKey(std::uint64_t cell, std::size_t slot) : both(cell << 32 | slot) {}
-  std::uint64_t cell() const { return both >> 32; }
-  std::int32_t slot() const { return static_cast<std::int32_t>(both & 0xffffffffU); }
-  auto operator<=>(const SortKey&) const = default;
-};
-
-/// The tiles' positions are those of cells in a box that holds all points.
+/// Where a point is sorted to (tiles in their order, and the cells of each) and where it was: eight times its group
+/// plus its lane.
 template <int D>
-struct TileBox {
-  Index<D> low, size;
-  std::uint64_t number(const Index<D>& tile) const {
-    std::uint64_t n = 0;
-    for (int d = 0; d < D; ++d)
-      n = n * static_cast<std::uint64_t>(size[d]) + static_cast<std::uint64_t>(tile[d] - low[d]);
-    return n;
-  }
-  Index<D> tile(std::uint64_t number) const {
-    Index<D> at;
-    for (int d = D - 1; d >= 0; --d) {
-      const auto n = static_cast<std::uint64_t>(size[d]);
-      at[d] = low[d] + static_cast<int>(number % n);
-      number /= n;
-    }
-    return at;
-  }
+struct SortKey {
+  Index<D> tile;
+  std::int32_t cell, slot;
+  auto operator<=>(const SortKey&) const = default;
 };
 
 /// Tile of a cell on an axis.
@@ -160,95 +136,44 @@ inline int tile_of(const Axis& axis, int cell) {
   return wrapped(axis, (cell >= 0 ? cell : cell - tile_cells + 1) / tile_cells);
 }
 
-/// Keys of all points in their order. Within a tile the last direction of the cells runs fastest, or slowest.
+/// Keys of all points in their order. The last direction of a tile's cells runs fastest.
 template <int D>
-TileBox<D> sort_keys(const std::array<Axis, D>& axes, double stencil_shift, const LanePoints<D>& lanes,
-                     bool last_slowest, std::vector<SortKey>& keys) {
-  const auto cell_of = [&](int d, std::size_t g, std::size_t l) {
-    return static_cast<int>(std::floor((lanes.x[d][g][l] - axes[d].origin) / axes[d].h + stencil_shift));
-  };
-  TileBox<D> box;
-  Index<D> high;
-  box.low.fill(std::numeric_limits<int>::max()), high.fill(std::numeric_limits<int>::min());
-  const auto each = [&](auto visit) {
-    for (std::size_t g = 0; g < lanes.groups(); ++g)
-      for (std::size_t l = 0; l < f64x8_size && lanes.id[g][l] >= 0; ++l) visit(g, l);
-  };
-  each([&](std::size_t g, std::size_t l) {
-    for (int d = 0; d < D; ++d) {
-      const int tile = tile_of(axes[d], cell_of(d, g, l));
-      box.low[d] = std::min(box.low[d], tile), high[d] = std::max(high[d], tile);
+std::vector<SortKey<D>> sort_keys(const std::array<Axis, D>& axes, double stencil_shift,
+                                  const LanePoints<D>& lanes) {
+  std::vector<SortKey<D>> keys;
+  keys.reserve(lanes.n);
+  for (std::size_t g = 0; g < lanes.groups(); ++g)
+    for (std::size_t l = 0; l < f64x8_size && lanes.id[g][l] >= 0; ++l) {
+      SortKey<D>& key = keys.emplace_back();
+      key.slot = static_cast<std::int32_t>(g * f64x8_size + l);
+      for (int d = 0; d < D; ++d) {
+        const int c =
+            static_cast<int>(std::floor((lanes.x[d][g][l] - axes[d].origin) / axes[d].h + stencil_shift));
+        key.tile[d] = tile_of(axes[d], c);
+        key.cell = key.cell * tile_cells + ((c % tile_cells) + tile_cells) % tile_cells;
+      }
     }
-  });
-  for (int d = 0; d < D; ++d) box.size[d] = high[d] - box.low[d] + 1;
-  std::uint64_t cells = power(tile_cells, D);
-  for (int d = 0; d < D; ++d) cells *= static_cast<std::uint64_t>(box.size[d]);
-  if (cells >> 32 != 0) throw std::length_error("the points lie further apart than 4e9 cells can tell");
-  keys.reserve(lanes.groups() * f64x8_size);
-  each([&](std::size_t g, std::size_t l) {
-    Index<D> tile;
-    std::uint64_t cell = 0;
-    for (int i = 0; i < D; ++i) {
-      const int d = last_slowest ? (i + D - 1) % D : i, c = cell_of(d, g, l);
-      tile[d] = tile_of(axes[d], c);
-      cell = cell * tile_cells + static_cast<std::uint64_t>(((c % tile_cells) + tile_cells) % tile_cells);
-    }
-    keys.emplace_back(box.number(tile) * power(tile_cells, D) + cell, g * f64x8_size + l);
-  });
   std::sort(keys.begin(), keys.end());
-  return box;
+  return keys;
 }
-
-/// What is left of a cell's points after groups of eight makes a group of its own from here on; fewer are put
-/// together with those of other cells of the tile.
-inline constexpr std::size_t own_group = 5;
 
 /// Slots that make up each group, -1 for what fills it up.
 using GroupSlots = std::array<std::int32_t, f64x8_size>;
 
-/// Groups of one cell's points first, of several cells' points at the end. Returns how many the latter are.
-/// Those of `packed` points are full but for the last, whatever cells they hold, and are not counted.
-inline std::size_t form_groups(const SortKey* first, const SortKey* last, bool packed,
-                               std::vector<GroupSlots>& groups) {
-  std::vector<std::int32_t> left;
-  const auto add = [&](const auto* from, std::size_t n, auto slot) {
-    GroupSlots group;
-    group.fill(-1);
-    for (std::size_t l = 0; l < n; ++l) group[l] = slot(from[l]);
-    groups.push_back(group);
-  };
-  const auto of_key = [](const SortKey& key) { return key.slot(); };
-  for (; packed && first != last; first += std::min<std::ptrdiff_t>(f64x8_size, last - first))
-    add(first, static_cast<std::size_t>(std::min<std::ptrdiff_t>(f64x8_size, last - first)), of_key);
-  while (first != last) {
-    const SortKey* end =
-        std::find_if(first, last, [&](const SortKey& key) { return key.cell() != first->cell(); });
-    for (std::size_t n;
-         (n = std::min<std::size_t>(f64x8_size, static_cast<std::size_t>(end - first))) >= own_group;
-         first += n)
-      add(first, n, of_key);
-    for (; first != end; ++first) left.push_back(of_key(*first));
-  }
-  const std::size_t before = groups.size();
-  for (std::size_t i = 0; i < left.size(); i += f64x8_size)
-    add(&left[i], std::min<std::size_t>(f64x8_size, left.size() - i), [](std::int32_t slot) { return slot; });
-  return groups.size() - before;
-}
-
 /// Brings what an array keeps of the points into the groups. What fills up a group stands where its first
-/// point does, so that its weights are finite. `scratch` has the old array afterwards.
-inline void permute(const std::vector<GroupSlots>& groups, bool zero_filled, std::vector<f64x8>& array,
-                    std::vector<f64x8>& scratch) {
+/// point does, so that its weights are finite.
+inline void permute(const std::vector<GroupSlots>& groups, bool zero_filled, std::vector<f64x8>& array) {
   if (array.empty()) return;
-  scratch.reserve(array.capacity());
-  scratch.resize(groups.size());
+  std::vector<f64x8> sorted;
+  sorted.reserve(array.capacity());
+  sorted.resize(groups.size());
   for (std::size_t g = 0; g < groups.size(); ++g)
     for (std::size_t l = 0; l < f64x8_size; ++l) {
       const bool real = groups[g][l] >= 0;
       const auto slot = static_cast<std::size_t>(groups[g][real ? l : 0]);
-      scratch[g][l] = real || !zero_filled ? array[slot / f64x8_size][slot % f64x8_size] : 0.0;
+      sorted[g][l] = real || !zero_filled ? array[slot / f64x8_size][slot % f64x8_size] : 0.0;
     }
-  array.swap(scratch);
+  array.swap(sorted);
 }
 
 template <int D>
@@ -258,21 +183,14 @@ void permute_points(const std::vector<GroupSlots>& groups, LanePoints<D>& lanes)
   for_each_quantity<D>(lanes, none, [&](std::span<std::vector<f64x8>> of_quantity, auto&) {
     for (std::vector<f64x8>& array : of_quantity) arrays.push_back(&array);
   });
-  constexpr std::size_t many = 20000;  // below, waking OpenMP's threads takes longer
-#pragma omp parallel if (groups.size() > many)
-  {
-    std::vector<f64x8> scratch;
-#pragma omp for schedule(dynamic)
-    for (std::size_t i = 0; i < arrays.size(); ++i)
-      permute(groups, arrays[i] == &lanes.mass || arrays[i] == &lanes.V0, *arrays[i], scratch);
-  }
+#pragma omp parallel for schedule(dynamic)
+  for (std::size_t i = 0; i < arrays.size(); ++i)
+    permute(groups, arrays[i] == &lanes.mass || arrays[i] == &lanes.V0, *arrays[i]);
   std::vector<std::array<std::int32_t, f64x8_size>> id(groups.size());
   for (std::size_t g = 0; g < groups.size(); ++g)
     for (std::size_t l = 0; l < f64x8_size; ++l) {
-      const std::int32_t slot = groups[g][l];
-      id[g][l] = slot < 0 ? -1
-                          : lanes.id[static_cast<std::size_t>(slot) / f64x8_size]
-                                    [static_cast<std::size_t>(slot) % f64x8_size];
+      const auto slot = static_cast<std::size_t>(std::max(groups[g][l], 0));
+      id[g][l] = groups[g][l] < 0 ? -1 : lanes.id[slot / f64x8_size][slot % f64x8_size];
     }
   lanes.id = std::move(id);
 }
@@ -287,40 +205,25 @@ void wrap_points(const std::array<Axis, D>& axes, LanePoints<D>& lanes) {
 
 }  // namespace detail
 
-/// Tiles of the points, and how many of their groups are of points of several cells.
+/// Sorts the points by tile and cell into groups of eight, and gives their tiles; the last group of a tile is filled
+/// up. `stencil_shift`: 0 where a point's stencil begins with its cell, 1/2 where it is that of the nearest
+/// corner (GIMP).
 template <int D>
-struct SortedTiles {
-  std::vector<Tile<D>> tiles;
-  std::int64_t mixed = 0;
-};
-
-/// Sorts the points by tile and cell into groups of eight. `stencil_shift`: 0 where a point's stencil begins
-/// with its cell, 1/2 where it is that of the nearest corner (GIMP). `packed`: groups need not be of one
-/// cell, and the last direction of a tile's cells runs slowest.
-template <int D>
-SortedTiles<D> sort_into_tiles(const std::array<Axis, D>& axes, double stencil_shift, LanePoints<D>& lanes,
-                               bool packed = false) {
+std::vector<Tile<D>> sort_into_tiles(const std::array<Axis, D>& axes, double stencil_shift,
+                                     LanePoints<D>& lanes) {
   detail::wrap_points<D>(axes, lanes);
-  std::vector<detail::SortKey> keys;
-  const auto box = detail::sort_keys<D>(axes, stencil_shift, lanes, packed, keys);
-  SortedTiles<D> sorted;
+  std::vector<Tile<D>> tiles;
   std::vector<detail::GroupSlots> groups;
-  groups.reserve(lanes.groups() + lanes.groups() / 4);
-  const auto tile_number = [](const detail::SortKey& key) { return key.cell() / power(tile_cells, D); };
-  for (const detail::SortKey *first = keys.data(), *last = first + keys.size(); first != last;) {
-    const std::uint64_t number = tile_number(*first);
-    const detail::SortKey* end =
-        std::find_if(first, last, [&](const detail::SortKey& key) { return tile_number(key) != number; });
-    Tile<D> tile{.at = box.tile(number), .first_group = static_cast<int>(groups.size())};
-    tile.mixed_groups = static_cast<int>(detail::form_groups(first, end, packed, groups));
-    tile.last_group = static_cast<int>(groups.size());
-    sorted.mixed += tile.mixed_groups;
-    sorted.tiles.push_back(tile);
-    first = end;
+  std::size_t filled = f64x8_size;  // of the last group
+  for (const detail::SortKey<D>& key : detail::sort_keys<D>(axes, stencil_shift, lanes)) {
+    const bool new_tile = tiles.empty() || tiles.back().at != key.tile;
+    if (new_tile) tiles.push_back({.at = key.tile, .first_group = static_cast<int>(groups.size())});
+    if (new_tile || filled == f64x8_size) groups.emplace_back().fill(-1), filled = 0;
+    groups.back()[filled++] = key.slot;
+    tiles.back().last_group = static_cast<int>(groups.size());
   }
-  keys = {};
   detail::permute_points<D>(groups, lanes);
-  return sorted;
+  return tiles;
 }
 
 }  // namespace tremie

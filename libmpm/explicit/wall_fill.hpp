@@ -51,18 +51,16 @@ class CellFills {
   static constexpr int D = Geometry::dim;
 
   CellFills(const ExplicitState<Geometry>& state) : axes_(state.grid.axes) {
-    Index<D> high;
-    low_.fill(std::numeric_limits<int>::max()), high.fill(std::numeric_limits<int>::min());
+    Index<D> low, high;
+    low.fill(std::numeric_limits<int>::max()), high.fill(std::numeric_limits<int>::min());
     for (const Tile<D>& tile : state.grid.tiles)
       for (int d = 0; d < D; ++d) {
-        low_[d] = std::min(low_[d], tile.at[d] * tile_cells - 3);
-        high[d] = std::max(high[d], tile.at[d] * tile_cells + tile_cells + 3);
+        const int first = tile.at[d] * tile_cells;
+        low[d] = axes_[d].periodic ? 0 : std::min(low[d], first - 3);
+        high[d] = axes_[d].periodic ? axes_[d].n_cells : std::max(high[d], first + tile_cells + 3);
       }
-    for (int d = 0; d < D; ++d)
-      if (axes_[d].periodic) low_[d] = 0, high[d] = axes_[d].n_cells;
-    std::size_t n = 1;
-    for (int d = 0; d < D; ++d) n *= static_cast<std::size_t>(size_[d] = high[d] - low_[d]);
-    fill_.assign(n, {});
+    box_.reset(low, high);
+    fill_.assign(box_.value.size(), {});
     for (const Tile<D>& tile : state.grid.tiles)
       if (near_holding_wall<D>(axes_, tile.at))
         for (int g = tile.first_group; g < tile.last_group; ++g)
@@ -99,10 +97,9 @@ class CellFills {
   };
 
   std::size_t number(const Index<D>& cell) const {
-    std::size_t n = 0;
-    for (int d = 0; d < D; ++d)
-      n = n * static_cast<std::size_t>(size_[d]) + static_cast<std::size_t>(axes_[d].cell(cell[d]) - low_[d]);
-    return n;
+    Index<D> in_box;
+    for (int d = 0; d < D; ++d) in_box[d] = axes_[d].cell(cell[d]);
+    return box_.offset(in_box);
   }
 
   void add_group(const LanePoints<D>& points, std::size_t g) {
@@ -126,7 +123,7 @@ class CellFills {
   }
 
   const std::array<Axis, D>& axes_;
-  Index<D> low_, size_;
+  IndexMap<D> box_;
   std::vector<Fill> fill_;
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 
 // Velocity gradients to strain rates and stresses to tractions, in each space: the rows of geometries.hpp summed
-// over a stencil, for one number or many at a time. T: double, f64x8 or f32x16.
+// over a stencil, for one number or many at a time. T: double or f64x8.
 
 #include <type_traits>
 
@@ -15,26 +15,15 @@ namespace tremie {
 template <class Geometry, class T>
 void strain_rate_of(const T (&L)[Geometry::dim][Geometry::dim], const T& v_0, const T& x_0,
                     T (&q)[Geometry::n_strain], T& divergence) {
-  constexpr auto one_over_sqrt3 = static_cast<ScalarOf<T>>(inv_sqrt3);
-  if constexpr (std::is_same_v<Geometry, Axisymmetric>) {
-    const T hoop = v_0 / x_0;
-    q[0] = L[0][0] - L[1][1];
-    q[1] = (L[0][0] + L[1][1] - 2.0 * hoop) * one_over_sqrt3;
-    q[2] = L[0][1] + L[1][0];
-    divergence = L[0][0] + L[1][1] + hoop;
-  } else if constexpr (Geometry::dim == 2) {
-    q[0] = L[0][0] - L[1][1];
-    q[1] = (L[0][0] + L[1][1]) * one_over_sqrt3;
-    q[2] = L[0][1] + L[1][0];
-    divergence = L[0][0] + L[1][1];
-  } else {
-    q[0] = L[0][0] - L[1][1];
-    q[1] = (L[0][0] + L[1][1] - 2.0 * L[2][2]) * one_over_sqrt3;
-    q[2] = L[0][1] + L[1][0];
-    q[3] = L[1][2] + L[2][1];
-    q[4] = L[0][2] + L[2][0];
-    divergence = L[0][0] + L[1][1] + L[2][2];
-  }
+  constexpr double one_over_sqrt3 = inv_sqrt3;
+  T third = {};  // rate of extension along the third direction
+  if constexpr (std::is_same_v<Geometry, Axisymmetric>) third = v_0 / x_0;
+  if constexpr (Geometry::dim == 3) third = L[2][2];
+  q[0] = L[0][0] - L[1][1];
+  q[1] = (L[0][0] + L[1][1] - 2.0 * third) * one_over_sqrt3;
+  q[2] = L[0][1] + L[1][0];
+  if constexpr (Geometry::dim == 3) q[3] = L[1][2] + L[2][1], q[4] = L[0][2] + L[2][0];
+  divergence = L[0][0] + L[1][1] + third;
 }
 
 /// Stress tensor in the space's plane and hoop stress from the deviatoric stress vector s and a pressure
@@ -42,7 +31,7 @@ void strain_rate_of(const T (&L)[Geometry::dim][Geometry::dim], const T& v_0, co
 template <class Geometry, class T>
 void stress_tensor_of(const T (&s)[Geometry::n_strain], const T& pressure,
                       T (&sigma)[Geometry::dim][Geometry::dim], T& hoop) {
-  constexpr auto one_over_sqrt3 = static_cast<ScalarOf<T>>(inv_sqrt3);
+  constexpr double one_over_sqrt3 = inv_sqrt3;
   sigma[0][0] = s[0] + s[1] * one_over_sqrt3 - pressure;
   sigma[1][1] = s[1] * one_over_sqrt3 - s[0] - pressure;
   sigma[0][1] = sigma[1][0] = s[2];

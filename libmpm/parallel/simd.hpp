@@ -1,7 +1,7 @@
 #pragma once
 
-// Eight numbers side by side, or sixteen in single precision, for loops over material points: one arithmetic
-// operation for all of them where the processor has wide registers, the same bits where it has not.
+// Eight numbers side by side, for loops over material points: one arithmetic operation for all of them where the
+// processor has wide registers, the same bits where it has not.
 
 #include <array>
 #include <cstdint>
@@ -19,57 +19,37 @@ using i64x8 [[gnu::vector_size(64)]] = std::int64_t;
 
 inline f64x8 all_lanes(double x) { return f64x8{x, x, x, x, x, x, x, x}; }
 
-/// f32x16 numbers in single precision.
-using f32x16 [[gnu::vector_size(64)]] = float;
-inline constexpr std::size_t f32x16_size = 16;
-using i32x16 [[gnu::vector_size(64)]] = int;
+/// Eight in single precision, and eight of a type.
+using f32x8 [[gnu::vector_size(32)]] = float;
+using i32x8 [[gnu::vector_size(32)]] = int;
+template <class Real>
+using SimdOf = std::conditional_t<std::is_same_v<Real, float>, f32x8, f64x8>;
 
 // a > b ? a : b and a < b ? a : b in each lane.
 #ifdef __AVX512F__  // among other arithmetic the compiler would make two instructions of each
 inline f64x8 max(const f64x8& a, const f64x8& b) { return _mm512_maskz_max_pd(0xff, a, b); }
 inline f64x8 min(const f64x8& a, const f64x8& b) { return _mm512_maskz_min_pd(0xff, a, b); }
-inline f32x16 max(const f32x16& a, const f32x16& b) { return _mm512_maskz_max_ps(0xffff, a, b); }
-inline f32x16 min(const f32x16& a, const f32x16& b) { return _mm512_maskz_min_ps(0xffff, a, b); }
 #else
 inline f64x8 max(const f64x8& a, const f64x8& b) { return a > b ? a : b; }
 inline f64x8 min(const f64x8& a, const f64x8& b) { return a < b ? a : b; }
-inline f32x16 max(const f32x16& a, const f32x16& b) { return a > b ? a : b; }
-inline f32x16 min(const f32x16& a, const f32x16& b) { return a < b ? a : b; }
 #endif
-
-inline f32x16 sqrt(const f32x16& a) {
-  f32x16 r;
-  for (std::size_t l = 0; l < f32x16_size; ++l) r[l] = __builtin_sqrtf(a[l]);
-  return r;
-}
+inline f32x8 max(const f32x8& a, const f32x8& b) { return a > b ? a : b; }
+inline f32x8 min(const f32x8& a, const f32x8& b) { return a < b ? a : b; }
 
 /// The number type of a vector of them, or of one.
 template <class T>
-using ScalarOf = std::conditional_t<std::is_same_v<T, f32x16>, float, double>;
+using ScalarOf = std::conditional_t<std::is_same_v<T, f32x8>, float, double>;
 
-/// Two octets as one vector of singles, and one half of such a vector as an octet.
-using f32x8 [[gnu::vector_size(32)]] = float;
-inline f32x16 to_single(const f64x8& a, const f64x8& b) {
-  const f32x8 low = __builtin_convertvector(a, f32x8), high = __builtin_convertvector(b, f32x8);
-#ifdef __AVX512F__
-  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-#else  // the compiler takes shuffles that the processor has not lane by lane, and minutes for it
-  const f32x8 halves[2] = {low, high};
-  f32x16 both;
-  std::memcpy(&both, halves, sizeof both);
-  return both;
-#endif
+template <class Real>
+SimdOf<Real> to_real(const f64x8& a) {
+  return __builtin_convertvector(a, SimdOf<Real>);
 }
-inline f64x8 to_double(const f32x16& a, int half) {
-#ifdef __AVX512F__
-  // The compiler would convert by quarters.
-  const f32x8 one = half == 0 ? __builtin_shufflevector(a, a, 0, 1, 2, 3, 4, 5, 6, 7)
-                              : __builtin_shufflevector(a, a, 8, 9, 10, 11, 12, 13, 14, 15);
-  return _mm512_maskz_cvtps_pd(0xff, one);
+inline f64x8 to_double(const f64x8& a) { return a; }
+inline f64x8 to_double(const f32x8& a) {
+#ifdef __AVX512F__  // the compiler would convert by halves
+  return _mm512_maskz_cvtps_pd(0xff, a);
 #else
-  f32x8 halves[2];
-  std::memcpy(halves, &a, sizeof halves);
-  return __builtin_convertvector(halves[half], f64x8);
+  return __builtin_convertvector(a, f64x8);
 #endif
 }
 
@@ -84,44 +64,13 @@ inline double sum(const f64x8& a) {
   return s;
 }
 
-using i32x8 [[gnu::vector_size(32)]] = int;
-
-/// Whole numbers that are kept as doubles.
-inline void to_whole(const f64x8& a, std::array<int, f64x8_size>& whole) {
+/// Whole numbers that are kept as numbers of another kind.
+template <class T>
+std::array<int, f64x8_size> to_whole(const T& a) {
   const auto converted = __builtin_convertvector(a, i32x8);
+  std::array<int, f64x8_size> whole;
   std::memcpy(whole.data(), &converted, sizeof converted);
-}
-
-/// table[at[l]] in each lane.
-inline f64x8 look_up(const double* table, const std::array<int, f64x8_size>& at) {
-#ifdef __AVX512F__
-  const __m256i indices = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(at.data()));
-  return _mm512_mask_i32gather_pd(f64x8{}, 0xff, indices, table, 8);
-#else
-  f64x8 r;
-  for (std::size_t l = 0; l < f64x8_size; ++l) r[l] = table[at[l]];
-  return r;
-#endif
-}
-
-/// The same of sixteen, from a table whose entries are `stride` bytes apart.
-template <std::size_t stride>
-f32x16 look_up(const float* table, const std::array<int, f64x8_size>& a,
-               const std::array<int, f64x8_size>& b) {
-  constexpr int step = stride / sizeof(float);
-  static_assert(stride % sizeof(float) == 0);
-#ifdef __AVX512F__
-  const std::array<int, f64x8_size> both[2] = {a, b};
-  i32x16 at;
-  std::memcpy(&at, both, sizeof at);
-  at *= step;
-  return _mm512_mask_i32gather_ps(f32x16{}, 0xffff, reinterpret_cast<__m512i>(at), table, 4);
-#else
-  f32x16 r;
-  for (std::size_t l = 0; l < f64x8_size; ++l)
-    r[l] = table[step * a[l]], r[f64x8_size + l] = table[step * b[l]];
-  return r;
-#endif
+  return whole;
 }
 
 /// Whether a mask has any lane.
@@ -135,16 +84,6 @@ inline bool any(const i64x8& a) {
 #endif
 }
 
-inline bool any(const i32x16& a) {
-#ifdef __AVX512F__
-  return _mm512_test_epi32_mask(reinterpret_cast<__m512i>(a), reinterpret_cast<__m512i>(a)) != 0;
-#else
-  int bits = a[0];
-  for (std::size_t l = 1; l < f32x16_size; ++l) bits |= a[l];
-  return bits != 0;
-#endif
-}
-
 inline f64x8 sqrt(const f64x8& a) {
   f64x8 r;
   for (int l = 0; l < f64x8_size; ++l) r[l] = __builtin_sqrt(a[l]);
@@ -154,9 +93,6 @@ inline f64x8 sqrt(const f64x8& a) {
 namespace detail {
 /// Adding it to |x| < 2^51 leaves the nearest whole number in the low bits.
 inline constexpr double round_to_whole = 6755399441055744.0;  // 1.5 * 2^52
-/// The same for |x| < 2^22 in single precision.
-inline constexpr float round_single_to_whole = 12582912.0F;  // 1.5 * 2^23
-
 /// Sum of c[k] x^k, by pairs of terms, pairs of pairs and so on (Estrin): few steps wait for another.
 inline f64x8 polynomial(const f64x8& x, const double (&c)[14]) {
   const f64x8 x2 = x * x, x4 = x2 * x2, x8 = x4 * x4;
@@ -174,15 +110,6 @@ inline f64x8 nearest(const f64x8& x) {
   return (x + detail::round_to_whole) - detail::round_to_whole;
 #endif
 }
-/// The same for |x| < 2^22.
-inline f32x16 nearest(const f32x16& x) {
-#ifdef __AVX512F__
-  return _mm512_maskz_roundscale_ps(0xffff, x, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
-#else
-  return (x + detail::round_single_to_whole) - detail::round_single_to_whole;
-#endif
-}
-
 /// Largest whole number that is not above x, |x| < 2^51.
 inline f64x8 floor(const f64x8& x) {
 #ifdef __AVX512F__
@@ -192,14 +119,14 @@ inline f64x8 floor(const f64x8& x) {
   return near > x ? near - 1.0 : near;
 #endif
 }
-/// The same for |x| < 2^22.
-inline f32x16 floor(const f32x16& x) {
-#ifdef __AVX512F__
-  return _mm512_maskz_roundscale_ps(0xffff, x, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
-#else
-  const f32x16 near = nearest(x);
+/// Whole number next to x, the even one of two, and the largest that is not above x; |x| < 2^22.
+inline f32x8 nearest(const f32x8& x) {
+  constexpr float round = 12582912.0F;  // 1.5 * 2^23: sums with it have no fraction
+  return (x + round) - round;
+}
+inline f32x8 floor(const f32x8& x) {
+  const f32x8 near = nearest(x);
   return near > x ? near - 1 : near;
-#endif
 }
 
 /// e^x for |x| <= 700 to 2e-16 relative; beyond, e^-700 or e^700.
@@ -237,39 +164,6 @@ inline f64x8 mean_decay(const f64x8& x) {
   const i64x8 near = x < 0.5;
   if (!any(~near)) return series;
   const f64x8 direct = (1.0 - exp(-x)) / max(x, all_lanes(0.5));
-  return near ? series : direct;
-}
-
-/// e^x in single precision for |x| <= 80, to 2e-7 relative; beyond, e^-80 or e^80.
-inline f32x16 exp(const f32x16& x) {
-  const f32x16 y = max(min(x, 80 - f32x16{}), -80 - f32x16{});
-  const f32x16 shifted = y * 1.44269504F + detail::round_single_to_whole;
-  const f32x16 k = shifted - detail::round_single_to_whole;
-  const f32x16 r = (y - k * 0.693359375F) + k * 2.12194440e-4F;  // ln 2 in two parts
-  // Taylor's polynomial on |r| <= ln 2 / 2: the first term left out is 5e-9.
-  const f32x16 r2 = r * r;
-  const f32x16 p =
-      ((1 + r) + r2 * (0.5F + r * (1.0F / 6.0F))) +
-      (r2 * r2) * ((1.0F / 24.0F + r * (1.0F / 120.0F)) + r2 * (1.0F / 720.0F + r * (1.0F / 5040.0F)));
-  i32x16 bits;
-  std::memcpy(&bits, &shifted, sizeof bits);
-  bits = (bits + 127) << 23;  // 2^k; what the shift pushes out is the rounding constant
-  f32x16 scale;
-  std::memcpy(&scale, &bits, sizeof scale);
-  return p * scale;
-}
-
-/// (1 - e^-x)/x in single precision for x >= 0, 1 at x = 0, to 3e-7 relative.
-inline f32x16 mean_decay(const f32x16& x) {
-  // Below 1/2 the difference loses digits; there the series' first term left out is 5e-10.
-  const f32x16 x2 = x * x, x4 = x2 * x2;
-  const f32x16 series =
-      ((1 - x * 0.5F) + x2 * (1.0F / 6.0F - x * (1.0F / 24.0F))) +
-      x4 * (((1.0F / 120.0F - x * (1.0F / 720.0F)) + x2 * (1.0F / 5040.0F - x * (1.0F / 40320.0F))) +
-            x4 * (1.0F / 362880.0F));
-  const i32x16 near = x < 0.5F;
-  if (!any(~near)) return series;
-  const f32x16 direct = (1 - exp(-x)) / max(x, 0.5F - f32x16{});
   return near ? series : direct;
 }
 

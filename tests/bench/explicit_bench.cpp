@@ -8,7 +8,7 @@
 #include <omp.h>
 
 #include "apparatus/verification/references/bodies.hpp"
-#include "libmpm/explicit/single_precision.hpp"
+#include "libmpm/explicit/pass.hpp"
 #include "libmpm/explicit/step.hpp"
 
 namespace tremie {
@@ -65,26 +65,8 @@ void pass_of(benchmark::State& run) {
   omp_set_num_threads(1);
   Set<Geometry> set(thixotropic, false, StressUpdate::last, false);
   const detail::PassInput input{1e-9, 1e-9};
-  for (auto _ : run) detail::pass_over_points<pass>(set.body.mix, law, set.settings, input, set.state);
-  set.count(run);
-}
-
-template <class Geometry, bool thixotropic>
-void law_alone(benchmark::State& run) {
-  Set<Geometry> set(thixotropic, false, StressUpdate::last, false);
-  f64x8 slope[Geometry::dim][Geometry::dim] = {};
-  slope[0][0] = all_lanes(0.3), slope[0][1] = all_lanes(0.7);
-  detail::LaneSums sums;
   for (auto _ : run)
-    for (std::size_t g = 0; g < set.state.points.groups(); ++g) {
-      benchmark::DoNotOptimize(slope);
-      const auto rate = detail::strain_rate<Geometry, f64x8>(slope, f64x8{}, set.state.points.x[0][g]);
-      const auto resistance =
-          detail::update_state<Geometry::dim>(set.body.mix, law, 1e-9, rate.gamma_dot, rate.divergence,
-                                              all_lanes(1.0), set.state.points, g, sums);
-      benchmark::DoNotOptimize(
-          detail::stress_of<Geometry, f64x8>(rate, resistance.viscosity, resistance.pressure));
-    }
+    detail::pass_over_points<pass, double>(set.body.mix, law, set.settings, input, set.state);
   set.count(run);
 }
 
@@ -92,7 +74,7 @@ template <class Geometry>
 void sort_alone(benchmark::State& run) {
   Set<Geometry> set(true, false, StressUpdate::last, false);
   for (auto _ : run) {
-    detail::sort_points(set.settings, set.state);
+    detail::sort_points<double>(set.settings, set.state);
   }
   set.count(run);
 }
@@ -123,15 +105,17 @@ BENCHMARK(pass_of<ThreeD, points_to_grid, false>)->Name("3D/points to grid");
 BENCHMARK(pass_of<ThreeD, detail::motion_pass, false>)->Name("3D/grid to points and back");
 BENCHMARK(pass_of<ThreeD, detail::stress_pass, false>)->Name("3D/stress pass");
 BENCHMARK(pass_of<ThreeD, detail::whole_pass, false>)->Name("3D/whole pass");
-BENCHMARK(law_alone<ThreeD, false>)->Name("3D/law");
-BENCHMARK(law_alone<ThreeD, true>)->Name("3D/law, thixotropic");
 BENCHMARK(sort_alone<ThreeD>)->Name("3D/sort");
 BENCHMARK(whole_step<ThreeD, false, false, last, false>)
     ->Name("3D/USL, splines, pressure by the point")
     ->Arg(1)
     ->Arg(2)
     ->UseRealTime();
+BENCHMARK(whole_step<ThreeD, false, false, last, false, true>)
+    ->Name("3D/USL, splines, pressure by the point, single")
+    ->Arg(1);
 BENCHMARK(whole_step<ThreeD, false, false, last, true>)->Name("3D/USL, splines")->Arg(1);
+BENCHMARK(whole_step<ThreeD, false, false, last, true, true>)->Name("3D/USL, splines, single")->Arg(1);
 BENCHMARK(whole_step<ThreeD, true, false, last, true>)->Name("3D/USL, splines, thixotropic")->Arg(1);
 BENCHMARK(whole_step<ThreeD, false, true, first, true>)->Name("3D/USF, GIMP")->Arg(1)->Arg(2)->UseRealTime();
 BENCHMARK(whole_step<ThreeD, true, true, first, true>)->Name("3D/USF, GIMP, thixotropic")->Arg(1);

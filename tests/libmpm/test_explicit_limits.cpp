@@ -45,13 +45,12 @@ Pencil patch(const std::array<Axis, D>& axes, const Shape<D>& shape, Row row) {
       x[d] = all_lanes(0.5 * (rest % (2 * cells) + 0.5));
       centre[d] = floor(x[d]) + 0.5;
     }
-    Weights<D> mass, place;
-    weigh<D>(axes, shape, {}, x, mass);
+    Weights<double, D> mass, place;
+    weigh<double, D>({axes, shape, {}}, x, mass);
     Shape<D> hats = shape;  // without extent, at the cell's centre: its corners' hats
     if (shape.kind == ShapeFunctions::gimp) hats.half.fill(1e-9);
     const bool at_cell = row == Row::cell_divergence;
-    weigh<D>(axes, at_cell ? hats : shape, {}, at_cell ? centre : x, place);
-    const auto w = of_lane<D>(mass, 0), b = of_lane<D>(place, 0);
+    weigh<double, D>({axes, at_cell ? hats : shape, {}}, at_cell ? centre : x, place);
     constexpr int n = power(3, D), rows = Geometry::n_strain;
     Eigen::MatrixXd B = Eigen::MatrixXd::Zero(row == Row::strain ? rows : 1, n * D);
     std::array<int, n> at;
@@ -62,9 +61,9 @@ Pencil patch(const std::array<Axis, D>& axes, const Shape<D>& shape, Row row) {
       int in_mass = mass.base[0];
       at[k] = place.base[0];
       for (int d = 0; d < D; ++d) {
-        N *= w.w[d][o[d]], g[d] = b.dw[d][o[d]];
+        N *= mass.w[d][o[d]][0], g[d] = place.dw[d][o[d]][0];
         for (int e = 0; e < D; ++e)
-          if (e != d) g[d] *= b.w[e][o[e]];
+          if (e != d) g[d] *= place.w[e][o[e]][0];
         in_mass += o[d] * stride<D>(tile_span, d), at[k] += o[d] * stride<D>(tile_span, d);
       }
       for (int d = 0; d < D; ++d) p.M[in_mass * D + d] += V * N;

@@ -51,7 +51,7 @@ TEST(ExplicitSteps, SortFastPointsInTime) {
     auto state = start_explicit(body, law, settings, shape_of<3>(ShapeFunctions::gimp));
     for (int i = 0; i < 8; ++i) {
       EXPECT_FALSE(explicit_step(body, law, settings, state).failed) << cells_a_step;
-      EXPECT_LT(state.drift, detail::drift_allowed + cells_a_step);
+      EXPECT_LT(state.drift, detail::drift_allowed(settings) + cells_a_step);
     }
   }
 }

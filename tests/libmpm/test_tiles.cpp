@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "libmpm/explicit/tile_layout.hpp"
+#include "libmpm/grid/tiles.hpp"
 
 namespace tremie {
 namespace {
@@ -19,43 +19,24 @@ TileGrid<D> row_of_tiles(int n) {
     groups += t;
     tiles.push_back(tile);
   }
-  lay_tiles<D>(grid, tiles, false);
+  lay_tiles<double, D>(grid, tiles, false);
   return grid;
 }
 
-/// Every row of a tile's cube is a row of those of its blocks that lie beside each other along it, and of no
-/// other: blocks of four nodes, two a direction.
+// Every row of a tile's cube is made up of rows of its blocks: blocks of four nodes, two a direction.
 template <int D>
 void expect_rows_in_blocks() {
-  constexpr int n_rows = power(tile_span, D - 1);
-  for (int row = 0; row < n_rows; ++row) {
-    std::vector<int> begins;
-    for (int k = 0; k < power(2, D); ++k) {
-      const unsigned in_block = rows_of_block<D>(TileRows{1} << row, k);
-      for_each_row(in_block, [&](int r) { begins.push_back(row_in_cube<D>(k, r)); });
-    }
-    EXPECT_EQ(begins, (std::vector<int>{row * tile_span, row * tile_span + tile_cells}));
-  }
+  std::vector<int> begins;
+  for (int k = 0; k < power(2, D); ++k)
+    for (int row = 0; row < power(tile_cells, D - 1); ++row) begins.push_back(row_in_cube<D>(k, row));
+  std::sort(begins.begin(), begins.end());
+  for (std::size_t i = 0; i < begins.size(); ++i) EXPECT_EQ(begins[i], static_cast<int>(i) * tile_cells);
+  EXPECT_EQ(begins.size() * tile_cells, power(tile_span, D));
 }
 
 TEST(Tiles, RowsLieInTheirBlocks) {
   expect_rows_in_blocks<2>();
   expect_rows_in_blocks<3>();
-}
-
-TEST(Tiles, AStencilReachesThreeRowsADirection) {
-  EXPECT_EQ(stencil_rows<2>(5 * tile_span + 3), TileRows{7} << 5);
-  const TileRows rows = stencil_rows<3>((5 * tile_span + 5) * tile_span + 5);  // the last there is
-  std::vector<int> at;
-  for_each_row(rows, [&](int row) { at.push_back(row); });
-  EXPECT_EQ(at, (std::vector<int>{45, 46, 47, 53, 54, 55, 61, 62, 63}));
-}
-
-TEST(Tiles, OnlyTheRowsThatAreMeantAreCleared) {
-  TileGrid<2>::Buffer cube;
-  cube.fill(f64x4{} + 1.0);
-  clear_rows(all_rows<2> & ~TileRows{1}, cube);
-  for (int i = 0; i < TileGrid<2>::tile_nodes; ++i) EXPECT_EQ(cube[i][0], i < tile_span ? 1.0 : 0.0);
 }
 
 TEST(Tiles, EachTileFindsItsBlocksAndEachBlockItsTiles) {
@@ -78,7 +59,7 @@ TEST(Tiles, VelocitiesAreKept) {
     return grid.v[static_cast<std::size_t>(grid.tiles.back().block[0])][7];
   };
   block_9() = f64x4{1.0, 2.0, 3.0, 4.0};
-  lay_tiles<3>(grid, std::vector<Tile<3>>(grid.tiles.begin() + 4, grid.tiles.end()), false);
+  lay_tiles<double, 3>(grid, std::vector<Tile<3>>(grid.tiles.begin() + 4, grid.tiles.end()), false);
   EXPECT_EQ(grid.v.size(), 4 * 7);
   EXPECT_EQ(block_9()[2], 3.0);
   EXPECT_EQ(grid.v[static_cast<std::size_t>(grid.tiles[4].block[0])][7][2], 0.0);

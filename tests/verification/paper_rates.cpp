@@ -12,6 +12,7 @@
 #include <map>
 
 #include "apparatus/slump_flow/explicit_run.hpp"
+#include "libmpm/transfer/tile_sums.hpp"
 
 namespace tremie {
 
@@ -134,22 +135,19 @@ template <class Geometry>
 void gradients(ExplicitState<Geometry>& state, std::vector<Mat<D, D>>& L) {
   for (int t = 0; t < state.grid.n_tiles(); ++t) {
     const Tile<D>& tile = state.grid.tiles[static_cast<std::size_t>(t)];
-    TileGrid<D>::Buffer v;
-    read_blocks<D>(tile, all_rows<D>, state.grid.v, v);
+    NodeCube<double, D> v;
+    read_blocks<double, D>(tile, state.grid.v, v);
     for (int g = tile.first_group; g < tile.last_group; ++g) {
       const auto group = static_cast<std::size_t>(g);
-      std::array<f64x8, D> x;
-      for (int d = 0; d < D; ++d) x[d] = state.points.x[d][group];
-      Weights<D> weights;
-      weigh<D>(state.grid.axes, state.shape, tile.at, x, weights);
-      for (int l = 0; l < filled<D>(state.points, group); ++l) {
-        const auto lane = static_cast<std::size_t>(l);
-        const auto at = gather<D, 3, slopes_only>(&v[static_cast<std::size_t>(weights.base[lane])],
-                                                  of_lane<D>(weights, l));
+      Weights<double, D> weights;
+      AtPoints<double, D, 1> at;
+      weigh<double, D>({state.grid.axes, state.shape, tile.at}, places_of<D>(state.points, group), weights);
+      gather<double, D, 1>(v, weights, {weights.dw}, at);
+      for (int l = 0; l < filled<D>(state.points, group); ++l)
         for (int a = 0; a < D; ++a)
           for (int b = 0; b < D; ++b)
-            L[static_cast<std::size_t>(state.points.id[group][lane])](a, b) = at.slope[b][a];
-      }
+            L[static_cast<std::size_t>(state.points.id[group][static_cast<std::size_t>(l)])](a, b) =
+                at.along[0][b][a][l];
     }
   }
 }
