@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "apparatus/cell/cell.hpp"
 #include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/options/command.hpp"
 #include "apparatus/cli/options/json_option.hpp"
 #include "apparatus/cli/set_option.hpp"
 #include "apparatus/registry/registry.hpp"
@@ -60,18 +60,17 @@ int run(const Options& options) {
 
 void add_command_cell(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
-  auto* command =
-      app.add_subcommand("cell", "Run the law alone, in one material cell at a prescribed shear rate");
-  command->add_option("scene", options->scene, "Scene file (TOML) with apparatus = \"cell\"")->required();
-  command->add_option("--out", options->out, "Folder for the result (default: runs/<scene name>)");
-  add_set_option(*command, options->overrides);
-  command->add_option("--threads", options->threads, "Threads; a cell needs one")->check(CLI::Range(1, 1024));
-  add_json_option(*command, options->json);
-  command->add_flag("--quiet", options->quiet, "Print nothing but errors");
-  command->add_flag("--force", options->force, "Replace an earlier result in the folder");
-  command->footer(
+  Command command(app, "cell", "Run the law alone, in one material cell at a prescribed shear rate");
+  command.required("scene", options->scene, "Scene file (TOML) with apparatus = \"cell\"");
+  command.option("--out", options->out, "Folder for the result (default: runs/<scene name>)");
+  add_set_option(command, options->overrides);
+  command.option("--threads", options->threads, "Threads; a cell needs one")->check(CLI::Range(1, 1024));
+  add_json_option(command, options->json);
+  command.flag("--quiet", options->quiet, "Print nothing but errors");
+  command.flag("--force", options->force, "Replace an earlier result in the folder");
+  command.example(
       "tremie new cell > cell.toml writes a history to start from; tremie cell cell.toml runs it.");
-  command->callback([options, &exit_code] { exit_code = run(*options); });
+  command.run([options, &exit_code] { exit_code = run(*options); });
 }
 
 }  // namespace tremie::cli

@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <iostream>
 #include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/options/command.hpp"
 #include "apparatus/cli/options/json_option.hpp"
 #include "apparatus/cli/set_option.hpp"
 #include "apparatus/registry/cost_estimate.hpp"
@@ -115,13 +115,12 @@ void check(const Options& options) {
 
 void add_command_check(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
-  auto* command =
-      app.add_subcommand("check", "Validate a scene; print it resolved, what it uses and what it costs");
-  command->add_option("scene", options->scene, "Scene file (TOML), or - for the standard input")->required();
-  add_set_option(*command, options->overrides);
-  add_json_option(*command, options->json);
-  command->footer("tremie check slump.toml, or tremie new slump_flow | tremie check -");
-  command->callback([options, &exit_code] {
+  Command command(app, "check", "Validate a scene; print it resolved, what it uses and what it costs");
+  command.required("scene", options->scene, "Scene file (TOML), or - for the standard input");
+  add_set_option(command, options->overrides);
+  add_json_option(command, options->json);
+  command.example("tremie check slump.toml, or tremie new slump_flow | tremie check -");
+  command.run([options, &exit_code] {
     check(*options);
     exit_code = done;
   });

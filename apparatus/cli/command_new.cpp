@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/options/command.hpp"
 #include "apparatus/registry/registry.hpp"
 #include "apparatus/scene/resolved.hpp"
 
@@ -26,11 +26,11 @@ std::string template_of(const std::string& name) {
 
 void add_command_new(CLI::App& app, int& exit_code) {
   auto name = std::make_shared<std::string>();
-  auto* command = app.add_subcommand("new", "Print a commented scene to start from");
-  command->add_option("apparatus", *name, "slump_flow, l_box, icar_vane or cell")->required();
-  command->footer(
+  Command command(app, "new", "Print a commented scene to start from");
+  command.required("apparatus", *name, "slump_flow, l_box, icar_vane or cell");
+  command.example(
       "tremie new slump_flow > slump.toml; also l_box, icar_vane, cell. Then tremie run slump.toml.");
-  command->callback([name, &exit_code] {
+  command.run([name, &exit_code] {
     fmt::print("{}", template_of(*name));
     exit_code = done;
   });

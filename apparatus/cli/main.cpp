@@ -3,7 +3,6 @@
 #include <malloc.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <cstring>
 
 #include "apparatus/cli/command_cell.hpp"
@@ -36,7 +35,7 @@ void return_large_blocks() {
 
 /// The commands of tremie-study, for --help.
 void name_study_commands(CLI::App& app) {
-  for (const StudyCommand& command : study_commands) app.add_subcommand(command.name, command.description);
+  for (const StudyCommand& command : study_commands) Command(app, command.name, command.description);
 }
 
 }  // namespace

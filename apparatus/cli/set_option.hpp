@@ -3,13 +3,11 @@
 #include <string>
 #include <vector>
 
-namespace CLI {
-class App;
-}
+#include "apparatus/cli/options/command.hpp"
 
 namespace tremie::cli {
 
 /// --set KEY=VALUE, as often as wanted.
-void add_set_option(CLI::App& command, std::vector<std::string>& overrides);
+void add_set_option(Command& command, std::vector<std::string>& overrides);
 
 }  // namespace tremie::cli

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/options/command.hpp"
 #include "apparatus/cli/options/json_option.hpp"
 #include "apparatus/report/compare/comparison.hpp"
 #include "apparatus/report/rheometer_files.hpp"
@@ -76,14 +76,14 @@ int run(const Options& options) {
 
 void add_command_compare(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
-  auto* command = app.add_subcommand("compare", "Set results side by side: curves, and what differs");
-  command->add_option("folders", options->folders, "Folders of results, two to eight")->required();
-  command->add_option("--out", options->out, "Folder for the comparison")->capture_default_str();
-  add_json_option(*command, options->json);
-  command->add_flag("--quiet", options->quiet, "Print nothing but errors");
-  command->add_flag("--force", options->force, "Replace an earlier result in the folder");
-  command->footer("tremie compare runs/fresh runs/rested");
-  command->callback([options, &exit_code] { exit_code = run(*options); });
+  Command command(app, "compare", "Set results side by side: curves, and what differs");
+  command.required("folders", options->folders, "Folders of results, two to eight");
+  command.option_with_default("--out", options->out, "Folder for the comparison");
+  add_json_option(command, options->json);
+  command.flag("--quiet", options->quiet, "Print nothing but errors");
+  command.flag("--force", options->force, "Replace an earlier result in the folder");
+  command.example("tremie compare runs/fresh runs/rested");
+  command.run([options, &exit_code] { exit_code = run(*options); });
 }
 
 }  // namespace tremie::cli

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/options/command.hpp"
 #include "apparatus/cli/options/quantity.hpp"
 #include "apparatus/estimate/estimate.hpp"
 #include "apparatus/scene/input_error.hpp"
@@ -79,16 +79,15 @@ int run(const Options& options) {
 
 void add_command_estimate(CLI::App& app, int& exit_code) {
   auto o = std::make_shared<Options>();
-  auto* command =
-      app.add_subcommand("estimate", "Yield stress and plastic viscosity from a slump flow, by a table");
-  command->add_option("--spread", o->spread, "Slump flow: \"590 mm\"")->required();
-  command->add_option("--t500", o->t500, "Time to 500 mm from the start of the lift: \"2.5 s\"");
-  command->add_option("--density", o->density, "\"2400 kg/m3\" by default");
-  command->add_option("--spread-error", o->spread_error, "One standard error, \"15 mm\" by default");
-  command->add_option("--t500-error", o->t500_error, "One standard error, \"0.2 s\" by default");
-  command->add_flag("--json", o->json, "Print one JSON object");
-  command->footer("tremie estimate --spread \"590 mm\" --t500 \"2.5 s\"");
-  command->callback([o, &exit_code] { exit_code = run(*o); });
+  Command command(app, "estimate", "Yield stress and plastic viscosity from a slump flow, by a table");
+  command.required("--spread", o->spread, "Slump flow: \"590 mm\"");
+  command.option("--t500", o->t500, "Time to 500 mm from the start of the lift: \"2.5 s\"");
+  command.option("--density", o->density, "\"2400 kg/m3\" by default");
+  command.option("--spread-error", o->spread_error, "One standard error, \"15 mm\" by default");
+  command.option("--t500-error", o->t500_error, "One standard error, \"0.2 s\" by default");
+  command.flag("--json", o->json, "Print one JSON object");
+  command.example("tremie estimate --spread \"590 mm\" --t500 \"2.5 s\"");
+  command.run([o, &exit_code] { exit_code = run(*o); });
 }
 
 }  // namespace tremie::cli

@@ -2,15 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
 
 namespace tremie::cli {
 
-void add_json_option(CLI::App& command, bool& json) {
-  command.add_flag("--json", json, "Print one JSON object, the result's summary, and nothing else");
+void add_json_option(Command& command, bool& json) {
+  command.flag("--json", json, "Print one JSON object, the result's summary, and nothing else");
 }
 
 void print_result_as_json(const std::filesystem::path& folder, const std::vector<std::string>& notes) {

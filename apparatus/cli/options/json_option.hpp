@@ -4,14 +4,12 @@
 #include <string>
 #include <vector>
 
-namespace CLI {
-class App;
-}
+#include "apparatus/cli/options/command.hpp"
 
 namespace tremie::cli {
 
 /// --json: one JSON object on the standard output and nothing else there; messages go to the standard error.
-void add_json_option(CLI::App& command, bool& json);
+void add_json_option(Command& command, bool& json);
 
 /// summary.json of a result's folder, on the standard output; notes and the folder on the standard error.
 void print_result_as_json(const std::filesystem::path& folder, const std::vector<std::string>& notes = {});

@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <fstream>
 #include <iterator>
 #include <memory>
 
 #include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/options/command.hpp"
 #include "apparatus/cli/options/json_option.hpp"
 #include "apparatus/cli/process/brief_spin.hpp"
 #include "apparatus/cli/process/stop_signals.hpp"
@@ -65,11 +65,11 @@ int resume(const Options& options) {
 
 void add_command_resume(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
-  auto* command = app.add_subcommand("resume", "Go on with a run that was interrupted or killed");
-  command->add_option("folder", options->folder, "Folder of the run's result (tremie run --out)")->required();
-  add_json_option(*command, options->json);
-  command->add_flag("--quiet", options->quiet, "Print nothing but errors");
-  command->callback([options, &exit_code] { exit_code = resume(*options); });
+  Command command(app, "resume", "Go on with a run that was interrupted or killed");
+  command.required("folder", options->folder, "Folder of the run's result (tremie run --out)");
+  add_json_option(command, options->json);
+  command.flag("--quiet", options->quiet, "Print nothing but errors");
+  command.run([options, &exit_code] { exit_code = resume(*options); });
 }
 
 }  // namespace tremie::cli

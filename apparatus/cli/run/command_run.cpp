@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
 #include <thread>
 
 #include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/options/command.hpp"
 #include "apparatus/cli/options/json_option.hpp"
 #include "apparatus/cli/process/brief_spin.hpp"
 #include "apparatus/cli/process/stop_signals.hpp"
@@ -89,25 +89,24 @@ int run(const Options& options) {
 
 void add_command_run(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
-  auto* command = app.add_subcommand("run", "Run a scene and write its result");
-  command->add_option("scene", options->scene, "Scene file (TOML)")->required();
-  command->add_option("--out", options->out, "Folder for the result (default: runs/<scene name>)");
-  add_set_option(*command, options->overrides);
-  command->add_option("--threads", options->threads, "Threads (default: as many as pay for the scene's size)")
-      ->check(CLI::Range(1, 1024));
-  command->add_flag("--with-error", options->with_error,
-                    "Also run coarser cells, and state the discretisation error of the result");
-  command->add_option(
-      "--accuracy", options->accuracy,
-      "Choose the cells for this accuracy, \"1 %\"; says the price first, implies --with-error");
-  add_json_option(*command, options->json);
-  command->add_flag("--quiet", options->quiet, "Print nothing but errors");
-  command->add_flag("--force", options->force, "Replace an earlier result in the folder");
-  command->footer(
+  Command command(app, "run", "Run a scene and write its result");
+  command.required("scene", options->scene, "Scene file (TOML)");
+  command.option("--out", options->out, "Folder for the result (default: runs/<scene name>)");
+  add_set_option(command, options->overrides);
+  command.number("--threads", options->threads, 1, 1024,
+                 "Threads (default: as many as pay for the scene's size)");
+  command.flag("--with-error", options->with_error,
+               "Also run coarser cells, and state the discretisation error of the result");
+  command.option("--accuracy", options->accuracy,
+                 "Choose the cells for this accuracy, \"1 %\"; says the price first, implies --with-error");
+  add_json_option(command, options->json);
+  command.flag("--quiet", options->quiet, "Print nothing but errors");
+  command.flag("--force", options->force, "Replace an earlier result in the folder");
+  command.example(
       "tremie new slump_flow > slump.toml writes a scene to start from; tremie run slump.toml runs it,\n"
       "with --set test.rest=\"240 s\" after four minutes of rest. Bundled mixes: mix = \"mix_a\", mix_b, "
       "mix_c.");
-  command->callback([options, &exit_code] { exit_code = run(*options); });
+  command.run([options, &exit_code] { exit_code = run(*options); });
 }
 
 }  // namespace tremie::cli

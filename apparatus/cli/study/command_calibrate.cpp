@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 #include <signal.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
 #include <filesystem>
@@ -18,6 +17,7 @@
 #include "apparatus/calibration/calibrate.hpp"
 #include "apparatus/calibration/calibration_page.hpp"
 #include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/options/command.hpp"
 #include "apparatus/cli/options/json_option.hpp"
 #include "apparatus/cli/program.hpp"
 #include "apparatus/report/rheometer_files.hpp"
@@ -207,22 +207,19 @@ int run(const Options& options) {
 
 void add_command_calibrate(CLI::App& app, int& exit_code) {
   auto o = std::make_shared<Options>();
-  auto* command = app.add_subcommand(calibrate_command.name, calibrate_command.description);
-  command
-      ->add_option("lab", o->file, "Laboratory file (TOML): [[measured]], [unknown], [known], [[forecast]]")
-      ->required();
-  command->add_option("--out", o->out, "Folder for the result (default: runs/<file's name>)");
-  command->add_option("--jobs", o->jobs, "Runs at a time, one thread each (default: the machine's cores)")
-      ->check(CLI::Range(1, 4096));
-  command->add_option("--runs", o->runs, "Runs of each test at most (default: 20 for each unknown)")
-      ->check(CLI::Range(10, 100000));
-  add_json_option(*command, o->json);
-  command->add_flag("--quiet", o->quiet, "Print nothing but errors");
-  command->add_flag("--force", o->force, "Replace an earlier result in the folder");
-  command->footer(
+  Command command(app, calibrate_command.name, calibrate_command.description);
+  command.required("lab", o->file, "Laboratory file (TOML): [[measured]], [unknown], [known], [[forecast]]");
+  command.option("--out", o->out, "Folder for the result (default: runs/<file's name>)");
+  command.number("--jobs", o->jobs, 1, 4096,
+                 "Runs at a time, one thread each (default: the machine's cores)");
+  command.number("--runs", o->runs, 10, 100000, "Runs of each test at most (default: 20 for each unknown)");
+  add_json_option(command, o->json);
+  command.flag("--quiet", o->quiet, "Print nothing but errors");
+  command.flag("--force", o->force, "Replace an earlier result in the folder");
+  command.example(
       "tremie calibrate lab.toml, which has [[measured]] tests with their errors, and [unknown] keys with "
       "ranges.");
-  command->callback([o, &exit_code] {
+  command.run([o, &exit_code] {
     o->quiet = o->quiet || o->json;
     exit_code = run(*o);
   });

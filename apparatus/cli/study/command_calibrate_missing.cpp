@@ -1,18 +1,18 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 
 #include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/options/command.hpp"
 #include "apparatus/cli/program.hpp"
 #include "apparatus/cli/study/command_calibrate.hpp"
 
 namespace tremie::cli {
 
 void add_command_calibrate(CLI::App& app, int& exit_code) {
-  auto* command = app.add_subcommand(calibrate_command.name, calibrate_command.description);
-  command->allow_extras();
-  command->callback([&exit_code] {
+  Command command(app, calibrate_command.name, calibrate_command.description);
+  command.anything();
+  command.run([&exit_code] {
     fmt::print(stderr,
                "tremie calibrate: not in this build, which lacks libopenturns-dev; apt-get install "
                "libopenturns-dev and build again\n");

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -14,6 +13,7 @@
 #include "apparatus/cli/fit/fit_output.hpp"
 #include "apparatus/cli/fit/fit_protocol.hpp"
 #include "apparatus/cli/fit/protocol_report.hpp"
+#include "apparatus/cli/options/command.hpp"
 #include "apparatus/cli/options/json_option.hpp"
 #include "apparatus/cli/options/quantity.hpp"
 #include "apparatus/cli/program.hpp"
@@ -338,39 +338,36 @@ int run(const Options& options) {
 
 void add_command_fit(CLI::App& app, int& exit_code) {
   auto o = std::make_shared<Options>();
-  auto* command = app.add_subcommand(fit_command.name, fit_command.description);
+  Command command(app, fit_command.name, fit_command.description);
   command
       ->add_option("data", o->data,
                    "CSV or an instrument's export: speed and torque (flow curve), time and torque (decay), "
                    "or all three; several files are replicates")
       ->required();
-  command->add_option("--vane-radius", o->vane_radius, "\"63.5 mm\" (ICAR) by default");
-  command->add_option("--vane-height", o->vane_height, "\"127 mm\" (ICAR) by default");
-  command->add_option("--container-radius", o->container_radius, "\"143 mm\" (ICAR) by default");
-  command->add_option("--speed", o->speed, "of a torque decay: \"0.25 rev/s\"");
-  command->add_option("--rest", o->rest, "before a torque decay: \"240 s\"");
-  command->add_option("--yield-stress", o->yield_stress, "dynamic, where it is known: \"54 Pa\"");
-  command->add_option("--plastic-viscosity", o->plastic_viscosity, "where it is known: \"35.8 Pa.s\"");
-  command->add_option("--kinetics", o->kinetics, "of the flocculation")
-      ->check(CLI::IsMember({"auto", "gated", "roussel", "power"}));
-  command->add_option("--law", o->law, "of a flow curve: the law, or both compared")
-      ->check(CLI::IsMember({"auto", "bingham", "herschel_bulkley"}));
-  command->add_option("--critical-shear-rate", o->critical_shear_rate,
-                      "of the gated kinetics, \"0.1 1/s\" by default");
-  command->add_flag("--protocol", o->protocol, "Read every section of a record with time, speed and torque");
-  command->add_option("--instrument-compliance", o->compliance,
-                      "the instrument's own turn by torque: \"0.02 rad/(N.m)\"");
-  command->add_option("--torque-offset", o->torque_offset,
-                      "of the unloaded instrument, taken off: \"0.3 mN.m\"");
-  command->add_option("--ends", o->ends, "what the ends of the vane carry")
-      ->check(CLI::IsMember({"none", "textbook", "computed"}));
-  command->add_option("--max-aggregate", o->max_aggregate, "largest grain, to judge the gap by: \"16 mm\"");
-  add_json_option(*command, o->json);
-  command->add_option("--out", o->out, "Folder for the result (default: runs/<record's name>)");
-  command->add_flag("--quiet", o->quiet, "Print nothing but errors");
-  command->add_flag("--force", o->force, "Replace an earlier result in the folder");
-  command->footer("tremie fit torque.csv, with --speed \"0.25 rev/s\" --rest \"240 s\" for a torque decay");
-  command->callback([o, &exit_code] { exit_code = run(*o); });
+  command.option("--vane-radius", o->vane_radius, "\"63.5 mm\" (ICAR) by default");
+  command.option("--vane-height", o->vane_height, "\"127 mm\" (ICAR) by default");
+  command.option("--container-radius", o->container_radius, "\"143 mm\" (ICAR) by default");
+  command.option("--speed", o->speed, "of a torque decay: \"0.25 rev/s\"");
+  command.option("--rest", o->rest, "before a torque decay: \"240 s\"");
+  command.option("--yield-stress", o->yield_stress, "dynamic, where it is known: \"54 Pa\"");
+  command.option("--plastic-viscosity", o->plastic_viscosity, "where it is known: \"35.8 Pa.s\"");
+  command.choice("--kinetics", o->kinetics, {"auto", "gated", "roussel", "power"}, "of the flocculation");
+  command.choice("--law", o->law, {"auto", "bingham", "herschel_bulkley"},
+                 "of a flow curve: the law, or both compared");
+  command.option("--critical-shear-rate", o->critical_shear_rate,
+                 "of the gated kinetics, \"0.1 1/s\" by default");
+  command.flag("--protocol", o->protocol, "Read every section of a record with time, speed and torque");
+  command.option("--instrument-compliance", o->compliance,
+                 "the instrument's own turn by torque: \"0.02 rad/(N.m)\"");
+  command.option("--torque-offset", o->torque_offset, "of the unloaded instrument, taken off: \"0.3 mN.m\"");
+  command.choice("--ends", o->ends, {"none", "textbook", "computed"}, "what the ends of the vane carry");
+  command.option("--max-aggregate", o->max_aggregate, "largest grain, to judge the gap by: \"16 mm\"");
+  add_json_option(command, o->json);
+  command.option("--out", o->out, "Folder for the result (default: runs/<record's name>)");
+  command.flag("--quiet", o->quiet, "Print nothing but errors");
+  command.flag("--force", o->force, "Replace an earlier result in the folder");
+  command.example("tremie fit torque.csv, with --speed \"0.25 rev/s\" --rest \"240 s\" for a torque decay");
+  command.run([o, &exit_code] { exit_code = run(*o); });
 }
 
 }  // namespace tremie::cli

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 #include <signal.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
 #include <fstream>
@@ -17,6 +16,7 @@
 
 #include "apparatus/cli/commands.hpp"
 #include "apparatus/cli/hand_over.hpp"
+#include "apparatus/cli/options/command.hpp"
 #include "apparatus/cli/options/json_option.hpp"
 #include "apparatus/cli/program.hpp"
 #include "apparatus/cli/study/study_progress.hpp"
@@ -262,25 +262,24 @@ int run(const Options& options) {
 
 void add_command_study(CLI::App& app, int& exit_code) {
   auto o = std::make_shared<Options>();
-  auto* command = app.add_subcommand(study_command.name, study_command.description);
-  command->add_option("study", o->file, "Study file (TOML): base, [[factor]], [design], [read]")->required();
-  command->add_option("--out", o->out, "Folder for the result (default: runs/<study's name>)");
-  command->add_option("--jobs", o->jobs, "Runs at a time, one thread each (default: the machine's cores)")
-      ->check(CLI::Range(1, 4096));
-  command->add_flag("--resume", o->resume, "Go on with a study that was stopped or killed");
-  command->add_option("--row", o->row, "Run this row alone (from 0), into DIR/rows")
-      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1000000}));
-  command->add_flag("--collect", o->collect, "Make study.csv of the rows that are there; run none");
-  command->add_option("--engine", o->engine, "Write what runs the rows elsewhere: slurm, snakemake, parallel")
-      ->check(CLI::IsMember({"slurm", "snakemake", "parallel"}));
-  command->add_flag("--submit", o->submit, "Start it, too");
-  add_json_option(*command, o->json);
-  command->add_flag("--quiet", o->quiet, "Print nothing but errors");
-  command->add_flag("--force", o->force, "Replace an earlier study in the folder");
-  command->footer(
+  Command command(app, study_command.name, study_command.description);
+  command.required("study", o->file, "Study file (TOML): base, [[factor]], [design], [read]");
+  command.option("--out", o->out, "Folder for the result (default: runs/<study's name>)");
+  command.number("--jobs", o->jobs, 1, 4096,
+                 "Runs at a time, one thread each (default: the machine's cores)");
+  command.flag("--resume", o->resume, "Go on with a study that was stopped or killed");
+  command.number("--row", o->row, 0, 1000000, "Run this row alone (from 0), into DIR/rows");
+  command.flag("--collect", o->collect, "Make study.csv of the rows that are there; run none");
+  command.choice("--engine", o->engine, {"slurm", "snakemake", "parallel"},
+                 "Write what runs the rows elsewhere: slurm, snakemake, parallel");
+  command.flag("--submit", o->submit, "Start it, too");
+  add_json_option(command, o->json);
+  command.flag("--quiet", o->quiet, "Print nothing but errors");
+  command.flag("--force", o->force, "Replace an earlier study in the folder");
+  command.example(
       "tremie study study.toml, which names a base scene, each [[factor]] with its range, and [design] "
       "runs.");
-  command->callback([o, &exit_code] {
+  command.run([o, &exit_code] {
     o->quiet = o->quiet || o->json;
     exit_code = run(*o);
   });

@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/options/command.hpp"
 #include "apparatus/cli/options/json_option.hpp"
 #include "apparatus/cli/process/stop_signals.hpp"
 #include "apparatus/cli/program.hpp"
@@ -109,15 +109,14 @@ int verify(const Options& options) {
 
 void add_command_verify(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
-  auto* command = app.add_subcommand(verify_command.name, verify_command.description);
-  command->add_option("rungs", options->groups, "Rungs by name or number (default: all): " + known_groups());
-  auto* quick =
-      command->add_flag("--quick", options->quick, "Coarser cells, under five minutes (the default)");
-  command->add_flag("--full", options->full, "All cells, under an hour")->excludes(quick);
-  command->add_option("--out", options->out, "Folder for the result")->capture_default_str();
-  add_json_option(*command, options->json);
-  command->add_flag("--force", options->force, "Replace an earlier result in the folder");
-  command->callback([options, &exit_code] { exit_code = verify(*options); });
+  Command command(app, verify_command.name, verify_command.description);
+  command.option("rungs", options->groups, "Rungs by name or number (default: all): " + known_groups());
+  command.flag("--quick", options->quick, "Coarser cells, under five minutes (the default)");
+  command.flag_without("--full", "--quick", options->full, "All cells, under an hour");
+  command.option_with_default("--out", options->out, "Folder for the result");
+  add_json_option(command, options->json);
+  command.flag("--force", options->force, "Replace an earlier result in the folder");
+  command.run([options, &exit_code] { exit_code = verify(*options); });
 }
 
 }  // namespace tremie::cli

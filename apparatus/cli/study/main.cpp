@@ -1,7 +1,5 @@
 // The program `tremie-study`: fits, studies and verification, as `tremie fit` and its like call it.
 
-#include <CLI/CLI.hpp>
-
 #include "apparatus/cli/commands.hpp"
 #include "apparatus/cli/program.hpp"
 #include "apparatus/cli/study/command_calibrate.hpp"

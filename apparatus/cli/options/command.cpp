@@ -1,0 +1,85 @@
+#include "apparatus/cli/options/command.hpp"
+
+#include <CLI/CLI.hpp>
+
+namespace tremie::cli {
+
+Command::Command(CLI::App& program, const char* name, const char* description)
+    : app_(program.add_subcommand(name, description)) {}
+
+Command& Command::required(const char* name, std::string& value, const std::string& meaning) {
+  app_->add_option(name, value, meaning)->required();
+  return *this;
+}
+
+Command& Command::required(const char* name, std::vector<std::string>& values, const std::string& meaning) {
+  app_->add_option(name, values, meaning)->required();
+  return *this;
+}
+
+Command& Command::option(const char* name, std::string& value, const std::string& meaning) {
+  app_->add_option(name, value, meaning);
+  return *this;
+}
+
+Command& Command::option(const char* name, std::vector<std::string>& values, const std::string& meaning) {
+  app_->add_option(name, values, meaning);
+  return *this;
+}
+
+Command& Command::option_with_default(const char* name, std::string& value, const std::string& meaning) {
+  app_->add_option(name, value, meaning)->capture_default_str();
+  return *this;
+}
+
+Command& Command::choice(const char* name, std::string& value, const std::vector<std::string>& allowed,
+                         const std::string& meaning) {
+  app_->add_option(name, value, meaning)->check(CLI::IsMember(allowed));
+  return *this;
+}
+
+template <class Integer>
+Command& Command::number(const char* name, Integer& value, std::int64_t low, std::int64_t high,
+                         const std::string& meaning) {
+  app_->add_option(name, value, meaning)->check(CLI::Range(low, high));
+  return *this;
+}
+
+template Command& Command::number(const char*, int&, std::int64_t, std::int64_t, const std::string&);
+template Command& Command::number(const char*, std::int64_t&, std::int64_t, std::int64_t, const std::string&);
+template Command& Command::number(const char*, std::size_t&, std::int64_t, std::int64_t, const std::string&);
+
+Command& Command::flag(const char* name, bool& value, const std::string& meaning) {
+  app_->add_flag(name, value, meaning);
+  return *this;
+}
+
+Command& Command::flag_without(const char* name, const char* other, bool& value, const std::string& meaning) {
+  app_->add_flag(name, value, meaning)->excludes(app_->get_option(other));
+  return *this;
+}
+
+Command& Command::each(const char* name, std::vector<std::string>& values, const char* form,
+                       const std::string& meaning) {
+  // A callback, because CLI11 would split a value in brackets into several.
+  app_->add_option_function<std::vector<std::string>>(
+          name, [&values](const std::vector<std::string>& given) { values = given; }, meaning)
+      ->allow_extra_args(false)
+      ->take_all()
+      ->type_name(form);
+  return *this;
+}
+
+Command& Command::anything() {
+  app_->allow_extras();
+  return *this;
+}
+
+Command& Command::example(const std::string& text) {
+  app_->footer(text);
+  return *this;
+}
+
+void Command::run(const std::function<void()>& command) { app_->callback(command); }
+
+}  // namespace tremie::cli
