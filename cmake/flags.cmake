@@ -10,7 +10,7 @@ target_compile_options(tremie_flags INTERFACE
   # As g++ has it: in C++ its -Wconversion leaves signs out.
   $<$<CXX_COMPILER_ID:Clang>:-Wno-sign-conversion -Wno-unknown-attributes>
   # g++ 12 reports these inside Eigen's and the standard library's inlined code.
-  $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized -Wno-array-bounds
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized -Wno-array-bounds -Wno-stringop-overread -Wno-restrict
                              -Wno-aggressive-loop-optimizations>)
 
 if(TREMIE_NATIVE AND NOT TREMIE_SANITIZE)

@@ -64,7 +64,7 @@ void add_command_cell(CLI::App& app, int& exit_code) {
   command.required("scene", options->scene, "Scene file (TOML) with apparatus = \"cell\"");
   command.option("--out", options->out, "Folder for the result (default: runs/<scene name>)");
   add_set_option(command, options->overrides);
-  command.option("--threads", options->threads, "Threads; a cell needs one")->check(CLI::Range(1, 1024));
+  command.number("--threads", options->threads, 1, 1024, "Threads; a cell needs one");
   add_json_option(command, options->json);
   command.flag("--quiet", options->quiet, "Print nothing but errors");
   command.flag("--force", options->force, "Replace an earlier result in the folder");

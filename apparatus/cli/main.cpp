@@ -8,6 +8,7 @@
 #include "apparatus/cli/command_cell.hpp"
 #include "apparatus/cli/commands.hpp"
 #include "apparatus/cli/hand_over.hpp"
+#include "apparatus/cli/options/command.hpp"
 #include "apparatus/cli/program.hpp"
 
 namespace {

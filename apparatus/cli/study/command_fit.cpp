@@ -339,11 +339,9 @@ int run(const Options& options) {
 void add_command_fit(CLI::App& app, int& exit_code) {
   auto o = std::make_shared<Options>();
   Command command(app, fit_command.name, fit_command.description);
-  command
-      ->add_option("data", o->data,
+  command.required("data", o->data,
                    "CSV or an instrument's export: speed and torque (flow curve), time and torque (decay), "
-                   "or all three; several files are replicates")
-      ->required();
+                   "or all three; several files are replicates");
   command.option("--vane-radius", o->vane_radius, "\"63.5 mm\" (ICAR) by default");
   command.option("--vane-height", o->vane_height, "\"127 mm\" (ICAR) by default");
   command.option("--container-radius", o->container_radius, "\"143 mm\" (ICAR) by default");
