@@ -85,28 +85,28 @@ double distance(const Point& a, const Point& b) {
   return std::sqrt(sum);
 }
 
-/// Root mean square of the left-out residuals of the runs nearest to the posterior: of those within a tenth
-/// of the range of a point that carries weight, at least eight.
-double error_near_posterior(const State& s, const Emulated& e) {
-  const auto& posterior = s.result.posterior;
+/// How much a run's residual counts: as much as the likeliest of the points about it, within a tenth of the range.
+double nearness(const Posterior& posterior, const Point& run) {
   const double most = posterior.weights[posterior.best];
-  std::vector<std::pair<double, double>> near;  // distance, residual
+  double largest = 0.0;
+  for (std::size_t i = 0; i < posterior.points.size(); ++i) {
+    if (posterior.weights[i] < 1e-6 * most) continue;
+    const double d = distance(posterior.points[i], run) / 0.1;
+    largest = std::max(largest, posterior.weights[i] / most * std::exp(-0.5 * d * d));
+  }
+  return largest;
+}
+
+/// Root mean square of the left-out residuals, each by how near to the posterior its run lies. A run at the rim of
+/// the design, where leaving it out means to extrapolate, says little of the emulator where it is used.
+double error_near_posterior(const State& s, const Emulated& e) {
+  double sum = 0.0, weights = 0.0;
   for (std::size_t k = 0; k < e.trials.size(); ++k) {
-    double least = INFINITY;
-    for (std::size_t i = 0; i < posterior.points.size(); ++i)
-      if (posterior.weights[i] > 0.01 * most)
-        least = std::min(least, distance(posterior.points[i], s.result.trials[e.trials[k]].point));
-    near.emplace_back(least, e.emulator.left_out[k]);
+    const double weight = nearness(s.result.posterior, s.result.trials[e.trials[k]].point);
+    sum += weight * e.emulator.left_out[k] * e.emulator.left_out[k];
+    weights += weight;
   }
-  std::sort(near.begin(), near.end());
-  double sum = 0.0;
-  std::size_t n = 0;
-  for (const auto& [d, residual] : near) {
-    if (n >= 8 && d > 0.1) break;
-    sum += residual * residual;
-    ++n;
-  }
-  return std::sqrt(sum / static_cast<double>(n));
+  return weights > 0.0 ? std::sqrt(sum / weights) : INFINITY;
 }
 
 bool emulators_suffice(const State& s) {

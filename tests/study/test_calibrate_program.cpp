@@ -44,6 +44,28 @@ TEST(Calibrate, FindsTheMixOfADirectRun) {
             0);
 }
 
+// The table of tremie estimate is of the same scene, so that both must say the same of one slump flow: the ends of their
+// intervals differ by less than a tenth of the interval (emulator, table and the quadratures).
+TEST(Calibrate, EstimateSaysTheSameOfOneSlumpFlow) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "LAB.toml", measured("590 mm", "2.5 s") + unknown);
+  ASSERT_EQ(test::shell("'" TREMIE_PROGRAM "' calibrate LAB.toml --out cal --quiet", folder.path()).code, 0);
+  const auto calibrated = nlohmann::json::parse(test::read_file(folder / "cal/summary.json"))["results"];
+  const auto printed = test::shell("'" TREMIE_PROGRAM
+                                   "' estimate --spread '590 mm' --t500 '2.5 s' --t500-error '0.3 s' --json",
+                                   folder.path());
+  const auto estimated = nlohmann::json::parse(printed.text)["results"];
+  const char* keys[][2] = {{"mix.yield_stress", "yield_stress_Pa"},
+                           {"mix.plastic_viscosity", "plastic_viscosity_Pa_s"}};
+  for (const auto& [key, name] : keys) {
+    const auto& ours = calibrated["parameters"][key]["ci95"];
+    const auto& theirs = estimated[name]["ci95"];
+    const double width = ours[1].get<double>() - ours[0].get<double>();
+    for (const int end : {0, 1})
+      EXPECT_NEAR(ours[end].get<double>(), theirs[end].get<double>(), 0.1 * width) << key;
+  }
+}
+
 TEST(Calibrate, MeasurementsThatContradictEachOtherAreNamed) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "LAB.toml", measured("600 mm", "2 s") + measured("480 mm", "2 s") + unknown);

@@ -3,11 +3,9 @@
 #include "apparatus/cli/study/command_calibrate.hpp"
 
 #include <fmt/format.h>
-#include <signal.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -19,6 +17,7 @@
 #include "apparatus/calibration/calibration_page.hpp"
 #include "apparatus/cli/commands.hpp"
 #include "apparatus/cli/options/json_option.hpp"
+#include "apparatus/cli/process/stop_signals.hpp"
 #include "apparatus/cli/program.hpp"
 #include "apparatus/report/rheometer_files.hpp"
 #include "apparatus/report/run_folder.hpp"
@@ -38,16 +37,6 @@ struct Options {
   std::size_t runs = 0;
   bool quiet = false, json = false, force = false;
 };
-
-std::atomic<bool> stop_requested{false};
-
-void stop_on_interrupt() {
-  struct sigaction action = {};
-  action.sa_handler = [](int) { stop_requested = true; };
-  action.sa_flags = SA_RESTART | SA_RESETHAND;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-}
 
 Json parameters_json(const Calibration& c) {
   Json json = Json::object();
