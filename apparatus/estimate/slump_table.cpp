@@ -68,6 +68,13 @@ SlumpTable find_slump_table(std::span<const std::filesystem::path> data_folders)
       "reference_data/slump_flow_table/table.csv is not there ($TREMIE_DATA names its folder)");
 }
 
+SlumpTable at_density(SlumpTable table, double density) {
+  for (auto* nodes : {&table.tau_0, &table.mu})
+    for (double& node : *nodes) node *= density / table.density;
+  table.density = density;
+  return table;
+}
+
 TableReading interpolate(const SlumpTable& table, double tau_0, double mu, double density) {
   const double scale = table.density / density;
   const Place x = place_in(table.tau_0, tau_0 * scale), y = place_in(table.mu, mu * scale);

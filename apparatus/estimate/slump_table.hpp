@@ -34,6 +34,9 @@ SlumpTable read_slump_table(const std::filesystem::path& file);
 /// The table in the first of these folders (reference_data) that has one. Throws std::runtime_error.
 SlumpTable find_slump_table(std::span<const std::filesystem::path> data_folders);
 
+/// The same flows at another density: tau_0/rho and mu/rho stay.
+SlumpTable at_density(SlumpTable table, double density);
+
 /// Bilinear in ln(tau_0), ln(mu); ln(t500). Gravity and yield stress balance in tau_0/rho and mu/rho, so that
 /// one density serves all. Inside of the table alone.
 TableReading interpolate(const SlumpTable& table, double tau_0, double mu, double density);
