@@ -84,6 +84,7 @@ TableReading interpolate(const SlumpTable& table, double tau_0, double mu, doubl
   TableReading reading;
   double log_t500 = 0.0;
   for (int k = 0; k < 4; ++k) {
+    if (w[k] == 0.0) continue;  // a node that counts for nothing may be not-a-number
     reading.spread += w[k] * table.spread[corner[k]];
     log_t500 += w[k] * std::log(table.t500[corner[k]]);
   }

@@ -8,31 +8,33 @@
 namespace tremie::validation {
 namespace {
 
-std::string figure(double value) {
-  if (!std::isfinite(value)) return "—";
+/// Digits behind the point that a person wants to read.
+int digits_of(double value) {
   const double size = std::abs(value);
-  return size >= 100.0  ? fmt::format("{:.0f}", value)
-         : size >= 10.0 ? fmt::format("{:.1f}", value)
-                        : fmt::format("{:.2f}", value);
+  return size >= 100.0 ? 0 : size >= 10.0 ? 1 : 2;
 }
 
 std::string with_error(double value, double error) {
-  return std::isfinite(error) ? fmt::format("{} ± {}", figure(value), figure(error)) : figure(value);
+  const int digits = digits_of(value);
+  if (!std::isfinite(value)) return "—";
+  return std::isfinite(error) ? fmt::format("{:.{}f} ± {:.{}f}", value, digits, error, digits)
+                              : fmt::format("{:.{}f}", value, digits);
 }
 
 bool is_missed(const Comparison& c) { return verdict(c) == "missed"; }
 
 std::string row(const Comparison& c) {
-  const std::string v = verdict(c);
-  return fmt::format("| {} | {} | {} | {:+.2g} | {} |\n", c.unit.empty() ? c.what : c.what + ", " + c.unit,
+  const double off = c.predicted - c.measured;
+  const std::string judged =
+      is_missed(c) ? fmt::format("**missed**, {:+.{}f}", off, digits_of(c.measured)) : verdict(c);
+  return fmt::format("| {} | {} | {} | {} |\n", c.unit.empty() ? c.what : c.what + ", " + c.unit,
                      with_error(c.measured, c.measured_error), with_error(c.predicted, c.predicted_error),
-                     c.predicted - c.measured, v == "missed" ? "**missed**" : v);
+                     judged);
 }
 
 std::string section_text(const Section& section) {
-  std::string text =
-      fmt::format("## {}\n\n{}\n\n| | measured | predicted | difference | verdict |\n|---|---|---|---|---|\n",
-                  section.title, section.text);
+  std::string text = fmt::format("## {}\n\n{}\n\n| | measured | predicted | verdict |\n|---|---|---|---|\n",
+                                 section.title, section.text);
   for (const Comparison& c : section.comparisons) text += row(c);
   for (const auto& finding : section.findings) text += "\n" + finding + "\n";
   return text + "\n";
@@ -46,13 +48,11 @@ std::string head(const std::vector<Section>& sections, double wall_seconds) {
       (miss ? missed : c.note.empty() ? met : open) += 1;
     }
   return fmt::format(
-      "# Validation\n\nWhat was measured on concrete and paste, beside what Tremie predicts. `tremie verify "
-      "--validation` "
-      "remakes this page ({:.0f} s here) with `validation.csv` and the input of its calibrations.\n\n**{} of "
-      "{} met, {} missed, {} "
-      "without a verdict.** ± is the half-width of a 95 % interval; a prediction is met where the difference "
-      "is within both "
-      "together.\n\n",
+      "# Validation\n\nWhat was measured, beside what Tremie predicts. `tremie verify --validation` remakes "
+      "this page "
+      "({:.0f} s here), `validation.csv` and the input of its calibrations.\n\n**{} of {} met, {} missed, {} "
+      "without a "
+      "verdict.** ± is half of a 95 % interval; met: the difference is within both together.\n\n",
       wall_seconds, met, met + missed + open, missed, open);
 }
 
