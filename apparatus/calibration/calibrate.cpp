@@ -5,13 +5,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apparatus/calibration/chains.hpp"
 #include "apparatus/study/design.hpp"
 
 namespace tremie::calibration {
 namespace {
 
-constexpr double enough = 1.0 / 3.0;    ///< of the measurement's error: what the emulator's may be
-constexpr double far_off = 3.0;         ///< standard errors at which a measurement contradicts the others
+constexpr double enough = 1.0 / 3.0;  ///< of the measurement's error: what the emulator's may be
+constexpr double far_off = 3.0;       ///< standard errors at which a measurement contradicts the others
+constexpr double most_r_hat = 1.05, fewest_draws = 200.0;
 constexpr double contradiction = 0.01;  ///< chance of a chi square so large that calls for a reason
 
 /// A reading's emulator, and its predictions at the posterior's points.
@@ -66,17 +68,38 @@ double variance_of(const State& s, const Emulated& e, const Prediction& p) {
   return error * error + p.variance + cells * cells;
 }
 
-void update_posterior(State& s) {
-  std::vector<double> log_likelihood(s.points.size(), 0.0);
+double log_likelihood_of(const State& s, const Emulated& e, const Prediction& p) {
+  const double variance = variance_of(s, e, p), off = reading_of(s, e).value - p.mean;
+  return -0.5 * (off * off / variance + std::log(variance));
+}
+
+/// At every point of s.points.
+std::vector<double> log_likelihoods(const State& s) {
+  std::vector<double> sums(s.points.size(), 0.0);
   for (const Emulated& e : s.emulated) {
     if (!is_measured(s, e) || !e.trained) continue;
-    for (std::size_t i = 0; i < s.points.size(); ++i) {
-      const double variance = variance_of(s, e, e.predictions[i]);
-      const double off = reading_of(s, e).value - e.predictions[i].mean;
-      log_likelihood[i] -= 0.5 * (off * off / variance + std::log(variance));
-    }
+    for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += log_likelihood_of(s, e, e.predictions[i]);
   }
-  s.result.posterior = make_posterior(s.points, log_likelihood);
+  return sums;
+}
+
+void update_posterior(State& s) { s.result.posterior = make_posterior(s.points, log_likelihoods(s)); }
+
+/// Draws of Markov chains in place of weighted points, which are few where the posterior is narrow in many directions.
+void draw_chains(State& s) {
+  const Chains chains = sample(s.result.posterior, [&](const Point& x) {
+    double sum = 0.0;
+    for (const Emulated& e : s.emulated)
+      if (is_measured(s, e) && e.trained) sum += log_likelihood_of(s, e, predict(e.emulator, {x}).front());
+    return sum;
+  });
+  s.points = chains.points;
+  for (Emulated& e : s.emulated)
+    if (e.trained) e.predictions = predict(e.emulator, s.points);
+  update_posterior(s);  // for its best point
+  s.result.posterior.weights.assign(s.points.size(), 1.0 / static_cast<double>(s.points.size()));
+  s.result.r_hat = chains.r_hat;
+  s.result.effective_points = chains.effective;
 }
 
 double distance(const Point& a, const Point& b) {
@@ -237,6 +260,13 @@ void report_emulators(State& s) {
       s.result.reasons.push_back(fmt::format(
           "the emulator of {} {} is good to {:.3g}, more than a third of the measurement's error, {:.3g}",
           r.test, r.result, r.emulator_error, r.error));
+  if (s.result.r_hat) {
+    if (*s.result.r_hat > most_r_hat || s.result.effective_points < fewest_draws)
+      s.result.reasons.push_back(fmt::format(
+          "the chains have not converged: R-hat {:.3f}, {:.0f} independent draws; at most {} and at least {}",
+          *s.result.r_hat, s.result.effective_points, most_r_hat, fewest_draws));
+    return;
+  }
   s.result.effective_points = effective_points(s.result.posterior);
   if (s.result.effective_points < 12.0)
     s.result.reasons.push_back(fmt::format(
@@ -264,6 +294,9 @@ void report_forecasts(State& s) {
 void report(State& s) {
   s.discretisation = discretisation_errors(s.lab, s.points[s.result.posterior.best], s.settings);
   update_posterior(s);
+  const bool emulated = std::any_of(s.emulated.begin(), s.emulated.end(),
+                                    [&](const Emulated& e) { return is_measured(s, e) && e.trained; });
+  if (s.lab.unknowns.size() > 2 && emulated) draw_chains(s);
   report_parameters(s);
   report_readings(s);
   report_contradictions(s);

@@ -143,6 +143,7 @@ Json results_json(const Lab& lab, const Calibration& c, const std::vector<calibr
           {"readings", readings_json(c)},
           {"chi_square", c.chi_square},
           {"posterior_points", c.effective_points},
+          {"r_hat", c.r_hat ? Json(*c.r_hat) : Json(nullptr)},
           {"runs", c.trials.size() * lab.tests.size()},
           {"runs_cpu_s", cpu}};
 }
