@@ -23,6 +23,7 @@ struct Emulated {
   Emulator emulator;
   std::vector<Prediction> predictions;
   std::vector<std::size_t> trials;  ///< those with a number
+  double error = 0.0;               ///< error_near_posterior of the last weighted posterior
 };
 
 struct State {
@@ -219,7 +220,7 @@ void report_readings(State& s) {
     const Prediction& best = e.predictions[s.result.posterior.best];
     const double deviation = (m.value - best.mean) / std::sqrt(variance_of(s, e, best));
     s.result.chi_square += deviation * deviation;
-    s.result.readings.push_back({label, m.result, m.value, m.error, error_near_posterior(s, e),
+    s.result.readings.push_back({label, m.result, m.value, m.error, e.error,
                                  s.discretisation[e.test][e.reading], best.mean, deviation,
                                  left_out_of(s, e)});
   }
@@ -296,6 +297,8 @@ void report(State& s) {
   update_posterior(s);
   const bool emulated = std::any_of(s.emulated.begin(), s.emulated.end(),
                                     [&](const Emulated& e) { return is_measured(s, e) && e.trained; });
+  for (Emulated& e : s.emulated)
+    if (e.trained) e.error = error_near_posterior(s, e);
   if (s.lab.unknowns.size() > 2 && emulated) draw_chains(s);
   report_parameters(s);
   report_readings(s);
@@ -309,7 +312,7 @@ State start(const Lab& lab, const Settings& settings) {
   for (std::size_t test = 0; test < lab.tests.size(); ++test) {
     s.discretisation.emplace_back(lab.tests[test].readings.size(), 0.0);
     for (std::size_t reading = 0; reading < lab.tests[test].readings.size(); ++reading)
-      s.emulated.push_back({test, reading, false, {}, {}, {}});
+      s.emulated.push_back({test, reading, false, {}, {}, {}, 0.0});
   }
   return s;
 }

@@ -61,6 +61,11 @@ bool can_be_read(const Lab& lab, const Test& test) {
   }
 }
 
+/// Without thixotropy a longer rest is the same test.
+bool same_reading(const Advice& a, const Advice& b) {
+  return a.result == b.result && a.value == b.value && a.scatter == b.scatter;
+}
+
 double mean(const std::vector<double>& values) {
   double sum = 0.0;
   for (const double v : values) sum += v / static_cast<double>(values.size());
@@ -122,7 +127,9 @@ std::vector<Advice> advise(const Lab& lab, const Calibration& calibration, const
   if (asked.tests.empty() || !run_trials(asked, drawn(calibration.posterior), settings, trials)) return {};
   std::vector<Advice> list;
   for (std::size_t i = 0; i < kept.size(); ++i)
-    for (const Advice& advice : judged(lab, kept[i], trials, i)) list.push_back(advice);
+    for (const Advice& advice : judged(lab, kept[i], trials, i))
+      if (std::none_of(list.begin(), list.end(), [&](const Advice& a) { return same_reading(a, advice); }))
+        list.push_back(advice);
   std::stable_sort(list.begin(), list.end(),
                    [](const Advice& a, const Advice& b) { return a.bits > b.bits; });
   return list;

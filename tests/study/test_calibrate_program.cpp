@@ -25,7 +25,7 @@ std::string measured(const std::string& spread, const std::string& t500) {
 TEST(Calibrate, FindsTheMixOfADirectRun) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "LAB.toml", measured("555 mm", "2.56 s") + unknown);
-  const auto result = test::shell("'" TREMIE_PROGRAM "' calibrate LAB.toml --out cal", folder.path());
+  const auto result = test::shell("'" TREMIE_PROGRAM "' calibrate LAB.toml --out cal --next", folder.path());
   ASSERT_EQ(result.code, 0) << result.text;
   const auto results = nlohmann::json::parse(test::read_file(folder / "cal/summary.json"))["results"];
   const double truth[] = {54.0, 35.8};
@@ -38,6 +38,15 @@ TEST(Calibrate, FindsTheMixOfADirectRun) {
     EXPECT_EQ(p["told"], "identified");
   }
   EXPECT_LT(results["emulator_error"]["over_measurement_error"], 1.0 / 3.0);
+  // What to measure next: the most telling first. A spread is measured here already, so that another is worth about what
+  // halves its variance, half a bit.
+  const auto& next = results["next"];
+  ASSERT_GT(next.size(), 3u);
+  for (std::size_t i = 1; i < next.size(); ++i) EXPECT_LE(next[i]["bits"], next[i - 1]["bits"]);
+  for (const auto& advice : next)
+    if (advice["result"] == "spread_mm") {
+      EXPECT_NEAR(advice["bits"].get<double>(), 0.5, 0.3);
+    }
   EXPECT_EQ(test::shell("'" TREMIE_PROGRAM "' run cal/mix.toml --set test.duration=\"0.1 s\" --quiet",
                         folder.path())
                 .code,
