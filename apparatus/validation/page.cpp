@@ -27,13 +27,13 @@ std::string row(const Comparison& c) {
   const double off = c.predicted - c.measured;
   const std::string judged =
       is_missed(c) ? fmt::format("**missed**, {:+.{}f}", off, digits_of(c.measured)) : verdict(c);
-  return fmt::format("| {} | {} | {} | {} |\n", c.unit.empty() ? c.what : c.what + ", " + c.unit,
+  return fmt::format("|{}|{}|{}|{}|\n", c.unit.empty() ? c.what : c.what + ", " + c.unit,
                      with_error(c.measured, c.measured_error), with_error(c.predicted, c.predicted_error),
                      judged);
 }
 
 std::string section_text(const Section& section) {
-  std::string text = fmt::format("## {}\n\n{}\n\n| | measured | predicted | verdict |\n|---|---|---|---|\n",
+  std::string text = fmt::format("## {}\n\n{}\n\n| |measured|predicted|verdict|\n|---|---|---|---|\n",
                                  section.title, section.text);
   for (const Comparison& c : section.comparisons) text += row(c);
   for (const auto& finding : section.findings) text += "\n" + finding + "\n";
