@@ -192,7 +192,7 @@ Section alpha_of_pairs(const Settings& settings) {
         fmt::format("{}{} {:.2f} [{:.2f}, {:.2f}]", third == 0 ? "" : ", ", pairs[third].mix->name,
                     coefficient_of(pairs[third].lab, own, 0.5), coefficient_of(pairs[third].lab, own, 0.025),
                     coefficient_of(pairs[third].lab, own, 0.975));
-    alphas += fmt::format("{}: {}. ", pairs[third].mix->name,
+    alphas += fmt::format("{}{} {}", third == 0 ? "" : ", ", pairs[third].mix->name,
                           in_words(told_of(pairs[third].lab, likelihood[third])));
   }
   const auto all = told_of(pairs[0].lab, product(product(likelihood[0], likelihood[1]), likelihood[2]));

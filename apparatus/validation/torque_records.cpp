@@ -96,6 +96,11 @@ void compare_paste(Section& section) {
                                    stress[next], peak_scatter * stress[next], line.at(rest[next]),
                                    line.half_width(rest[next])});
   }
+  if (reading.structuration.early && reading.structuration.late)
+    section.findings.push_back(
+        fmt::format("The paste gains {:.1f} Pa/s between its first two rests, {:.1f} between its "
+                    "last: every line overshoots the next rest.",
+                    *reading.structuration.early, *reading.structuration.late));
 }
 
 }  // namespace
@@ -115,9 +120,8 @@ Section torque_records(const Settings& settings) {
   compare_site(section);
   compare_paste(section);
   section.findings.push_back(
-      "A_thix is not constant: the paste gains 6 Pa/s between its first rests, 2 between its last. Its decay "
-      "at 40 rpm "
-      "follows no kinetics of Tremie's (6 % off, smoothly), and `tremie fit` gives no α for it.");
+      "The paste's decay at 40 rpm follows no kinetics of Tremie's, and `tremie fit` gives no α for it (code "
+      "3).");
   return section;
 }
 
