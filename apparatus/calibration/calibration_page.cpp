@@ -204,6 +204,11 @@ std::string calibration_html(const Lab& lab, const Calibration& c, const std::ve
   if (!advice.empty()) page.grids.push_back(advice_table(c, advice));
   page.words = {"Emulator: a Gaussian process through the runs, which stands for a run in the likelihood.",
                 "Off by standard errors: measured less best fit, over the errors of both together."};
+  if (!advice.empty())
+    page.words.push_back(
+        "Bits: the information that a test is expected to give; one halves the range of what is possible. "
+        "Interval left: "
+        "of the interval that a parameter has now.");
   page.made = report::facts_of_this_run(command);
   page.scene = input, page.scene_words = "The laboratory's file";
   return to_html(page);

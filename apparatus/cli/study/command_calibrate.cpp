@@ -188,6 +188,11 @@ void write_result(const Lab& lab, const Calibration& c, const std::vector<calibr
   io::write_text(folder / "summary.json", summary.dump(2) + "\n");
 }
 
+int stopped() {
+  fmt::print(stderr, "interrupted: nothing written\n");
+  return interrupted;
+}
+
 int run(const Options& options) {
   const Stopwatch watch;
   const Lab lab = calibration::read_lab(options.file);
@@ -204,12 +209,12 @@ int run(const Options& options) {
       std::fflush(stdout);
     };
   const Calibration result = calibration::calibrate(lab, settings);
-  if (result.interrupted) return interrupted;
+  if (result.interrupted) return stopped();
   std::vector<calibration::Advice> advice;
   if (options.next) {
     if (settings.say) settings.say("what to measure next");
     advice = calibration::advise(lab, result, settings);
-    if (stop_requested) return interrupted;
+    if (stop_requested) return stopped();
   }
   write_result(lab, result, advice, watch, folder.staging());
   folder.publish();
@@ -236,7 +241,8 @@ void add_command_calibrate(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(1, 4096));
   command->add_option("--runs", o->runs, "Runs of each test at most (default: 30 for each unknown)")
       ->check(CLI::Range(10, 100000));
-  command->add_flag("--next", o->next, "Say, too, which further test would tell most; about twice the time");
+  command->add_flag("--next", o->next,
+                    "Say, too, which further test would tell most; about four times the time");
   add_json_option(*command, o->json);
   command->add_flag("--quiet", o->quiet, "Print nothing but errors");
   command->add_flag("--force", o->force, "Replace an earlier result in the folder");
