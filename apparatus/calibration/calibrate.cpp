@@ -5,13 +5,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apparatus/calibration/chains.hpp"
 #include "apparatus/study/design.hpp"
 
 namespace tremie::calibration {
 namespace {
 
-constexpr double enough = 1.0 / 3.0;    ///< of the measurement's error: what the emulator's may be
-constexpr double far_off = 3.0;         ///< standard errors at which a measurement contradicts the others
+constexpr double enough = 1.0 / 3.0;  ///< of the measurement's error: what the emulator's may be
+constexpr double far_off = 3.0;       ///< standard errors at which a measurement contradicts the others
+constexpr double most_r_hat = 1.05, fewest_draws = 200.0;
 constexpr double contradiction = 0.01;  ///< chance of a chi square so large that calls for a reason
 
 /// A reading's emulator, and its predictions at the posterior's points.
@@ -21,6 +23,7 @@ struct Emulated {
   Emulator emulator;
   std::vector<Prediction> predictions;
   std::vector<std::size_t> trials;  ///< those with a number
+  double error = 0.0;               ///< error_near_posterior of the last weighted posterior
 };
 
 struct State {
@@ -66,17 +69,38 @@ double variance_of(const State& s, const Emulated& e, const Prediction& p) {
   return error * error + p.variance + cells * cells;
 }
 
-void update_posterior(State& s) {
-  std::vector<double> log_likelihood(s.points.size(), 0.0);
+double log_likelihood_of(const State& s, const Emulated& e, const Prediction& p) {
+  const double variance = variance_of(s, e, p), off = reading_of(s, e).value - p.mean;
+  return -0.5 * (off * off / variance + std::log(variance));
+}
+
+/// At every point of s.points.
+std::vector<double> log_likelihoods(const State& s) {
+  std::vector<double> sums(s.points.size(), 0.0);
   for (const Emulated& e : s.emulated) {
     if (!is_measured(s, e) || !e.trained) continue;
-    for (std::size_t i = 0; i < s.points.size(); ++i) {
-      const double variance = variance_of(s, e, e.predictions[i]);
-      const double off = reading_of(s, e).value - e.predictions[i].mean;
-      log_likelihood[i] -= 0.5 * (off * off / variance + std::log(variance));
-    }
+    for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += log_likelihood_of(s, e, e.predictions[i]);
   }
-  s.result.posterior = make_posterior(s.points, log_likelihood);
+  return sums;
+}
+
+void update_posterior(State& s) { s.result.posterior = make_posterior(s.points, log_likelihoods(s)); }
+
+/// Draws of Markov chains in place of weighted points, which are few where the posterior is narrow in many directions.
+void draw_chains(State& s) {
+  const Chains chains = sample(s.result.posterior, [&](const Point& x) {
+    double sum = 0.0;
+    for (const Emulated& e : s.emulated)
+      if (is_measured(s, e) && e.trained) sum += log_likelihood_of(s, e, predict(e.emulator, {x}).front());
+    return sum;
+  });
+  s.points = chains.points;
+  for (Emulated& e : s.emulated)
+    if (e.trained) e.predictions = predict(e.emulator, s.points);
+  update_posterior(s);  // for its best point
+  s.result.posterior.weights.assign(s.points.size(), 1.0 / static_cast<double>(s.points.size()));
+  s.result.r_hat = chains.r_hat;
+  s.result.effective_points = chains.effective;
 }
 
 double distance(const Point& a, const Point& b) {
@@ -85,28 +109,28 @@ double distance(const Point& a, const Point& b) {
   return std::sqrt(sum);
 }
 
-/// Root mean square of the left-out residuals of the runs nearest to the posterior: of those within a tenth
-/// of the range of a point that carries weight, at least eight.
-double error_near_posterior(const State& s, const Emulated& e) {
-  const auto& posterior = s.result.posterior;
+/// How much a run's residual counts: as much as the likeliest of the points about it, within a tenth of the range.
+double nearness(const Posterior& posterior, const Point& run) {
   const double most = posterior.weights[posterior.best];
-  std::vector<std::pair<double, double>> near;  // distance, residual
+  double largest = 0.0;
+  for (std::size_t i = 0; i < posterior.points.size(); ++i) {
+    if (posterior.weights[i] < 1e-6 * most) continue;
+    const double d = distance(posterior.points[i], run) / 0.1;
+    largest = std::max(largest, posterior.weights[i] / most * std::exp(-0.5 * d * d));
+  }
+  return largest;
+}
+
+/// Root mean square of the left-out residuals, each by how near to the posterior its run lies. A run at the rim of
+/// the design, where leaving it out means to extrapolate, says little of the emulator where it is used.
+double error_near_posterior(const State& s, const Emulated& e) {
+  double sum = 0.0, weights = 0.0;
   for (std::size_t k = 0; k < e.trials.size(); ++k) {
-    double least = INFINITY;
-    for (std::size_t i = 0; i < posterior.points.size(); ++i)
-      if (posterior.weights[i] > 0.01 * most)
-        least = std::min(least, distance(posterior.points[i], s.result.trials[e.trials[k]].point));
-    near.emplace_back(least, e.emulator.left_out[k]);
+    const double weight = nearness(s.result.posterior, s.result.trials[e.trials[k]].point);
+    sum += weight * e.emulator.left_out[k] * e.emulator.left_out[k];
+    weights += weight;
   }
-  std::sort(near.begin(), near.end());
-  double sum = 0.0;
-  std::size_t n = 0;
-  for (const auto& [d, residual] : near) {
-    if (n >= 8 && d > 0.1) break;
-    sum += residual * residual;
-    ++n;
-  }
-  return std::sqrt(sum / static_cast<double>(n));
+  return weights > 0.0 ? std::sqrt(sum / weights) : INFINITY;
 }
 
 bool emulators_suffice(const State& s) {
@@ -196,7 +220,7 @@ void report_readings(State& s) {
     const Prediction& best = e.predictions[s.result.posterior.best];
     const double deviation = (m.value - best.mean) / std::sqrt(variance_of(s, e, best));
     s.result.chi_square += deviation * deviation;
-    s.result.readings.push_back({label, m.result, m.value, m.error, error_near_posterior(s, e),
+    s.result.readings.push_back({label, m.result, m.value, m.error, e.error,
                                  s.discretisation[e.test][e.reading], best.mean, deviation,
                                  left_out_of(s, e)});
   }
@@ -237,6 +261,13 @@ void report_emulators(State& s) {
       s.result.reasons.push_back(fmt::format(
           "the emulator of {} {} is good to {:.3g}, more than a third of the measurement's error, {:.3g}",
           r.test, r.result, r.emulator_error, r.error));
+  if (s.result.r_hat) {
+    if (*s.result.r_hat > most_r_hat || s.result.effective_points < fewest_draws)
+      s.result.reasons.push_back(fmt::format(
+          "the chains have not converged: R-hat {:.3f}, {:.0f} independent draws; at most {} and at least {}",
+          *s.result.r_hat, s.result.effective_points, most_r_hat, fewest_draws));
+    return;
+  }
   s.result.effective_points = effective_points(s.result.posterior);
   if (s.result.effective_points < 12.0)
     s.result.reasons.push_back(fmt::format(
@@ -264,6 +295,11 @@ void report_forecasts(State& s) {
 void report(State& s) {
   s.discretisation = discretisation_errors(s.lab, s.points[s.result.posterior.best], s.settings);
   update_posterior(s);
+  const bool emulated = std::any_of(s.emulated.begin(), s.emulated.end(),
+                                    [&](const Emulated& e) { return is_measured(s, e) && e.trained; });
+  for (Emulated& e : s.emulated)
+    if (e.trained) e.error = error_near_posterior(s, e);
+  if (s.lab.unknowns.size() > 2 && emulated) draw_chains(s);
   report_parameters(s);
   report_readings(s);
   report_contradictions(s);
@@ -276,7 +312,7 @@ State start(const Lab& lab, const Settings& settings) {
   for (std::size_t test = 0; test < lab.tests.size(); ++test) {
     s.discretisation.emplace_back(lab.tests[test].readings.size(), 0.0);
     for (std::size_t reading = 0; reading < lab.tests[test].readings.size(); ++reading)
-      s.emulated.push_back({test, reading, false, {}, {}, {}});
+      s.emulated.push_back({test, reading, false, {}, {}, {}, 0.0});
   }
   return s;
 }
@@ -286,7 +322,7 @@ State start(const Lab& lab, const Settings& settings) {
 Calibration calibrate(const Lab& lab, const Settings& settings) {
   const std::size_t n = lab.unknowns.size();
   const std::size_t first = settings.first_trials ? settings.first_trials : 6 + 6 * n;
-  const std::size_t most = settings.most_trials ? settings.most_trials : 20 * n;
+  const std::size_t most = settings.most_trials ? settings.most_trials : 30 * n;
   const std::size_t batch = std::max<std::size_t>(4, static_cast<std::size_t>(settings.jobs));
   State s = start(lab, settings);
   if (!run_more(s, study::unit_points(study::Method::latin_hypercube, first, n, 1))) return s.result;

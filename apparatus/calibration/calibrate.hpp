@@ -53,7 +53,8 @@ struct Calibration {
   std::vector<Trial> trials;
   Posterior posterior;
   double chi_square = 0.0;           ///< of the best fit
-  double effective_points = 0.0;     ///< of the posterior's quadrature
+  double effective_points = 0.0;     ///< of the posterior's quadrature, or independent draws of its chains
+  std::optional<double> r_hat = {};  ///< of the chains; three unknowns and more
   std::vector<std::string> reasons;  ///< why it is not to be trusted
   bool interrupted = false;
 };

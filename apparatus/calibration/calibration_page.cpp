@@ -141,6 +141,24 @@ report::GridTable forecast_table(const Lab& lab, const Calibration& c) {
   return table;
 }
 
+report::GridTable advice_table(const Calibration& c, const std::vector<Advice>& advice) {
+  report::GridTable table{"What to measure next",
+                          {"test", "reading", "expected", "± by the posterior", "± of the test", "bits"},
+                          {}};
+  for (const auto& p : c.parameters) table.columns.push_back("interval left, " + p.key);
+  for (const auto& a : advice) {
+    std::vector<std::string> row{a.test,
+                                 with_unit(words_of(a.result), a.unit),
+                                 fmt::format("{:.3g}", a.value),
+                                 fmt::format("{:.2g}", a.scatter),
+                                 fmt::format("{:.2g}", a.error),
+                                 fmt::format("{:.1f}", a.bits)};
+    for (const double left : a.left) row.push_back(fmt::format("{:.0f} %", 100.0 * left));
+    table.rows.push_back(row);
+  }
+  return table;
+}
+
 report::Verdict verdict_of(const Calibration& c) {
   if (c.readings.empty()) return {};
   const auto worst = std::max_element(c.readings.begin(), c.readings.end(), [](const auto& a, const auto& b) {
@@ -165,8 +183,8 @@ void add_figures(const Lab& lab, const Calibration& c, report::Page& page) {
 
 }  // namespace
 
-std::string calibration_html(const Lab& lab, const Calibration& c, const std::string& input,
-                             const std::string& command) {
+std::string calibration_html(const Lab& lab, const Calibration& c, const std::vector<Advice>& advice,
+                             const std::string& input, const std::string& command) {
   report::Page page;
   std::vector<std::string> values;
   for (const auto& p : c.parameters) values.push_back(fmt::format("{} {}", p.key, interval_text(p)));
@@ -183,8 +201,14 @@ std::string calibration_html(const Lab& lab, const Calibration& c, const std::st
   add_figures(lab, c, page);
   page.grids = {parameter_table(c), fit_table(c)};
   if (auto forecasts = forecast_table(lab, c); !forecasts.rows.empty()) page.grids.push_back(forecasts);
+  if (!advice.empty()) page.grids.push_back(advice_table(c, advice));
   page.words = {"Emulator: a Gaussian process through the runs, which stands for a run in the likelihood.",
                 "Off by standard errors: measured less best fit, over the errors of both together."};
+  if (!advice.empty())
+    page.words.push_back(
+        "Bits: the information that a test is expected to give; one halves the range of what is possible. "
+        "Interval left: "
+        "of the interval that a parameter has now.");
   page.made = report::facts_of_this_run(command);
   page.scene = input, page.scene_words = "The laboratory's file";
   return to_html(page);

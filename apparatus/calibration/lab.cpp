@@ -51,6 +51,18 @@ std::string text_of(const Node& node, const std::string& key) {
   complain(node, key, "must be one value");
 }
 
+/// As --set takes it: a list ("model.cell") keeps its brackets.
+std::string override_text(const Node& node, const std::string& key) {
+  const auto* list = std::get_if<scene::Array>(&node.value);
+  if (!list) return text_of(node, key);
+  std::string text;
+  for (const Node& item : *list) {
+    const bool quoted = std::holds_alternative<std::string>(item.value);
+    text += (text.empty() ? "" : ", ") + (quoted ? '"' + text_of(item, key) + '"' : text_of(item, key));
+  }
+  return "[" + text + "]";
+}
+
 double quantity(const Node& node, const std::string& key, const Known& known) {
   const auto text = std::get_if<std::string>(&node.value);
   double value = 0.0;
@@ -105,7 +117,7 @@ Test read_test(const Node& node, const std::string& label, bool measured) {
   for (const auto& [key, value] : table_of(node, label)) {
     if (key == "apparatus" || is_reading(key, test.apparatus)) continue;
     const std::string full = key.find('.') == std::string::npos ? "test." + key : key;
-    test.overrides.push_back(full + "=" + text_of(value, key));
+    test.overrides.push_back(full + "=" + override_text(value, key));
   }
   for (const Known& known : known_readings) {
     if (test.apparatus != known.apparatus) continue;
@@ -160,7 +172,7 @@ void read_known(const Node& document, Lab& lab) {
   const Node* known = scene::find(document, "known");
   if (!known) return;
   for (const auto& [key, value] : table_of(*known, "known"))
-    lab.known.push_back(key + "=" + text_of(value, key));
+    lab.known.push_back(key + "=" + override_text(value, key));
 }
 
 void read_unknowns(const Node& document, Lab& lab) {

@@ -68,6 +68,13 @@ SlumpTable find_slump_table(std::span<const std::filesystem::path> data_folders)
       "reference_data/slump_flow_table/table.csv is not there ($TREMIE_DATA names its folder)");
 }
 
+SlumpTable at_density(SlumpTable table, double density) {
+  for (auto* nodes : {&table.tau_0, &table.mu})
+    for (double& node : *nodes) node *= density / table.density;
+  table.density = density;
+  return table;
+}
+
 TableReading interpolate(const SlumpTable& table, double tau_0, double mu, double density) {
   const double scale = table.density / density;
   const Place x = place_in(table.tau_0, tau_0 * scale), y = place_in(table.mu, mu * scale);
@@ -77,6 +84,7 @@ TableReading interpolate(const SlumpTable& table, double tau_0, double mu, doubl
   TableReading reading;
   double log_t500 = 0.0;
   for (int k = 0; k < 4; ++k) {
+    if (w[k] == 0.0) continue;  // a node that counts for nothing may be not-a-number
     reading.spread += w[k] * table.spread[corner[k]];
     log_t500 += w[k] * std::log(table.t500[corner[k]]);
   }

@@ -20,7 +20,7 @@ struct SlumpTable {
 
 /// One standard error of what is interpolated against a direct run, the scatter of runs included.
 inline constexpr double table_spread_error = 0.003;  ///< [m]
-inline constexpr double table_t500_error = 0.015;    ///< of t500
+inline constexpr double table_t500_error = 0.02;    ///< of t500
 
 struct TableReading {
   double spread = 0.0;
@@ -33,6 +33,9 @@ SlumpTable read_slump_table(const std::filesystem::path& file);
 
 /// The table in the first of these folders (reference_data) that has one. Throws std::runtime_error.
 SlumpTable find_slump_table(std::span<const std::filesystem::path> data_folders);
+
+/// The same flows at another density: tau_0/rho and mu/rho stay.
+SlumpTable at_density(SlumpTable table, double density);
 
 /// Bilinear in ln(tau_0), ln(mu); ln(t500). Gravity and yield stress balance in tau_0/rho and mu/rho, so that
 /// one density serves all. Inside of the table alone.

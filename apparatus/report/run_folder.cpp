@@ -40,7 +40,7 @@ bool is_there(const fs::path& path) {
 bool is_earlier_result(const fs::path& folder) {
   // a run leaves its scene, a fit its readings, a calibration its mix, a comparison its table, a verification its
   // document
-  if (is_there(folder / "VERIFICATION.md")) return true;
+  if (is_there(folder / "VERIFICATION.md") || is_there(folder / "VALIDATION.md")) return true;
   if (!is_there(folder / "summary.json")) return false;
   for (const char* file : {"scene.toml", "fit.csv", "fit_1.csv", "sections.csv", "mix.toml", "compare.csv"})
     if (is_there(folder / file)) return true;

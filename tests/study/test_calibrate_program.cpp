@@ -25,7 +25,7 @@ std::string measured(const std::string& spread, const std::string& t500) {
 TEST(Calibrate, FindsTheMixOfADirectRun) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "LAB.toml", measured("555 mm", "2.56 s") + unknown);
-  const auto result = test::shell("'" TREMIE_PROGRAM "' calibrate LAB.toml --out cal", folder.path());
+  const auto result = test::shell("'" TREMIE_PROGRAM "' calibrate LAB.toml --out cal --next", folder.path());
   ASSERT_EQ(result.code, 0) << result.text;
   const auto results = nlohmann::json::parse(test::read_file(folder / "cal/summary.json"))["results"];
   const double truth[] = {54.0, 35.8};
@@ -38,10 +38,41 @@ TEST(Calibrate, FindsTheMixOfADirectRun) {
     EXPECT_EQ(p["told"], "identified");
   }
   EXPECT_LT(results["emulator_error"]["over_measurement_error"], 1.0 / 3.0);
+  // What to measure next: the most telling first. A spread is measured here already, so that another is worth about what
+  // halves its variance, half a bit.
+  const auto& next = results["next"];
+  ASSERT_GT(next.size(), 3u);
+  for (std::size_t i = 1; i < next.size(); ++i) EXPECT_LE(next[i]["bits"], next[i - 1]["bits"]);
+  for (const auto& advice : next)
+    if (advice["result"] == "spread_mm") {
+      EXPECT_NEAR(advice["bits"].get<double>(), 0.5, 0.3);
+    }
   EXPECT_EQ(test::shell("'" TREMIE_PROGRAM "' run cal/mix.toml --set test.duration=\"0.1 s\" --quiet",
                         folder.path())
                 .code,
             0);
+}
+
+// The table of tremie estimate is of the same scene, so that both must say the same of one slump flow: the ends of their
+// intervals differ by less than a tenth of the interval (emulator, table and the quadratures).
+TEST(Calibrate, EstimateSaysTheSameOfOneSlumpFlow) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "LAB.toml", measured("590 mm", "2.5 s") + unknown);
+  ASSERT_EQ(test::shell("'" TREMIE_PROGRAM "' calibrate LAB.toml --out cal --quiet", folder.path()).code, 0);
+  const auto calibrated = nlohmann::json::parse(test::read_file(folder / "cal/summary.json"))["results"];
+  const auto printed = test::shell("'" TREMIE_PROGRAM
+                                   "' estimate --spread '590 mm' --t500 '2.5 s' --t500-error '0.3 s' --json",
+                                   folder.path());
+  const auto estimated = nlohmann::json::parse(printed.text)["results"];
+  const char* keys[][2] = {{"mix.yield_stress", "yield_stress_Pa"},
+                           {"mix.plastic_viscosity", "plastic_viscosity_Pa_s"}};
+  for (const auto& [key, name] : keys) {
+    const auto& ours = calibrated["parameters"][key]["ci95"];
+    const auto& theirs = estimated[name]["ci95"];
+    const double width = ours[1].get<double>() - ours[0].get<double>();
+    for (const int end : {0, 1})
+      EXPECT_NEAR(ours[end].get<double>(), theirs[end].get<double>(), 0.1 * width) << key;
+  }
 }
 
 TEST(Calibrate, MeasurementsThatContradictEachOtherAreNamed) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "apparatus/calibration/chains.hpp"
 #include "apparatus/calibration/emulator.hpp"
 #include "apparatus/calibration/posterior.hpp"
 #include "apparatus/study/design.hpp"
@@ -55,6 +56,34 @@ TEST(Posterior, QuantilesOfAGaussian) {
   EXPECT_EQ(told(0.302, 0.498), "identified");
   EXPECT_EQ(told(0.025, 0.975), "not_told");
   EXPECT_EQ(told(0.4, 1.0), "bound");
+}
+
+// A Gaussian of three unknowns, two of them correlated by 0.9: deviations 0.05 about 0.5, to the tenth that 400 draws
+// give. Chains apart from each other are told by R-hat; an autoregression of 0.9 leaves 1 in 19 draws.
+TEST(Chains, DrawFromAGaussianAndKnowWhetherTheyConverged) {
+  const auto log_likelihood = [](const Point& x) {
+    const double a = (x[0] - 0.5) / 0.05, b = (x[1] - 0.5) / 0.05, c = (x[2] - 0.5) / 0.05;
+    return -0.5 * ((a * a - 1.8 * a * b + b * b) / 0.19 + c * c);
+  };
+  auto points = quadrature_points(3);
+  std::vector<double> logs;
+  for (const Point& p : points) logs.push_back(log_likelihood(p));
+  const Chains drawn = sample(make_posterior(points, logs), log_likelihood);
+  EXPECT_LT(drawn.r_hat, 1.05);
+  EXPECT_GT(drawn.effective, 400.0);
+  const Posterior posterior = make_posterior(drawn.points, std::vector<double>(drawn.points.size(), 0.0));
+  for (const std::size_t i : {0u, 1u, 2u}) {
+    EXPECT_NEAR(quantile(posterior, i, 0.5), 0.5, 0.01);
+    EXPECT_NEAR(quantile(posterior, i, 0.84) - quantile(posterior, i, 0.16), 2.0 * 0.05 * 0.994458, 0.01);
+  }
+  std::vector<std::vector<double>> apart(2), slow(1);
+  for (int i = 0; i < 400; ++i)
+    for (const std::size_t c : {0u, 1u}) apart[c].push_back(static_cast<double>(c) + 0.1 * std::sin(7.0 * i));
+  EXPECT_GT(r_hat(apart), 2.0);
+  double x = 0.0;
+  const auto noise = study::unit_points(study::Method::latin_hypercube, 4000, 1, 9);
+  for (const Point& p : noise) slow[0].push_back(x = 0.9 * x + (p[0] - 0.5));
+  EXPECT_NEAR(effective_draws(slow), 4000.0 / 19.0, 100.0);
 }
 
 // The mixture of one Gaussian of mean 550 and deviation 4.

@@ -9,9 +9,13 @@
 #include "apparatus/cli/options/command.hpp"
 #include "apparatus/cli/options/quantity.hpp"
 #include "apparatus/estimate/estimate.hpp"
+#include "apparatus/estimate/rheograph.hpp"
+#include "apparatus/report/process.hpp"
+#include "apparatus/scene/document.hpp"
 #include "apparatus/scene/input_error.hpp"
 #include "apparatus/scene/load.hpp"
 #include "apparatus/scene/units.hpp"
+#include "libmpm/io/write_error.hpp"
 
 namespace tremie::cli {
 namespace {
@@ -20,7 +24,7 @@ using Json = nlohmann::ordered_json;
 using scene::Dimension;
 
 struct Options {
-  std::string spread, t500, density, spread_error, t500_error;
+  std::string spread, t500, density, spread_error, t500_error, chart;
   bool json = false;
 };
 
@@ -67,9 +71,55 @@ void print_text(const Options& o, const estimate::Estimate& e) {
   fmt::print("{:<24} {:.3g} Pa (with the plug's normal stress)\n", "", e.tau_0_plug);
 }
 
+/// The published mixes of reference_data that have a yield stress and a viscosity.
+std::vector<estimate::NamedMix> published_mixes() {
+  std::vector<estimate::NamedMix> mixes;
+  for (const auto& folder : scene::data_folders())
+    for (const auto& name : scene::mix_names()) {
+      const auto file = folder / "mixes" / (name + ".toml");
+      std::error_code error;
+      if (!std::filesystem::is_regular_file(file, error)) continue;
+      const auto document = scene::parse_file(file);
+      const auto text = [&](const char* key) {
+        const auto* table = scene::find(document, "mix");
+        const auto* node = table ? scene::find(*table, key) : nullptr;
+        const auto* value = node ? std::get_if<std::string>(&node->value) : nullptr;
+        return value ? *value : std::string();
+      };
+      const auto tau_0 = quantity(name.c_str(), text("yield_stress"), Dimension::pressure);
+      const auto mu = quantity(name.c_str(), text("plastic_viscosity"), Dimension::viscosity);
+      if (tau_0 && mu) mixes.push_back({text("name"), *tau_0, *mu});
+    }
+  return mixes;
+}
+
+void draw_chart(const Options& options, const estimate::SlumpTable& table,
+                const std::optional<estimate::Estimate>& result) {
+  namespace fs = std::filesystem;
+  const fs::path file = fs::absolute(options.chart), script = file.string() + ".gp";
+  if (file.extension() != ".svg" && file.extension() != ".pdf")
+    throw scene::InputError("--chart: must end with .svg or .pdf");
+  if (!fs::is_directory(file.parent_path()))
+    throw scene::InputError(fmt::format("--chart: there is no folder {}", file.parent_path().string()));
+  const auto gnuplot = report::find_program("gnuplot");
+  if (gnuplot.empty()) throw scene::InputError("--chart: gnuplot is not installed here");
+  io::write_text(script,
+                 estimate::rheograph_script(table, published_mixes(), result, file.filename().string()));
+  const auto code = report::run_program(gnuplot, {script.filename().string()}, file.parent_path());
+  fs::remove(script);
+  if (code != 0) throw std::runtime_error("gnuplot failed: the chart is missing or not complete");
+}
+
 int run(const Options& options) {
-  const auto result =
-      estimate::estimate(estimate::find_slump_table(scene::data_folders()), measured_of(options));
+  const auto table = estimate::find_slump_table(scene::data_folders());
+  if (options.spread.empty()) {
+    if (options.chart.empty()) throw scene::InputError("--spread: is missing; without it, --chart alone");
+    draw_chart(options, table, {});
+    return done;
+  }
+  const auto measured = measured_of(options);
+  const auto result = estimate::estimate(table, measured);
+  if (!options.chart.empty()) draw_chart(options, estimate::at_density(table, measured.density), result);
   options.json ? print_json(result) : print_text(options, result);
   for (const auto& reason : result.reasons) fmt::print(stderr, "not to be trusted: {}\n", reason);
   return result.reasons.empty() ? done : not_to_be_trusted;
@@ -80,11 +130,14 @@ int run(const Options& options) {
 void add_command_estimate(CLI::App& app, int& exit_code) {
   auto o = std::make_shared<Options>();
   Command command(app, "estimate", "Yield stress and plastic viscosity from a slump flow, by a table");
-  command.required("--spread", o->spread, "Slump flow: \"590 mm\"");
+  command.option("--spread", o->spread, "Slump flow: \"590 mm\"");
   command.option("--t500", o->t500, "Time to 500 mm from the start of the lift: \"2.5 s\"");
   command.option("--density", o->density, "\"2400 kg/m3\" by default");
   command.option("--spread-error", o->spread_error, "One standard error, \"15 mm\" by default");
   command.option("--t500-error", o->t500_error, "One standard error, \"0.2 s\" by default");
+  command.option(
+      "--chart", o->chart,
+      "Draw a rheograph, FILE.svg or FILE.pdf: contours of slump flow and t500; without --spread it alone");
   command.flag("--json", o->json, "Print one JSON object");
   command.example("tremie estimate --spread \"590 mm\" --t500 \"2.5 s\"");
   command.run([o, &exit_code] { exit_code = run(*o); });

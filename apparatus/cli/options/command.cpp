@@ -54,8 +54,10 @@ Command& Command::flag(const char* name, bool& value, const std::string& meaning
   return *this;
 }
 
-Command& Command::flag_without(const char* name, const char* other, bool& value, const std::string& meaning) {
-  app_->add_flag(name, value, meaning)->excludes(app_->get_option(other));
+Command& Command::flag_without(const char* name, const std::vector<const char*>& others, bool& value,
+                               const std::string& meaning) {
+  CLI::Option* flag = app_->add_flag(name, value, meaning);
+  for (const char* other : others) flag->excludes(app_->get_option(other));
   return *this;
 }
 

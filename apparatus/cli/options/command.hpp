@@ -34,8 +34,9 @@ class Command {
   Command& number(const char* name, Integer& value, std::int64_t low, std::int64_t high,
                   const std::string& meaning);
   Command& flag(const char* name, bool& value, const std::string& meaning);
-  /// Not together with `other`, a flag that is there already.
-  Command& flag_without(const char* name, const char* other, bool& value, const std::string& meaning);
+  /// Not together with these others, flags that are there already.
+  Command& flag_without(const char* name, const std::vector<const char*>& others, bool& value,
+                        const std::string& meaning);
   /// May be given several times, each with one value that is taken as it stands, brackets and all.
   Command& each(const char* name, std::vector<std::string>& values, const char* form,
                 const std::string& meaning);

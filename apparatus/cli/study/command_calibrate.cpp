@@ -3,10 +3,8 @@
 #include "apparatus/cli/study/command_calibrate.hpp"
 
 #include <fmt/format.h>
-#include <signal.h>
 
 #include <algorithm>
-#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -19,6 +17,7 @@
 #include "apparatus/cli/commands.hpp"
 #include "apparatus/cli/options/command.hpp"
 #include "apparatus/cli/options/json_option.hpp"
+#include "apparatus/cli/process/stop_signals.hpp"
 #include "apparatus/cli/program.hpp"
 #include "apparatus/report/rheometer_files.hpp"
 #include "apparatus/report/run_folder.hpp"
@@ -36,18 +35,8 @@ struct Options {
   std::string file, out;
   int jobs = 0;
   std::size_t runs = 0;
-  bool quiet = false, json = false, force = false;
+  bool next = false, quiet = false, json = false, force = false;
 };
-
-std::atomic<bool> stop_requested{false};
-
-void stop_on_interrupt() {
-  struct sigaction action = {};
-  action.sa_handler = [](int) { stop_requested = true; };
-  action.sa_flags = SA_RESTART | SA_RESETHAND;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-}
 
 Json parameters_json(const Calibration& c) {
   Json json = Json::object();
@@ -127,18 +116,42 @@ std::string mix_toml(const Lab& lab, const Calibration& c) {
       .resolved;
 }
 
-Json results_json(const Lab& lab, const Calibration& c) {
+Json advice_json(const Lab& lab, const std::vector<calibration::Advice>& advice) {
+  Json list = Json::array();
+  for (const auto& a : advice) {
+    Json left = Json::object();
+    for (std::size_t i = 0; i < a.left.size(); ++i) left[lab.unknowns[i].key] = a.left[i];
+    list.push_back({{"test", a.test},
+                    {"result", a.result},
+                    {"expected", a.value},
+                    {"posterior_deviation", a.scatter},
+                    {"standard_error", a.error},
+                    {"bits", a.bits},
+                    {"interval_left", left}});
+  }
+  return list;
+}
+
+Json results_json(const Lab& lab, const Calibration& c, const std::vector<calibration::Advice>& advice) {
   double cpu = 0.0;
   for (const auto& trial : c.trials)
     for (const auto& row : trial.rows) cpu += row.cpu;
   return {{"parameters", parameters_json(c)},
           {"forecast", forecasts_json(lab, c)},
+          {"next", advice.empty() ? Json(nullptr) : advice_json(lab, advice)},
           {"emulator_error", emulator_json(c)},
           {"readings", readings_json(c)},
           {"chi_square", c.chi_square},
           {"posterior_points", c.effective_points},
+          {"r_hat", c.r_hat ? Json(*c.r_hat) : Json(nullptr)},
           {"runs", c.trials.size() * lab.tests.size()},
           {"runs_cpu_s", cpu}};
+}
+
+void print_advice(const std::vector<calibration::Advice>& advice) {
+  for (const auto& a : advice)
+    fmt::print("{:<36} {} {:.3g} ± {:.2g} expected, test ± {:.2g}: {:.1f} bits\n", "next? " + a.test,
+               a.result, a.value, a.scatter, a.error, a.bits);
 }
 
 void print_result(const Lab& lab, const Calibration& c) {
@@ -159,20 +172,25 @@ std::string text_of(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-void write_result(const Lab& lab, const Calibration& c, const Stopwatch& watch,
-                  const std::filesystem::path& folder) {
+void write_result(const Lab& lab, const Calibration& c, const std::vector<calibration::Advice>& advice,
+                  const Stopwatch& watch, const std::filesystem::path& folder) {
   scene::Outcome outcome;
   outcome.apparatus = "calibrate";
   outcome.checks.reasons = c.reasons;
   watch.stop(outcome.cost);
   Json summary = summary_of(outcome);
-  summary["results"] = results_json(lab, c);
+  summary["results"] = results_json(lab, c, advice);
   io::write_text(folder / "mix.toml", mix_toml(lab, c));
   io::write_text(folder / "trials.csv", trials_csv(lab, c));
-  io::write_text(
-      folder / "report.html",
-      calibration::calibration_html(lab, c, text_of(lab.file), "tremie calibrate " + lab.file.string()));
+  io::write_text(folder / "report.html",
+                 calibration::calibration_html(lab, c, advice, text_of(lab.file),
+                                               "tremie calibrate " + lab.file.string()));
   io::write_text(folder / "summary.json", summary.dump(2) + "\n");
+}
+
+int stopped() {
+  fmt::print(stderr, "interrupted: nothing written\n");
+  return interrupted;
 }
 
 int run(const Options& options) {
@@ -191,13 +209,20 @@ int run(const Options& options) {
       std::fflush(stdout);
     };
   const Calibration result = calibration::calibrate(lab, settings);
-  if (result.interrupted) return interrupted;
-  write_result(lab, result, watch, folder.staging());
+  if (result.interrupted) return stopped();
+  std::vector<calibration::Advice> advice;
+  if (options.next) {
+    if (settings.say) settings.say("what to measure next");
+    advice = calibration::advise(lab, result, settings);
+    if (stop_requested) return stopped();
+  }
+  write_result(lab, result, advice, watch, folder.staging());
   folder.publish();
   for (const auto& reason : result.reasons) fmt::print(stderr, "not to be trusted: {}\n", reason);
   if (options.json) print_result_as_json(folder.target());
   if (!options.quiet) {
     print_result(lab, result);
+    print_advice(advice);
     fmt::print("{:<36} {}\n", "written to", folder.target().string());
   }
   return result.reasons.empty() ? done : not_to_be_trusted;
@@ -212,7 +237,8 @@ void add_command_calibrate(CLI::App& app, int& exit_code) {
   command.option("--out", o->out, "Folder for the result (default: runs/<file's name>)");
   command.number("--jobs", o->jobs, 1, 4096,
                  "Runs at a time, one thread each (default: the machine's cores)");
-  command.number("--runs", o->runs, 10, 100000, "Runs of each test at most (default: 20 for each unknown)");
+  command.number("--runs", o->runs, 10, 100000, "Runs of each test at most (default: 30 for each unknown)");
+  command.flag("--next", o->next, "Say, too, which further test would tell most; about four times the time");
   add_json_option(command, o->json);
   command.flag("--quiet", o->quiet, "Print nothing but errors");
   command.flag("--force", o->force, "Replace an earlier result in the folder");

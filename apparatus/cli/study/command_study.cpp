@@ -3,10 +3,9 @@
 #include "apparatus/cli/study/command_study.hpp"
 
 #include <fmt/format.h>
-#include <signal.h>
+#include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <fstream>
 #include <iterator>
 #include <memory>
@@ -18,6 +17,7 @@
 #include "apparatus/cli/hand_over.hpp"
 #include "apparatus/cli/options/command.hpp"
 #include "apparatus/cli/options/json_option.hpp"
+#include "apparatus/cli/process/stop_signals.hpp"
 #include "apparatus/cli/program.hpp"
 #include "apparatus/cli/study/study_progress.hpp"
 #include "apparatus/report/process.hpp"
@@ -44,17 +44,6 @@ struct Options {
   std::int64_t row = -1;
   bool resume = false, collect = false, submit = false, quiet = false, json = false, force = false;
 };
-
-std::atomic<bool> stop_requested{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
-
-void stop_on_interrupt() {
-  struct sigaction action = {};
-  action.sa_handler = [](int) { stop_requested = true; };
-  action.sa_flags = SA_RESTART | SA_RESETHAND;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-}
 
 /// All that a study's parts work on.
 struct Job {

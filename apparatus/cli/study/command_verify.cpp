@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "apparatus/cli/commands.hpp"
 #include "apparatus/cli/options/command.hpp"
@@ -14,6 +16,7 @@
 #include "apparatus/cli/program.hpp"
 #include "apparatus/report/run_folder.hpp"
 #include "apparatus/scene/input_error.hpp"
+#include "apparatus/validation/validation.hpp"
 #include "apparatus/verification/document.hpp"
 #include "apparatus/verification/suite.hpp"
 
@@ -22,8 +25,8 @@ namespace {
 
 struct Options {
   std::vector<std::string> groups;
-  std::string out = "runs/verification";
-  bool quick = false, full = false, force = false, json = false;
+  std::string out;
+  bool quick = false, full = false, validation = false, force = false, json = false;
 };
 
 std::string known_groups() {
@@ -73,9 +76,57 @@ nlohmann::ordered_json summary_of_cases(const std::vector<verification::Step>& s
           {"checks", {{"reasons", verification::broken_bounds(groups)}}}};
 }
 
+nlohmann::ordered_json summary_of_sections(const std::vector<validation::Section>& sections) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const auto& section : sections)
+    for (const auto& c : section.comparisons)
+      list.push_back({{"section", section.name},
+                      {"what", c.what},
+                      {"unit", c.unit},
+                      {"measured", c.measured},
+                      {"measured_error", c.measured_error},
+                      {"predicted", c.predicted},
+                      {"predicted_error", c.predicted_error},
+                      {"verdict", validation::verdict(c)}});
+  return {{"schema", 1},
+          {"results", {{"comparisons", list}}},
+          {"checks", {{"reasons", nlohmann::json::array()}}}};
+}
+
+/// A measurement that is missed is a finding of the page, not a fault of the run.
+int validate(const Options& options) {
+  if (!options.groups.empty()) throw scene::InputError("verify: --validation has no rungs");
+  if (!validation::has_calibration())
+    throw scene::InputError("verify: --validation calibrates, which needs libopenturns-dev at the build");
+  report::RunFolder folder(options.out.empty() ? "runs/validation" : options.out, options.force);
+  FILE* const screen = options.json ? stderr : stdout;
+  stop_on_interrupt();
+  validation::Settings settings{std::max(1, static_cast<int>(std::thread::hardware_concurrency())),
+                                folder.staging(),
+                                [screen](const std::string& text) {
+                                  fmt::print(screen, "{}\n", text);
+                                  std::fflush(screen);
+                                },
+                                &stop_requested};
+  const auto start = std::chrono::steady_clock::now();
+  try {
+    const auto sections = validation::all_sections(settings);
+    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+    validation::write_page(sections, wall.count(), folder.staging());
+    folder.publish();
+    fmt::print(screen, "written to {}\n", (folder.target() / "VALIDATION.md").string());
+    if (options.json) fmt::print("{}\n", summary_of_sections(sections).dump(2));
+  } catch (const validation::Interrupted&) {
+    fmt::print(screen, "interrupted: nothing written\n");
+    return interrupted;
+  }
+  return done;
+}
+
 int verify(const Options& options) {
+  if (options.validation) return validate(options);
   const auto steps = chosen(options.groups);
-  report::RunFolder folder(options.out, options.force);
+  report::RunFolder folder(options.out.empty() ? "runs/verification" : options.out, options.force);
   const auto depth = options.full ? verification::Depth::full : verification::Depth::quick;
   FILE* const screen = options.json ? stderr : stdout;
   std::vector<verification::CaseGroup> groups;
@@ -112,8 +163,12 @@ void add_command_verify(CLI::App& app, int& exit_code) {
   Command command(app, verify_command.name, verify_command.description);
   command.option("rungs", options->groups, "Rungs by name or number (default: all): " + known_groups());
   command.flag("--quick", options->quick, "Coarser cells, under five minutes (the default)");
-  command.flag_without("--full", "--quick", options->full, "All cells, under an hour");
-  command.option_with_default("--out", options->out, "Folder for the result");
+  command.flag_without("--full", {"--quick"}, options->full, "All cells, under an hour");
+  command.flag_without(
+      "--validation", {"--quick", "--full"}, options->validation,
+      "Predictions beside measurements on concrete, in place of the rungs; under ten minutes");
+  command.option("--out", options->out,
+                 "Folder for the result (default: runs/verification or runs/validation)");
   add_json_option(command, options->json);
   command.flag("--force", options->force, "Replace an earlier result in the folder");
   command.run([options, &exit_code] { exit_code = verify(*options); });

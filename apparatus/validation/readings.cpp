@@ -1,0 +1,51 @@
+#include "apparatus/validation/readings.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "apparatus/registry/error_estimate.hpp"
+#include "apparatus/registry/registry.hpp"
+#include "apparatus/study/rows/pool.hpp"
+
+namespace tremie::validation {
+namespace {
+
+double number_of(const scene::Scene& scene, const std::string& name, bool coarser) {
+  const auto outcome = scene::run(scene, {}, coarser);
+  const auto* value = scene::find_result(outcome, name);
+  const auto* number = value ? std::get_if<double>(value) : nullptr;
+  return number ? *number : NAN;
+}
+
+std::string read_one(const Ask& ask) {
+  auto scene = scene::read_text(ask.scene, "validation");
+  scene::set_threads(scene, 1);
+  scene.output.frames = false;
+  const scene::Coarsening by;
+  const double fine = number_of(scene, ask.result, false);
+  const double middle = number_of(scene::coarsened(scene, by.middle), ask.result, true);
+  const double coarse = number_of(scene::coarsened(scene, by.coarse), ask.result, true);
+  return nlohmann::json{fine, scene::extrapolate(fine, middle, coarse).error}.dump();
+}
+
+}  // namespace
+
+std::vector<Reading> read_scenes(const std::vector<Ask>& asked, const Settings& settings) {
+  std::vector<std::size_t> items(asked.size());
+  std::iota(items.begin(), items.end(), std::size_t{0});
+  std::vector<Reading> readings(asked.size(), {NAN, NAN});
+  const bool whole = study::run_pool(
+      items, settings.jobs, [&](std::size_t i) { return read_one(asked[i]); },
+      [&](const study::Finished& finished) {
+        if (!finished.text) return;
+        const auto pair = nlohmann::json::parse(*finished.text);
+        if (pair[0].is_number() && pair[1].is_number())
+          readings[finished.item] = {pair[0].get<double>(), pair[1].get<double>()};
+      },
+      settings.stop);
+  if (!whole) throw Interrupted{};
+  return readings;
+}
+
+}  // namespace tremie::validation

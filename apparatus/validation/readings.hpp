@@ -1,0 +1,25 @@
+#pragma once
+
+// Readings of scenes with the error of their cells and steps, several scenes at a time.
+
+#include <string>
+#include <vector>
+
+#include "apparatus/validation/validation.hpp"
+
+namespace tremie::validation {
+
+struct Ask {
+  std::string scene;   ///< TOML
+  std::string result;  ///< "spread_mm"
+};
+
+struct Reading {
+  double value = 0.0;  ///< not-a-number where the run has no such number
+  double error = 0.0;  ///< half-width, from three grids
+};
+
+/// In the order of `asked`. Throws Interrupted.
+std::vector<Reading> read_scenes(const std::vector<Ask>& asked, const Settings& settings);
+
+}  // namespace tremie::validation
