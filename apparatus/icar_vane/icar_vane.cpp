@@ -165,6 +165,12 @@ void refuse_what_has_no_engine(const Scene& scene) {
   if (scene.model.space != SpaceKind::couette && scene.model.space != SpaceKind::plane)
     throw std::invalid_argument("model.space: the vane runs in \"couette\" or \"plane\"");
   test_run::refuse_what_has_no_engine(scene.model, "vane");
+  constexpr double most = 1e7;  // some 10 GB in a section
+  const auto [n, n_around] = scene.model.points_per_cell;
+  const double across = scene.vane.container_radius / scene.model.cell[0] * n;
+  const double around = std::numbers::pi * scene.vane.container_radius / scene.model.cell[1] * n_around;
+  if ((scene.model.space == SpaceKind::couette ? across : across * around / scene.vane.blades) > most)
+    throw std::invalid_argument("model.cell: more than 10,000,000 points in a section; larger cells");
 }
 
 /// Calls use(section) with the section that the scene names.

@@ -22,7 +22,10 @@ inline FaceKind face_of(ContactKind contact) {
                                             : FaceKind::free_slip;
 }
 
-/// A number of steps as a whole number; what no program could count is 1e15.
+/// Points are counted one by one up to so many; beyond it their number is the volume over that of a point.
+inline constexpr double most_counted = 1e6;
+
+/// A number of steps, points or cells as a whole number; what no program could count is 1e15.
 inline std::int64_t whole_steps(double steps) { return std::llround(std::clamp(steps, 0.0, 1e15)); }
 
 inline StepSettings step_settings(const Model& model) {

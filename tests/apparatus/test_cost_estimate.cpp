@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "apparatus/registry/cost_estimate.hpp"
+#include "apparatus/run/free_memory.hpp"
 
 namespace tremie {
 namespace {
@@ -48,6 +49,23 @@ TEST(CostEstimate, ExtremesStayNumbers) {
   EXPECT_GT(estimate.steps, 1000000000000);
   EXPECT_LE(estimate.steps_expected, estimate.steps);
   EXPECT_GT(scene::cost_of(scene, estimate).cpu_most, 1e9);
+}
+
+// What cannot be done is said before it begins, with the remedy.
+TEST(CostEstimate, ObjectsToWhatTheMachineCannotDo) {
+  const auto whole = cost_of("slump_flow_mix_a_full"),
+             fine = cost_of("slump_flow_mix_a_full", {"model.cell=1 mm"});
+  EXPECT_EQ(scene::objection(whole, 8e9, 1), "");
+  EXPECT_NE(scene::objection(fine, 1e9, 1).find("memory"), std::string::npos);
+  EXPECT_NE(scene::objection(fine, 1e15, 1).find("days"), std::string::npos);
+}
+
+// The least of the machine's memory, the control group's and the process's.
+TEST(CostEstimate, FreeMemory) {
+  const std::string meminfo = "MemTotal:       16000000 kB\nMemFree:  100 kB\nMemAvailable:    8000000 kB\n";
+  EXPECT_EQ(test_run::free_memory(meminfo, "max\n", 1e300), 8192e6);
+  EXPECT_EQ(test_run::free_memory(meminfo, "4000000000\n", 1e300), 4e9);
+  EXPECT_EQ(test_run::free_memory(meminfo, "", 1e9), 1e9);
 }
 
 }  // namespace
