@@ -54,7 +54,7 @@ TEST(CostEstimate, ExtremesStayNumbers) {
 // What cannot be done is said before it begins, with the remedy.
 TEST(CostEstimate, ObjectsToWhatTheMachineCannotDo) {
   const auto whole = cost_of("slump_flow_mix_a_full"),
-             fine = cost_of("slump_flow_mix_a_full", {"model.cell=1 mm"});
+             fine = cost_of("slump_flow_mix_a_full", {"model.cell=2 mm", "model.time_step=1 ms"});
   EXPECT_EQ(scene::objection(whole, 8e9, 1), "");
   EXPECT_NE(scene::objection(fine, 1e9, 1).find("memory"), std::string::npos);
   EXPECT_NE(scene::objection(fine, 1e15, 1).find("days"), std::string::npos);

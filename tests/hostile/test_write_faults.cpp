@@ -115,7 +115,8 @@ output = {checkpoint_interval = "0.001 s", frame_interval = "0.1 s"})");
   Files earlier_;
 };
 
-TEST_F(WriteFaults, LeaveWhatWasThere) { fail_each(std::max(1L, writes_ / TREMIE_WRITES)); }
+TEST_F(WriteFaults, Some) { fail_each(std::max(1L, writes_ / 8)); }
+TEST_F(WriteFaults, All) { fail_each(1); }
 
 }  // namespace
 }  // namespace tremie
