@@ -1,6 +1,7 @@
 #include "apparatus/run/free_memory.hpp"
 
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -31,10 +32,13 @@ double of_group(const std::string& memory_max) {
   return bytes > 0.0 ? bytes : unlimited;
 }
 
+/// What the limit leaves beside the program itself, whose pages come first in statm.
 double of_process() {
   rlimit limit{};
   if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return unlimited;
-  return static_cast<double>(limit.rlim_cur);
+  const double used =
+      std::atof(text_of("/proc/self/statm").c_str()) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  return std::max(0.0, static_cast<double>(limit.rlim_cur) - used);
 }
 
 }  // namespace
