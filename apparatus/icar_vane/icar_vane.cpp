@@ -151,6 +151,7 @@ Outcome run_section(const Scene& scene, const Section& section, const Observer& 
       flow, {observer.on_frame, observer.interrupted, scene.frame_interval, 0.0, observer.checkpoints},
       outcome.status, outcome.checks, outcome.cost);
 
+  if (outcome.series.empty()) outcome.series.emplace_back();  // the first step failed
   test_run::judge(body, start_mass, outcome.checks, outcome.cost);
   outcome.results.profile = profile(body, section, scene.model.cell[0]);
   read_instrument(scene, outcome);
@@ -177,7 +178,10 @@ void refuse_what_has_no_engine(const Scene& scene) {
 template <class Use>
 auto with_section(const Scene& scene, Use use) {
   if (scene.model.space == SpaceKind::couette) return use(CouetteSection{scene.vane});
-  return use(PlaneSection(scene));
+  const PlaneSection section(scene);
+  if (section.shaft <= 0.0)
+    throw std::invalid_argument("model.cell: two cells are longer than the blades; smaller ones");
+  return use(section);
 }
 
 }  // namespace

@@ -193,6 +193,7 @@ Outcome run_explicit_in(const Scene& scene, const Law& law, const Observer& obse
   test_run::judge(body, start_mass, outcome.checks, outcome.cost);
   test_run::judge_volume(outcome.series.front().volume_change, outcome.checks);
   judge_depth(scene, outcome);
+  judge_cells(scene, outcome);
   judge_lift(outcome);
   judge_height(scene, outcome);
   outcome.cost.bytes_per_point = explicit_bytes_per_point<D>(body.points.thixotropic());
