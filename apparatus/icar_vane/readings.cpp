@@ -94,6 +94,16 @@ double averaged_time(const std::vector<Sample>& series) {
   return std::min(end_average, end_share * series.back().time);
 }
 
+/// Mean rate of the angular momentum over so much time before the end [N m].
+double momentum_rate_over(const std::vector<Sample>& series, double window) {
+  double sum = 0.0, time = 0.0;
+  for (std::size_t i = series.size(); i-- > 0 && time < window;) {
+    sum += series[i].momentum_rate * series[i].time_step;
+    time += series[i].time_step;
+  }
+  return time > 0.0 ? sum / time : 0.0;
+}
+
 void average_end(const std::vector<Sample>& series, Results& r) {
   double time = 0.0;
   r.torque_end = r.torque_wall_end = r.torque_power_end = 0.0;
@@ -166,12 +176,7 @@ void read_instrument(const Scene& scene, Outcome& outcome) {
 
 void check_torques_agree(const Scene& scene, Outcome& outcome) {
   const Results& r = outcome.results;
-  double momentum_rate = 0.0, time = 0.0;
-  for (std::size_t i = outcome.series.size(); i-- > 0 && time < averaged_time(outcome.series);) {
-    momentum_rate += outcome.series[i].momentum_rate * outcome.series[i].time_step;
-    time += outcome.series[i].time_step;
-  }
-  if (time > 0.0) momentum_rate /= time;
+  const double momentum_rate = momentum_rate_over(outcome.series, averaged_time(outcome.series));
   const bool starting = outcome.series.back().time < settled;
   if (starting && !scene.speeds.empty()) return;  // a curve is read where each speed is steady
   // Two balances hold at all times, of angular momentum and, but for the kinetic energy, of power. A torque
@@ -179,7 +184,8 @@ void check_torques_agree(const Scene& scene, Outcome& outcome) {
   const double scale = std::abs(r.torque_end);
   const double balance = std::abs(r.torque_end - r.torque_wall_end - momentum_rate);
   const double power = std::abs(r.torque_end - r.torque_power_end);
-  const double off = std::max({balance, power, starting ? std::abs(momentum_rate) : 0.0});
+  const double inertia = starting ? std::abs(momentum_rate_over(outcome.series, end_average)) : 0.0;
+  const double off = std::max({balance, power, inertia});
   if (scale > 0.0 && off > agreement * scale)
     outcome.checks.reasons.push_back(
         fmt::format("the torques on the blades, on the wall and from the power differ by {:.1f} %: {}",
