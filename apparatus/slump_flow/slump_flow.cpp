@@ -76,7 +76,7 @@ double expected_time(const Scene& scene) {
 }
 
 double cpu_of_a_point(const Scene& scene) {
-  if (is_explicit(scene.model)) return 0.045e-6;
+  if (is_explicit(scene.model)) return 0.12e-6;
   // In three dimensions a cell costs the same however many points it has.
   const auto [across, up] = scene.model.points_per_cell;
   if (scene.model.space != SpaceKind::axisymmetric) return 3.0e-5 / (across * across * up);

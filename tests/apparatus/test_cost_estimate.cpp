@@ -28,16 +28,27 @@ TEST(CostEstimate, WithinAFactorOfTwoOverTheShippedScenes) {
                   {"l_box_mix_a", 13.2, 46.8, 32.1},
                   {"l_box", 18.5, 44.6, 29.0},
                   {"slump_flow_mix_a_quarter", 3.46, 40.6, 10.0},
-                  {"slump_flow_mix_a_full", 24.3, 83.8, 12.0}};
+                  {"slump_flow_mix_a_full", 24.3, 83.8, 12.0},
+                  // on a busy machine, without their files
+                  {"slump_flow_mix_c", 0.89, 28.0, 0.0},
+                  {"slump_flow_mix_b_rest240", 0.62, 27.0, 0.0},
+                  {"icar_vane_site", 0.26, 23.0, 0.0},
+                  {"icar_vane_mix_a_rest240", 0.24, 23.0, 0.0},
+                  {"l_box_mix_a_rest240", 11.9, 45.0, 0.0},
+                  {"paper_mix_a", 13.7, 30.0, 0.0},  // 0.5 s of it
+                  {"paper_mix_a_rest240", 12.9, 30.0, 0.0},
+                  {"paper_mix_b_rest240_safe_step", 22.6, 30.0, 0.0}};
   for (const auto& m : measured) {
-    const auto cost = cost_of(m.scene);
+    const bool paper = std::string(m.scene).starts_with("paper");
+    const auto cost = cost_of(
+        m.scene, paper ? std::vector<std::string>{"test.duration=0.5 s"} : std::vector<std::string>{});
     const auto within = [&](double estimated, double value, const char* what) {
       EXPECT_GT(estimated, 0.5 * value) << m.scene << ", " << what;
       EXPECT_LT(estimated, 2.0 * value) << m.scene << ", " << what;
     };
     within(cost.cpu, m.cpu, "CPU s");
     within(cost.memory / 1e6, m.memory, "MB of memory");
-    within(cost.disk / 1e6, m.disk, "MB of files");
+    if (m.disk > 0.0) within(cost.disk / 1e6, m.disk, "MB of files");
   }
 }
 

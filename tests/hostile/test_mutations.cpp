@@ -23,7 +23,7 @@ namespace tremie {
 namespace {
 
 constexpr double most_memory = 1e9;    // [bytes]
-constexpr double cheap = 0.4;          // [s] of CPU by its estimate
+constexpr double cheap = 0.2;          // [s] of CPU by its estimate
 constexpr unsigned seconds_each = 30;  // then SIGALRM ends the test, whose last line names the mutation
 
 double peak_memory() {
@@ -53,7 +53,7 @@ std::string against(const scene::Outcome& outcome) {
 }
 
 /// How a scene ends: "refused", "dear", "run", ... or what is wrong, with "!" before it.
-std::string ending_of(const std::string& text) try {
+std::string ending_of(const std::string& text, int) try {
   const auto scene = scene::read_text(text, "mutated.toml");
   const auto estimate = scene::estimate(scene);
   if (!estimate) return "no points";
@@ -86,7 +86,7 @@ void judge_all(const std::vector<std::string>& bases, int mutations, Ending endi
     test::Mutation mutation(static_cast<unsigned>(i));
     const std::string text = mutation(bases[static_cast<std::size_t>(i) % bases.size()]);
     alarm(seconds_each);
-    const std::string how = ending(text);
+    const std::string how = ending(text, i);
     alarm(0);
     EXPECT_NE(how.front(), '!') << "mutation " << i << " " << how << ":\n" << text;
     ++ended[how];
@@ -110,13 +110,13 @@ void judge_scenes(int mutations) {
   judge_all(bases, mutations, ending_of);
 }
 
-TEST(Mutations, SomeScenes) { judge_scenes(250); }
+TEST(Mutations, SomeScenes) { judge_scenes(120); }
 TEST(Mutations, AllScenes) { judge_scenes(10000); }
 
-/// A record is read and fitted, or refused; a fit that is to be trusted has numbers.
-std::string ending_of_record(const std::string& text) try {
+/// A record is read and, every fifth one, fitted, or refused; a fit that is to be trusted has numbers.
+std::string ending_of_record(const std::string& text, int i) try {
   const TorqueRecord record = parse_torque_record(text, "mutated.csv");
-  if (record.torque.size() > 2000) return "long";
+  if (record.torque.size() > 2000 || i % 5 != 0) return "read";
   FitInput input;
   input.omega = 1.57;
   input.rest = 240.0;
