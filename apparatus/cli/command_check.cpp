@@ -14,6 +14,7 @@
 #include "apparatus/registry/cost_estimate.hpp"
 #include "apparatus/registry/registry.hpp"
 #include "apparatus/report/compare/run_result.hpp"
+#include "apparatus/run/free_memory.hpp"
 
 namespace tremie::cli {
 namespace {
@@ -26,18 +27,6 @@ struct Options {
 
 using Json = nlohmann::ordered_json;
 
-std::string duration_text(double s) {
-  if (s < 300.0) return s < 100.0 ? fmt::format("{:.2g} s", s) : fmt::format("{:.0f} s", s);
-  if (s < 7200.0) return fmt::format("{:.0f} min", s / 60.0);
-  if (s < 2e5) return fmt::format("{:.0f} h", s / 3600.0);
-  if (s < 3.2e7) return fmt::format("{:.0f} days", s / 86400.0);
-  return "more than a year";
-}
-
-std::string megabytes_text(double bytes) {
-  return bytes < 1e10 ? fmt::format("{:.2g} MB", bytes / 1e6) : fmt::format("{:.3g} GB", bytes / 1e9);
-}
-
 std::string count_text(std::int64_t n) {
   return n < 1000000000 ? fmt::format("{}", n) : fmt::format("{:.1e}", static_cast<double>(n));
 }
@@ -47,13 +36,13 @@ void print_estimate(const scene::Scene& scene, const scene::Estimate& e) {
   fmt::print("\n# cost, estimated\n#   {} points, {} bytes a point\n#   {} active cells at the start\n",
              e.points, e.bytes_per_point, e.cells_active);
   fmt::print("#   about {} steps, at most some {}\n", count_text(e.steps_expected), count_text(e.steps));
-  fmt::print("#   about {} of CPU ({} to {}", duration_text(cost.cpu), duration_text(cost.cpu_low),
-             duration_text(cost.cpu_high));
+  fmt::print("#   about {} of CPU ({} to {}", scene::duration_text(cost.cpu),
+             scene::duration_text(cost.cpu_low), scene::duration_text(cost.cpu_high));
   if (e.steps > e.steps_expected)
-    fmt::print("; up to {} if it flows on for all of test.duration", duration_text(cost.cpu_most));
+    fmt::print("; up to {} if it flows on for all of test.duration", scene::duration_text(cost.cpu_most));
   fmt::print(")\n");
-  fmt::print("#   about {} of memory, {} of files (each to a factor of two)\n", megabytes_text(cost.memory),
-             megabytes_text(cost.disk));
+  fmt::print("#   about {} of memory, {} of files (each to a factor of two)\n",
+             scene::megabytes_text(cost.memory), scene::megabytes_text(cost.disk));
 }
 
 Json cost_json(const scene::Scene& scene, const std::optional<scene::Estimate>& e) {

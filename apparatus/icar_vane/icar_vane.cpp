@@ -151,6 +151,7 @@ Outcome run_section(const Scene& scene, const Section& section, const Observer& 
       flow, {observer.on_frame, observer.interrupted, scene.frame_interval, 0.0, observer.checkpoints},
       outcome.status, outcome.checks, outcome.cost);
 
+  if (outcome.series.empty()) outcome.series.emplace_back();  // the first step failed
   test_run::judge(body, start_mass, outcome.checks, outcome.cost);
   outcome.results.profile = profile(body, section, scene.model.cell[0]);
   read_instrument(scene, outcome);
@@ -165,13 +166,22 @@ void refuse_what_has_no_engine(const Scene& scene) {
   if (scene.model.space != SpaceKind::couette && scene.model.space != SpaceKind::plane)
     throw std::invalid_argument("model.space: the vane runs in \"couette\" or \"plane\"");
   test_run::refuse_what_has_no_engine(scene.model, "vane");
+  constexpr double most = 1e7;  // some 10 GB in a section
+  const auto [n, n_around] = scene.model.points_per_cell;
+  const double across = scene.vane.container_radius / scene.model.cell[0] * n;
+  const double around = std::numbers::pi * scene.vane.container_radius / scene.model.cell[1] * n_around;
+  if ((scene.model.space == SpaceKind::couette ? across : across * around / scene.vane.blades) > most)
+    throw std::invalid_argument("model.cell: more than 10,000,000 points in a section; larger cells");
 }
 
 /// Calls use(section) with the section that the scene names.
 template <class Use>
 auto with_section(const Scene& scene, Use use) {
   if (scene.model.space == SpaceKind::couette) return use(CouetteSection{scene.vane});
-  return use(PlaneSection(scene));
+  const PlaneSection section(scene);
+  if (section.shaft <= 0.0)
+    throw std::invalid_argument("model.cell: two cells are longer than the blades; smaller ones");
+  return use(section);
 }
 
 }  // namespace

@@ -108,8 +108,10 @@ Outcome run_in(const Scene& scene, const Observer& observer) {
       .unfinished = [&] { return body.time < scene.duration * (1.0 - 1e-12); },
       .prepare =
           [&] {
-            settings.dt_max = std::min(longest_dt<Geometry>(scene, body.time), scene.duration - body.time);
-            settings.fixed_dt = test_run::fixed_step(scene.model, scene.duration - body.time);
+            const double left = scene.duration - body.time;
+            settings.dt_max =
+                std::min(longest_dt<Geometry>(scene, body.time), test_run::without_sliver(left, body.dt));
+            settings.fixed_dt = test_run::fixed_step(scene.model, left);
             body.boundary = walls_inside<Geometry>(scene, body.grid.axes, body.time);
           },
       .advance =

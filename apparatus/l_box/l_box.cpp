@@ -21,13 +21,26 @@ double expected_time(const Scene& scene) {
 }
 
 template <class Geometry>
+void count(const Scene& scene, Estimate& e) {
+  const auto [h, h_up] = scene.model.cell;
+  const auto [n, n_up] = scene.model.points_per_cell;
+  double cells = scene.box.column_length * scene.box.column_height / (h * h_up), in_a_cell = n * n_up;
+  if (Geometry::dim == 3) cells *= computed_width(scene) / h, in_a_cell *= n_up;
+  if (cells * in_a_cell > test_run::most_counted) {
+    e.points = test_run::whole_steps(cells * in_a_cell), e.cells_active = test_run::whole_steps(cells);
+  } else {
+    Body<Geometry> body = filled_column<Geometry>(scene);
+    activate(body.grid, body.points.x);
+    e.points = static_cast<std::int64_t>(body.points.size());
+    e.cells_active = body.grid.n_cells();
+  }
+  e.bytes_per_point = bytes_per_point<Geometry::dim>(scene.mix.thixotropy.has_value());
+}
+
+template <class Geometry>
 Estimate estimate_in(const Scene& scene) {
-  Body<Geometry> body = filled_column<Geometry>(scene);
-  activate(body.grid, body.points.x);
   Estimate e;
-  e.points = static_cast<std::int64_t>(body.points.size());
-  e.cells_active = body.grid.n_cells();
-  e.bytes_per_point = bytes_per_point<Geometry::dim>(body.points.thixotropic());
+  count<Geometry>(scene, e);
   const StepSettings settings = test_run::step_settings(scene.model);
   const double collapse = 0.5 * std::sqrt(test_run::gravity * scene.box.column_height) /
                           (settings.cfl * std::min(scene.model.cell[0], scene.model.cell[1]));

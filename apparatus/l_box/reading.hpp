@@ -20,15 +20,24 @@ namespace tremie::l_box {
 
 inline constexpr double off_the_walls = 0.02;  ///< no depth is read nearer to a wall [m]
 
-/// Mean depth over [low, high] along the channel [m], of a body `width` wide, in rows of height `row`.
+/// Share of a point at `x` that lies in [low, high], where it reaches half of `size` to both sides [m].
+inline double share_in(double x, double size, double low, double high) {
+  const double inside = std::min(x + 0.5 * size, high) - std::max(x - 0.5 * size, low);
+  return std::clamp(inside / size, 0.0, 1.0);
+}
+
+/// Mean depth over [low, high] along the channel [m], of a body `width` wide, in rows of height `row`, with points as
+/// long as they were seeded, `size`.
 template <class Geometry>
-double depth(const Points<Geometry::dim>& points, double low, double high, double row, double width) {
+double depth(const Points<Geometry::dim>& points, double low, double high, double row, double width,
+             double size) {
   std::vector<double> fill(2, 0.0);
   for (std::size_t p = 0; p < points.size(); ++p) {
-    if (points.x[p][0] < low || points.x[p][0] >= high) continue;
+    const double share = share_in(points.x[p][0], size, low, high);
+    if (share == 0.0) continue;
     const std::size_t j = static_cast<std::size_t>(std::max(0.0, points.x[p][Geometry::up]) / row);
     if (j + 2 > fill.size()) fill.resize(j + 2, 0.0);
-    fill[j] += points.volume(p) / ((high - low) * width * row);
+    fill[j] += share * points.volume(p) / ((high - low) * width * row);
   }
   std::size_t top = fill.size() - 1;  // the last row is empty
   while (top > 0 && fill[top - 1] < 0.5) --top;
@@ -61,12 +70,18 @@ double front_of(const Points<D>& points, double gate, double cell) {
   return std::max(0.0, x[i] - gate);
 }
 
+/// As points are seeded along the box [m].
+template <class Geometry>
+double point_length(const Body<Geometry>& body, const Scene& scene) {
+  return body.grid.axes[0].h / scene.model.points_per_cell[0];
+}
+
 template <class Geometry>
 Sample read(const Body<Geometry>& body, const Scene& scene, const StepReport& step) {
   const Box& box = scene.box;
   const double row = body.grid.axes[Geometry::up].h, width = computed_width(scene);
   const auto depth_over = [&](const Stretch& s) {
-    return depth<Geometry>(body.points, s.low, s.high, row, width);
+    return depth<Geometry>(body.points, s.low, s.high, row, width, point_length(body, scene));
   };
   Sample s;
   s.time = body.time;
@@ -89,8 +104,9 @@ void read_profile(const Body<Geometry>& body, const Scene& scene, Results& r) {
   const double step = 2.0 * body.grid.axes[0].h, row = body.grid.axes[Geometry::up].h;
   const double width = computed_width(scene);
   for (double x = 0.0; x < box.channel_length - 0.5 * step; x += step)
-    r.profile.push_back({x + 0.5 * step, depth<Geometry>(body.points, box.column_length + x,
-                                                         box.column_length + x + step, row, width)});
+    r.profile.push_back(
+        {x + 0.5 * step, depth<Geometry>(body.points, box.column_length + x, box.column_length + x + step,
+                                         row, width, point_length(body, scene))});
   double volume = 0.0;
   for (std::size_t p = 0; p < body.points.size(); ++p)
     if (body.points.x[p][0] >= box.column_length && body.points.x[p][Geometry::up] < box.channel_height)

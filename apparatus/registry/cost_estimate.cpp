@@ -1,9 +1,12 @@
 #include "apparatus/registry/cost_estimate.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "apparatus/run/frame_times.hpp"
+#include "apparatus/run/free_memory.hpp"
 #include "apparatus/run/threads.hpp"
 
 namespace tremie::scene {
@@ -17,6 +20,7 @@ constexpr double frame_of_point = 85.0;  ///< in frames/ and results.h5 [bytes]
 constexpr double most_shown = 20000.0;   ///< points of a frame
 constexpr double solver_of_cell =
     12e3;                             ///< of the linear system without a matrix, in three dimensions [bytes]
+constexpr double longest = 86400.0;   ///< run that begins without being asked twice [s]
 constexpr double most_counted = 1e6;  ///< frames
 
 /// Frames that are written over a time, as run_loop takes them and the files thin them.
@@ -46,6 +50,38 @@ CostEstimate cost_of(const Scene& scene, const Estimate& e) {
   cost.disk =
       page + frame_of_point * std::min(points, most_shown) * frames_over(scene, e.time_expected, points);
   return cost;
+}
+
+std::string objection(const CostEstimate& cost, double free_memory, int threads) {
+  if (cost.memory > free_memory)
+    return fmt::format(
+        "needs about {} of memory (to a factor of {:g}), and {} are free: larger cells (model.cell) or fewer "
+        "model.points_per_cell",
+        megabytes_text(cost.memory), factor, megabytes_text(free_memory));
+  if (cost.cpu > longest * threads)
+    return fmt::format(
+        "takes about {} (to a factor of {:g}): larger cells (model.cell), or a shorter test.duration",
+        duration_text(cost.cpu / threads), factor);
+  return {};
+}
+
+void check_cost(const Scene& scene, int threads) {
+  const auto e = estimate(scene);
+  if (!e) return;
+  const std::string against = objection(cost_of(scene, *e), test_run::free_memory(), std::max(1, threads));
+  if (!against.empty()) throw InputError(fmt::format("{}: the run {}; --force runs it", scene.path, against));
+}
+
+std::string duration_text(double s) {
+  if (s < 300.0) return s < 100.0 ? fmt::format("{:.2g} s", s) : fmt::format("{:.0f} s", s);
+  if (s < 7200.0) return fmt::format("{:.0f} min", s / 60.0);
+  if (s < 2e5) return fmt::format("{:.0f} h", s / 3600.0);
+  if (s < 3.2e7) return fmt::format("{:.0f} days", s / 86400.0);
+  return "more than a year";
+}
+
+std::string megabytes_text(double bytes) {
+  return bytes < 1e10 ? fmt::format("{:.2g} MB", bytes / 1e6) : fmt::format("{:.3g} GB", bytes / 1e9);
 }
 
 }  // namespace tremie::scene

@@ -16,4 +16,15 @@ struct CostEstimate {
 /// By rates measured on the shipped scenes (Zen 4 and Xeon processors of 2023), good to a factor of two.
 CostEstimate cost_of(const Scene& scene, const Estimate& estimate);
 
+/// Why a run of this cost should not be begun, with its remedy: it needs more than `free_memory` [bytes], or more
+/// than a day by so many threads. Empty where nothing is against it.
+std::string objection(const CostEstimate& cost, double free_memory, int threads);
+
+/// Throws InputError where there is an objection on this machine.
+void check_cost(const Scene& scene, int threads);
+
+/// 90 s, 5 min, 3 h, 12 days.
+std::string duration_text(double seconds);
+std::string megabytes_text(double bytes);
+
 }  // namespace tremie::scene

@@ -196,7 +196,9 @@ void RunFolder::make_staging() {
   if (lock_ >= 0) std::ofstream(staging_ / ours);
   if (!error && !is_there(staging_ / ours)) error = std::make_error_code(std::errc::permission_denied);
   if (error) {
-    if (!made_parent_.empty()) fs::remove_all(made_parent_);
+    std::error_code ignored;
+    if (lock_ >= 0 && !is_there(checkpoint())) fs::remove_all(staging_, ignored);
+    if (!made_parent_.empty()) fs::remove_all(made_parent_, ignored);
     refuse(target_, "cannot be written: " + error.message());
   }
   clear_remains(parent, staging_);
@@ -267,6 +269,9 @@ void RunFolder::put_in_place() {
 }
 
 void RunFolder::publish() try {
+  if (lock_ >= 0 && !is_named(lock_, staging_))
+    throw io::WriteError(
+        fmt::format("{}: was removed while the result was written into it", staging_.string()));
   if (!inside_ && !replace_ && is_there(target_) && !is_free(target_)) {
     published_ = true;
     fs::remove(staging_ / ours);

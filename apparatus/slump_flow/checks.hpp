@@ -40,6 +40,20 @@ inline void judge_depth(const Scene& scene, Outcome& outcome) {
   outcome.checks.reasons.push_back(text);
 }
 
+/// A section of two cells has no inside, and its few points no outline that could be read.
+inline void judge_cells(const Scene& scene, Outcome& outcome) {
+  constexpr double least = 3.0;
+  const double across = scene.cone.bottom_radius / scene.model.cell[0],
+               up = scene.cone.height / scene.model.cell[1];
+  if (std::min(across, up) >= least) return;
+  char text[160];
+  std::snprintf(
+      text, sizeof text,
+      "the cone is %.2g cells from its axis to its rim and %.2g high, less than %g: a smaller model.cell",
+      across, up, least);
+  outcome.checks.reasons.push_back(text);
+}
+
 /// Nothing lifts the concrete but a cone that it sticks to, in cells that are as large as the gap under its rim.
 inline void judge_height(const Scene& scene, Outcome& outcome) {
   double highest = 0.0;

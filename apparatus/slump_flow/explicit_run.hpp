@@ -106,19 +106,23 @@ struct LimitWatch {
   }
 };
 
-/// Explicit steps up to a time [s]; the report of the last one.
+/// A reading comes after so many steps at the latest: between two of them nobody can interrupt a run, nor see it.
+inline constexpr int most_steps_of_a_reading = 1000;
+
+/// Explicit steps up to a time [s], or as many as one reading may take; the report of the last one.
 template <class Geometry, class Law, class State>
 StepReport explicit_steps_until(double until, Body<Geometry>& body, const Law& law,
                                 const ExplicitSettings& settings, State& state,
                                 const RigidWall<Geometry::dim>& wall, LimitWatch& limits, Cost& cost) {
   StepReport step;
+  int steps = 0;
   do {
     const ExplicitReport one = explicit_step(body, law, settings, state, wall);
     limits.see(one);
     step = {.dt = one.dt, .converged = true, .failed = one.failed, .max_speed = one.max_speed};
     step.shear_rate_mean = one.shear_rate_mean;
     cost.steps += 1;
-  } while (!step.failed && body.time < until - 0.5 * state.next_dt);
+  } while (!step.failed && ++steps < most_steps_of_a_reading && body.time < until - 0.5 * state.next_dt);
   return step;
 }
 
@@ -189,6 +193,7 @@ Outcome run_explicit_in(const Scene& scene, const Law& law, const Observer& obse
   test_run::judge(body, start_mass, outcome.checks, outcome.cost);
   test_run::judge_volume(outcome.series.front().volume_change, outcome.checks);
   judge_depth(scene, outcome);
+  judge_cells(scene, outcome);
   judge_lift(outcome);
   judge_height(scene, outcome);
   outcome.cost.bytes_per_point = explicit_bytes_per_point<D>(body.points.thixotropic());

@@ -36,8 +36,9 @@ Outcome run_implicit_in(const Scene& scene, const Observer& observer) {
       .unfinished = [&] { return body.time < scene.duration * (1.0 - 1e-12); },
       .prepare =
           [&] {
-            settings.time_left = scene.duration - body.time;
-            settings.fixed_dt = test_run::fixed_step(scene.model, settings.time_left);
+            const double left = scene.duration - body.time;
+            settings.time_left = test_run::without_sliver(left, body.dt);
+            settings.fixed_dt = test_run::fixed_step(scene.model, left);
             if constexpr (D == 3)
               settings.admm.tolerance = flows ? flowing_tolerance : StepSettings{}.admm.tolerance;
             cone_gone = cone_is_gone(scene, body.time, outcome.series.back());
@@ -80,6 +81,7 @@ Outcome run_implicit_in(const Scene& scene, const Observer& observer) {
   test_run::judge(body, start_mass, outcome.checks, outcome.cost);
   test_run::judge_volume(outcome.series.front().volume_change, outcome.checks);
   judge_depth(scene, outcome);
+  judge_cells(scene, outcome);
   judge_points_across(scene, outcome);
   judge_lift(outcome);
   judge_height(scene, outcome);

@@ -15,12 +15,15 @@ namespace {
 
 static_assert(std::is_same_v<hid_t, std::int64_t>);
 
+/// The error of the first handle that could not be closed; 0: none. What is packed is written as it is closed.
+thread_local int lost_in_closing = 0;
+
 /// An HDF5 handle with the function that closes it.
 class Handle {
  public:
   Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
   ~Handle() {
-    if (id_ >= 0) close_(id_);
+    if (id_ >= 0 && close_(id_) < 0 && lost_in_closing == 0) lost_in_closing = errno != 0 ? errno : EIO;
   }
   Handle(const Handle&) = delete;
   Handle& operator=(const Handle&) = delete;
@@ -44,6 +47,7 @@ Hdf5File::Hdf5File(const std::filesystem::path& file) : path_(file) {
   H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are thrown, not printed
   errno = 0;
+  lost_in_closing = 0;
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_libver_bounds(access, H5F_LIBVER_EARLIEST, H5F_LIBVER_V110);
   file_ = H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
@@ -61,6 +65,9 @@ void Hdf5File::check(std::int64_t status) {
 void Hdf5File::close() {
   errno = 0;
   check(H5Fclose(std::exchange(file_, -1)));
+  if (lost_in_closing == 0) return;
+  errno = std::exchange(lost_in_closing, 0);
+  check(-1);
 }
 
 void Hdf5File::group(const std::string& path) {

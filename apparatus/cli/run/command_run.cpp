@@ -13,6 +13,7 @@
 #include "apparatus/cli/process/stop_signals.hpp"
 #include "apparatus/cli/run/run_and_write.hpp"
 #include "apparatus/cli/set_option.hpp"
+#include "apparatus/registry/cost_estimate.hpp"
 #include "apparatus/registry/error_estimate.hpp"
 #include "apparatus/registry/registry.hpp"
 #include "apparatus/report/run_folder.hpp"
@@ -74,6 +75,7 @@ int run(const Options& options) {
   report::RunFolder folder(options.out.empty() ? "runs/" + scene.name : options.out, options.force);
   stop_on_interrupt();
   if (!options.accuracy.empty()) scene = with_cells_for(scene, options);
+  if (!options.force) scene::check_cost(scene, threads);
   scene::set_threads(scene, threads);
   return run_and_publish(scene,
                          {.name = scene.name,

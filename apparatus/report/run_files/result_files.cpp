@@ -162,7 +162,10 @@ void ResultFiles::frame(const Frame& frame) {
 void ResultFiles::write_frame(const Frame& frame) {
   if (!frames_.empty() && frames_.back().first == frame.time) return;  // the end may fall on a frame's time
   write_frame_h5(h5_, fmt::format("/frames/{:05}", frames_.size()), frame);
-  std::filesystem::create_directories(folder_ / "frames");
+  std::error_code error;
+  std::filesystem::create_directory(folder_ / "frames",
+                                    error);  // and no folder above it, which others have removed
+  if (error) io::fail_to_write(folder_ / "frames");
   frames_.emplace_back(frame.time, fmt::format("frames/frame_{:05}.vtp", frames_.size()));
   write_frame_vtp(folder_ / frames_.back().second, frame);
 }
