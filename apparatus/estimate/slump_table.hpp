@@ -20,7 +20,7 @@ struct SlumpTable {
 
 /// One standard error of what is interpolated against a direct run, the scatter of runs included.
 inline constexpr double table_spread_error = 0.003;  ///< [m]
-inline constexpr double table_t500_error = 0.02;    ///< of t500
+inline constexpr double table_t500_error = 0.02;     ///< of t500
 
 struct TableReading {
   double spread = 0.0;
