@@ -9,7 +9,9 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <fstream>
+#include <thread>
 #include <vector>
 
 #include "apparatus/scene/input_error.hpp"
@@ -95,10 +97,21 @@ Lock lock_folder(const fs::path& folder, int& file) {
   return Lock::taken_by_another;
 }
 
+/// The same for who can wait a moment: what a run that was killed had just started (a chart's program) holds its lock
+/// until it is under way itself.
+Lock lock_patiently(const fs::path& folder, int& file) {
+  Lock lock = lock_folder(folder, file);
+  for (int attempt = 0; attempt < 10 && lock == Lock::taken_by_another; ++attempt) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    lock = lock_folder(folder, file);
+  }
+  return lock;
+}
+
 /// A run that goes on has a checkpoint, too.
 void refuse_what_another_writes(const fs::path& target, const fs::path& staging) {
   int file = -1;
-  if (lock_folder(staging, file) == Lock::taken_by_another)
+  if (lock_patiently(staging, file) == Lock::taken_by_another)
     refuse(target, "another process writes its result there at this moment");
   if (file >= 0) close(file);
 }
@@ -208,7 +221,7 @@ void RunFolder::lock() {
   for (int attempt = 0; attempt < 3; ++attempt) {  // another process may put its folder in place just now
     std::error_code error;
     fs::create_directory(staging_, error);
-    if (lock_folder(staging_, lock_) == Lock::taken_by_another)
+    if (lock_patiently(staging_, lock_) == Lock::taken_by_another)
       refuse(target_, "another process writes its result there at this moment");
     if (lock_ < 0 || is_named(lock_, staging_)) return;
     close(lock_);

@@ -106,6 +106,16 @@ struct LimitWatch {
   }
 };
 
+/// Steps of a fixed length end up to half a step beside the test's end.
+inline void tell_end(const Scene& scene, double time, Checks& checks) {
+  if (std::abs(time - scene.duration) <= 5e-3 * scene.duration) return;
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "the run ended at %.4g s, test.duration is %.4g s: a model.time_step that divides it", time,
+                scene.duration);
+  checks.reasons.push_back(text);
+}
+
 /// A reading comes after so many steps at the latest: between two of them nobody can interrupt a run, nor see it.
 inline constexpr int most_steps_of_a_reading = 1000;
 
@@ -189,6 +199,7 @@ Outcome run_explicit_in(const Scene& scene, const Law& law, const Observer& obse
 
   read_results(stopped_at, outcome);
   limits.tell(outcome.cost.steps, outcome.checks);
+  if (outcome.status == Status::completed && !stopped_at) tell_end(scene, body.time, outcome.checks);
   energy.tell(outcome.checks);
   test_run::judge(body, start_mass, outcome.checks, outcome.cost);
   test_run::judge_volume(outcome.series.front().volume_change, outcome.checks);

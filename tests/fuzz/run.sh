@@ -15,3 +15,4 @@ seconds=${1:-20}
 run scene apparatus/scenes reference_data/mixes
 run units tests/fuzz/corpus/units
 run record reference_data/site_torque reference_data/rheocem
+run checkpoint tests/fuzz/corpus/checkpoint

@@ -191,6 +191,29 @@ void judge_scenes(unsigned first, unsigned scenes) {
 }
 
 TEST(ExtremeScenes, Some) { judge_scenes(0, 30); }
+
+// Those of them that were wrong in silence or crashed: two and three points for a cone, the depth behind a gate read from
+// whole columns of points, a torque averaged over the start, a last step so short that it rang, cells longer than a blade.
+TEST(ExtremeScenes, SomeThatWereWrong) {
+  for (const unsigned i : {188u, 190u, 204u, 216u, 303u, 305u, 331u}) {
+    const RandomScene s = test::SceneGenerator(i)();
+    const std::string how = ending_of(s, false);
+    EXPECT_FALSE(how.starts_with("silent")) << "scene " << i << ", " << how << ":\n" << s.text;
+  }
+}
+
+// A reference that cannot be integrated takes nothing from the run but the check against it.
+TEST(ExtremeScenes, SomeReferencesFail) {
+  const auto outcome = run(R"(apparatus = "icar_vane"
+mix = {yield_stress = "54e-8 Pa", plastic_viscosity = "15.66 Pa.s", thixotropy = {structuration_rate = "0 Pa/s", destructuration = 0.0374, initial_flocculation = 3.456}}
+test = {speed = "0.794 rev/s", duration = "10 s"})");
+  ASSERT_TRUE(outcome);
+  EXPECT_EQ(outcome->status, Status::completed);
+  EXPECT_GT(number_of(*outcome, "torque_end_N_m"), 0.0);
+  for (const std::string& reason : outcome->checks.reasons)
+    EXPECT_NE(reason.find("cannot be checked"), std::string::npos) << reason;
+}
+
 TEST(ExtremeScenes, AllFirst) { judge_scenes(0, 250); }
 TEST(ExtremeScenes, AllSecond) { judge_scenes(250, 250); }
 TEST(ExtremeScenes, AllThird) { judge_scenes(500, 250); }

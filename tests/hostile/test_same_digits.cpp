@@ -35,12 +35,12 @@ double difference(const std::vector<scene::Column>& a, const std::vector<scene::
 
 TEST(SomeThreads, GiveTheSameDigits) {
   const std::string body =
-      "apparatus = \"slump_flow\"\nmix = \"mix_a\"\ntest = {rest = \"60 s\", duration = \"0.05 s\"}\n";
+      "apparatus = \"slump_flow\"\nmix = \"mix_a\"\ntest = {rest = \"60 s\", duration = \"0.03 s\"}\n";
   const std::string law = "points_per_cell = 2, yield = \"papanastasiou\", regularisation = \"0.2 s\"";
   const std::map<std::string, std::string> scenes{
       {"implicit quarter", body + "model = {space = \"quarter\", cell = \"25 mm\", points_per_cell = 2}"},
       {"half a box",
-       "apparatus = \"l_box\"\nmix = \"mix_a\"\ntest = {duration = \"0.05 s\"}\nmodel = {space = \"half\", "
+       "apparatus = \"l_box\"\nmix = \"mix_a\"\ntest = {duration = \"0.03 s\"}\nmodel = {space = \"half\", "
        "cell = "
        "\"33 mm\", points_per_cell = 2}"},
       {"explicit",
@@ -57,7 +57,7 @@ TEST(SomeThreads, GiveTheSameDigits) {
     EXPECT_LE(difference(one, two, compared), 1e-12) << name << ", two threads";
     EXPECT_LE(difference(one, four, compared), 1e-12) << name << ", four threads";
     EXPECT_EQ(difference(two, again, compared), 0.0) << name << ", twice on two";
-    EXPECT_GT(compared, 50u) << name;
+    EXPECT_GT(compared, 20u) << name;
   }
 }
 
