@@ -158,7 +158,7 @@ SteadyBody steady_body(const Scene& scene, const EndsGrid& g) {
              .high = FaceKind::no_slip,
              .n_cells = g.n_radial,
              .repeated_knots = {g.n_blade}};
-  if (g.n_shaft > 0) axes[0].repeated_knots.insert(axes[0].repeated_knots.begin(), g.n_shaft);
+  if (g.n_shaft > 0 && g.n_shaft < g.n_blade) axes[0].repeated_knots.insert(axes[0].repeated_knots.begin(), g.n_shaft);
   axes[1] = {.h = g.cell[1], .periodic = true, .n_cells = g.n_around, .repeated_knots = {first}};
   if (g.n_thick > 0) axes[1].repeated_knots.push_back(first + g.n_thick);
   axes[2] = {.h = g.cell[2],
