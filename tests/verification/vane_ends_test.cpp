@@ -141,7 +141,7 @@ TEST(VaneEnds, WhatItCannotTellItSays) {
   Scene stiff = with_ends(0.0, 0.0265);
   stiff.mix.tau_0 = 5000.0, stiff.mix.mu = 0.01, stiff.mix.K = 2e9;
   EXPECT_FALSE(run(stiff).checks.reasons.empty());
-  stiff.mix.mu = 1000.0;
+  stiff.mix.mu = 1000.0, stiff.model.cell = {0.0133, 0.0133};
   EXPECT_TRUE(run(stiff).checks.reasons.empty());
 }
 
