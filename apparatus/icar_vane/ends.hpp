@@ -1,7 +1,7 @@
 #pragma once
 
 // The vane with its ends: cylindrical coordinates that turn with it, one blade's sector all around, from the container's
-// floor to the free surface. Steady flow without inertia at each speed (libmpm/implicit/steady_flow.hpp).
+// floor to the free surface. Steady flow without inertia at each speed (libmpm/implicit/steady/steady_flow.hpp).
 //
 // The floor and the container's wall hold the concrete; its surface is flat and slips, so that there is no vortex and no
 // wave. Container, blades' tips and the blades' height lie on faces of the grid; gaps and shaft are moved to the nearest
@@ -9,7 +9,7 @@
 // the shaft, is left out: its torque is 1e-3 of the ends' or less.
 
 #include "apparatus/icar_vane/icar_vane.hpp"
-#include "libmpm/implicit/steady_flow.hpp"
+#include "libmpm/implicit/steady/steady_flow.hpp"
 
 namespace tremie::icar_vane {
 

@@ -1,4 +1,4 @@
-#include "libmpm/implicit/steady_flow.hpp"
+#include "libmpm/implicit/steady/steady_flow.hpp"
 
 namespace tremie {
 namespace {
