@@ -23,7 +23,8 @@ const Words<SpaceKind> space_words{{"axisymmetric", SpaceKind::axisymmetric},
                                    {"plane", SpaceKind::plane},
                                    {"plane_with_side_walls", SpaceKind::plane_with_side_walls},
                                    {"couette", SpaceKind::couette},
-                                   {"half", SpaceKind::half}};
+                                   {"half", SpaceKind::half},
+                                   {"cylindrical", SpaceKind::cylindrical}};
 const Words<SchemeKind> scheme_words{{"implicit", SchemeKind::implicit},
                                      {"explicit", SchemeKind::explicit_usl},
                                      {"explicit_usf", SchemeKind::explicit_usf}};

@@ -2,6 +2,7 @@
 
 #include <omp.h>
 
+#include "apparatus/icar_vane/ends.hpp"
 #include "apparatus/icar_vane/readings.hpp"
 #include "apparatus/icar_vane/sections.hpp"
 #include "apparatus/run/frames.hpp"
@@ -163,8 +164,15 @@ Outcome run_section(const Scene& scene, const Section& section, const Observer& 
 }
 
 void refuse_what_has_no_engine(const Scene& scene) {
-  if (scene.model.space != SpaceKind::couette && scene.model.space != SpaceKind::plane)
-    throw std::invalid_argument("model.space: the vane runs in \"couette\" or \"plane\"");
+  const bool ends = scene.model.space == SpaceKind::cylindrical;
+  if (scene.model.space != SpaceKind::couette && scene.model.space != SpaceKind::plane && !ends)
+    throw std::invalid_argument("model.space: the vane runs in \"couette\", \"plane\" or \"cylindrical\"");
+  if (ends && scene.mix.thixotropy)
+    throw std::invalid_argument(
+        "model.space: \"cylindrical\" is steady flow, without flocculation that the concrete carries along; "
+        "allowed with mix.thixotropy: \"couette\", \"plane\"; or leave it out by --set mix.thixotropy=false");
+  if (ends && scene.model.method == MethodKind::newton)
+    throw std::invalid_argument("model.method: \"cylindrical\" runs with \"auto\" or \"admm\"");
   test_run::refuse_what_has_no_engine(scene.model, "vane");
   constexpr double most = 1e7;  // some 10 GB in a section
   const auto [n, n_around] = scene.model.points_per_cell;
@@ -189,11 +197,13 @@ auto with_section(const Scene& scene, Use use) {
 Outcome run(const Scene& scene, const Observer& observer) {
   refuse_what_has_no_engine(scene);
   omp_set_num_threads(scene.threads);
+  if (scene.model.space == SpaceKind::cylindrical) return run_with_ends(scene, observer);
   return with_section(scene, [&](const auto& section) { return run_section(scene, section, observer); });
 }
 
 Estimate estimate(const Scene& scene) {
   refuse_what_has_no_engine(scene);
+  if (scene.model.space == SpaceKind::cylindrical) return estimate_with_ends(scene);
   return with_section(scene, [&](const auto& section) {
     auto body = section.body_at_rest(scene);
     activate(body.grid, body.points.x);

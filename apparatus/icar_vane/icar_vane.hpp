@@ -16,15 +16,17 @@
 
 namespace tremie::icar_vane {
 
-/// The instrument [m]; the defaults are the ICAR's. End effects above and below the vane are neglected: every
-/// torque is that of a section times the vane's height.
+/// The instrument [m]; the defaults are the ICAR's. In the spaces couette and plane the ends above and below the vane
+/// are neglected: every torque is that of a section times the vane's height. The cylindrical space has them (ends.hpp).
 struct Vane {
   double radius = 0.0635;
   double height = 0.127;
   double container_radius = 0.143;
   int blades = 4;                  ///< plane sections alone; a Couette section is a solid cylinder
   double blade_thickness = 0.003;  ///< plane sections alone [m]
-  double shaft_radius = 0.01;      ///< about which the blades stand; plane sections alone [m]
+  double shaft_radius = 0.01;      ///< about which the blades stand; plane and cylindrical [m]
+  double bottom_gap = 0.0795;      ///< below the blades, cylindrical alone [m]
+  double cover = 0.0795;           ///< concrete above the blades, cylindrical alone [m]
 };
 
 /// A checked scene, SI units; speeds in revolutions a second.
@@ -39,7 +41,7 @@ struct Scene {
   double hold_time = 5.0;                               ///< of each speed of a flow curve [s]
   double average_time = 2.0;    ///< the last part of each hold, over which the torque is averaged [s]
   double orientation = 0.0;     ///< of the blades against the points, plane sections alone [rad]
-  Model model;                  ///< space couette or plane
+  Model model;                  ///< space couette, plane or cylindrical
   double frame_interval = 0.0;  ///< [s]
   int threads = 1;
   bool with_reference = true;  ///< read torque_couette_reference; no scene key, for runs that are coarser
@@ -92,6 +94,8 @@ struct Results {
       0.0;                    ///< 2 Omega / (1 - R_i^2/R_o^2), which alpha_apparent was divided by [1/s]
   double alpha_window = 0.0;  ///< over which alpha_apparent was fitted [s]
   std::optional<double> torque_couette_reference = {};  ///< of the solid cylinder at the end [N m]
+  /// Cylindrical alone: the torque at the end over that of the plane section times the height, on the same cells.
+  std::optional<double> end_factor = {}, torque_plane = {};  ///< the second [N m]
   std::vector<CurvePoint> flow_curve;
   std::vector<ProfilePoint> profile;  ///< at the end
 };

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
 constexpr double most_points = 1e8;
+constexpr double most_cells_with_ends = 3e4;  // of a sector: its factor then takes some 3 GB
 constexpr const char* speeds_key = "test.speeds";
 
 /// A key of a flow curve. Its default is set by settle(), where there is a flow curve.
@@ -30,23 +31,40 @@ constexpr std::array curve_keys{
     CurveKey{"average_time", Dimension::time, "2 s",
              "with speeds: the last part of each, for the mean torque"}};
 
+/// What only a vane with ends has. Its default is the gap around the vane.
+struct EndKey {
+  const char *name, *help;
+};
+constexpr EndKey bottom_gap{
+    "bottom_gap", "cylindrical alone: between blades and floor; the gap to the container if left out"};
+constexpr EndKey cover{"cover",
+                       "cylindrical alone: concrete above the blades; the gap to the container if left out"};
+
+bool with_ends(const Values& values) { return values.word("model.space") == "cylindrical"; }
+
 Section vane_section() {
   return {
       .name = "vane",
-      .help = "The vane and its container; the defaults are the ICAR's. End effects are neglected.",
-      .keys = {{.name = "radius", .range = positive, .fallback = "63.5 mm", .help = "of the blades' tips"},
-               {.name = "height", .range = positive, .fallback = "127 mm"},
-               {.name = "container_radius", .range = positive, .fallback = "143 mm"},
-               {.name = "blades",
-                .kind = Kind::integer,
-                .range = between(2, 12),
-                .fallback = "4",
-                .help = "in the plane; a Couette section has a solid cylinder"},
-               {.name = "blade_thickness", .range = positive, .fallback = "3 mm", .help = "in the plane"},
-               {.name = "shaft_radius",
-                .range = positive,
-                .fallback = "10 mm",
-                .help = "in the plane: about which the blades stand; concrete there turns with them"}}};
+      .help =
+          "The vane and its container; the defaults are the ICAR's. In the cylindrical space the vane has "
+          "its ends.",
+      .keys = {
+          {.name = "radius", .range = positive, .fallback = "63.5 mm", .help = "of the blades' tips"},
+          {.name = "height", .range = positive, .fallback = "127 mm"},
+          {.name = "container_radius", .range = positive, .fallback = "143 mm"},
+          {.name = "blades",
+           .kind = Kind::integer,
+           .range = between(2, 12),
+           .fallback = "4",
+           .help = "in the plane; a Couette section has a solid cylinder"},
+          {.name = "blade_thickness", .range = positive, .fallback = "3 mm", .help = "in the plane"},
+          {.name = "shaft_radius",
+           .range = positive,
+           .fallback = "10 mm",
+           .help = "in the plane: about which the blades stand; concrete there turns with them; with ends it "
+                   "goes up to the surface"},
+          {.name = bottom_gap.name, .range = positive, .example = "80 mm", .help = bottom_gap.help},
+          {.name = cover.name, .range = positive, .example = "80 mm", .help = cover.help}}};
 }
 
 Section test_section() {
@@ -149,8 +167,36 @@ void check_vane(const Values& values) {
 
 void settle_cell(Values& values) {
   if (values.has("model.cell")) return;
-  const bool couette = values.word("model.space") == "couette";
-  values.set_number("model.cell", couette ? 0.001 : 0.005, Layer::fallback, "");
+  const std::string space = values.word("model.space");
+  values.set_number("model.cell",
+                    space == "couette" ? 0.001
+                    : space == "plane" ? 0.005
+                                       : 0.009,
+                    Layer::fallback, "");
+}
+
+void settle_ends(Values& values) {
+  for (const EndKey& key : {bottom_gap, cover}) {
+    const std::string full = std::string("vane.") + key.name;
+    if (!with_ends(values))
+      values.drop_beside(full, "model.space",
+                         "has a meaning in model.space = \"cylindrical\" alone: sections have no ends");
+    else if (!values.has(full))
+      values.set_number(full, values.number("vane.container_radius") - values.number("vane.radius"),
+                        Layer::fallback, "");
+  }
+}
+
+/// Steady flow alone: nothing that a run over time would need.
+void check_steady(const Values& values, const icar_vane::Scene& scene) {
+  if (!with_ends(values)) return;
+  if (scene.mix.thixotropy)
+    values.fail("model.space",
+                "is \"cylindrical\", which is steady flow without flocculation; allowed with mix.thixotropy: "
+                "\"couette\", \"plane\"; or leave it out by --set mix.thixotropy=false");
+  if (scene.model.method == MethodKind::newton)
+    values.fail("model.method",
+                "is \"newton\"; allowed in model.space = \"cylindrical\": \"auto\", \"admm\"");
 }
 
 void settle(Values& values) {
@@ -159,6 +205,7 @@ void settle(Values& values) {
   settle_cell(values);
   check_schedule(values);
   check_vane(values);
+  settle_ends(values);
 }
 
 /// Cells must resolve the gap, and the points must fit into a computer.
@@ -170,6 +217,22 @@ void check_cells(const Values& values, const icar_vane::Scene& scene) {
     values.fail("model.cell",
                 fmt::format("is larger than the gap between vane and container; allowed: at most \"{}\"",
                             write_quantity(gap, Dimension::length)));
+  if (with_ends(values)) {
+    const double least =
+        std::min({scene.vane.bottom_gap, scene.vane.cover, scene.vane.height, scene.vane.radius});
+    if (2.0 * across > least * (1.0 + 1e-9))
+      values.fail("model.cell",
+                  fmt::format("leaves less than two cells to the vane, its gap or its cover; allowed: at "
+                              "most \"{}\"",
+                              write_quantity(0.5 * least, Dimension::length)));
+    const double height = scene.vane.bottom_gap + scene.vane.height + scene.vane.cover;
+    const double cells = R / across * height / across * two_pi * scene.vane.radius / scene.vane.blades / up;
+    if (cells > most_cells_with_ends)
+      values.fail("model.cell",
+                  fmt::format("makes about {:.0e} cells; allowed in the cylindrical space: at most {:.0e}",
+                              cells, most_cells_with_ends));
+    return;
+  }
   const auto [n_across, n_up] = scene.model.points_per_cell;
   const double points =
       couette ? gap / across * n_across
@@ -213,11 +276,13 @@ ApparatusKeys icar_vane_keys() {
                      .settle = settle};
   keys.schema.push_back(vane_section());
   keys.schema.push_back(test_section());
-  keys.schema.push_back(model_section(
-      {"couette", "plane"}, {.cell = "",
-                             .points_per_cell = "3",
-                             .cell_help = "1 mm for \"couette\", 5 mm for \"plane\", if left out; in the "
-                                          "plane [along the radius, around at the tips]"}));
+  keys.schema.push_back(
+      model_section({"couette", "plane", "cylindrical"},
+                    {.cell = "",
+                     .points_per_cell = "3",
+                     .cell_help = "1 mm for \"couette\", 5 mm for \"plane\", 9 mm for "
+                                  "\"cylindrical\", if left out; in the last two [along the radius (and the "
+                                  "height), around at the tips]"}));
   keys.schema.push_back(output_section());
   return keys;
 }
@@ -228,10 +293,13 @@ icar_vane::Scene icar_vane_scene(const Values& values) {
   scene.vane = {values.number("vane.radius"),           values.number("vane.height"),
                 values.number("vane.container_radius"), static_cast<int>(values.integer("vane.blades")),
                 values.number("vane.blade_thickness"),  values.number("vane.shaft_radius")};
+  if (with_ends(values))
+    scene.vane.bottom_gap = values.number("vane.bottom_gap"), scene.vane.cover = values.number("vane.cover");
   read_schedule(values, scene);
   scene.orientation = values.number("test.orientation");
   scene.model = read_model(values);
   scene.frame_interval = read_output(values).frame_interval;
+  check_steady(values, scene);
   check_cells(values, scene);
   return scene;
 }

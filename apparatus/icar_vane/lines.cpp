@@ -90,6 +90,10 @@ std::vector<std::string> vane_lines(const icar_vane::Scene& scene, const icar_va
                                 *r.torque_couette_reference, r.torque_end / *r.torque_couette_reference));
   else if (scene.with_reference && scene.speed != 0.0 && scene.speeds.empty() && !has_integrated_references())
     lines.push_back("cylinder        not known: built without SUNDIALS; apt-get install libsundials-dev");
+  if (r.end_factor)
+    lines.push_back(fmt::format(
+        "ends            the torque is {:.4g} times {:.4g} N.m, the plane section's of the same height",
+        *r.end_factor, *r.torque_plane));
   add_comparison(scene, r, lines);
   if (r.alpha_apparent)
     lines.push_back(

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "apparatus/common/outcome_parts.hpp"
+#include "apparatus/icar_vane/ends.hpp"
 #include "apparatus/icar_vane/lines.hpp"
 
 namespace tremie::scene {
@@ -48,6 +49,8 @@ std::vector<Result> results_of(const icar_vane::Scene& scene, const icar_vane::R
           {"static_yield_stress_apparent_Pa", number(r.static_yield_stress_apparent)},
           {"dynamic_yield_stress_apparent_Pa", number(r.dynamic_yield_stress_apparent)},
           {"torque_couette_reference_N_m", number(r.torque_couette_reference)},
+          {"torque_plane_N_m", number(r.torque_plane)},
+          {"end_factor", number(r.end_factor)},
           {"input", input_of(scene)}};
 }
 
@@ -184,7 +187,8 @@ std::vector<std::string> remarks_on(const icar_vane::Scene& scene, const icar_va
 
 /// Blades in the plane have a shape to be seen; a solid cylinder's section is a line.
 std::optional<Stage> stage_of(const icar_vane::Scene& scene) {
-  if (scene.model.space != SpaceKind::plane) return std::nullopt;
+  if (scene.model.space != SpaceKind::plane)
+    return std::nullopt;  // with ends: no picture, the frames have it
   Stage stage;
   stage.up = 1, stage.depth = 2;
   Outline circle;
@@ -200,6 +204,28 @@ std::optional<Stage> stage_of(const icar_vane::Scene& scene) {
 double whole_time(const icar_vane::Scene& scene) {
   if (scene.speeds.empty()) return scene.duration;
   return scene.pre_shear_time + static_cast<double>(scene.speeds.size()) * scene.hold_time;
+}
+
+/// Faces of the grid stand for shaft and gaps: where they are.
+std::vector<std::string> uses_with_ends(const icar_vane::Scene& scene) {
+  const icar_vane::EndsGrid grid(scene, true);
+  std::vector<std::string> lines{flocculation_use(scene.mix)};
+  lines.push_back(
+      grid.n_thick > 0
+          ? fmt::format("blades: {} of {:g} mm", scene.vane.blades, scene.vane.blade_thickness * mm)
+          : fmt::format("blades: {} without thickness (thinner than half a cell); 3 mm of the "
+                        "ICAR's take 3 % more",
+                        scene.vane.blades));
+  lines.push_back(fmt::format(
+      "ends: {:.3g} mm to the floor, {:.3g} mm of cover, a shaft of {:.3g} mm (faces of the grid)",
+      grid.bottom_gap() * mm, grid.cover() * mm, grid.shaft_radius() * mm));
+  lines.push_back("surface: flat, slips; no vortex, no waves");
+  lines.push_back("inertia: left out, steady flow at each speed");
+  lines.push_back("third dimension: one blade's sector, which repeats");
+  lines.push_back(scene.speeds.empty() ? "flow curve: left out (no test.speeds)"
+                                       : fmt::format("flow curve: {} speeds", scene.speeds.size()));
+  add_model_uses(scene.model, lines);
+  return lines;
 }
 
 icar_vane::Observer observe(double duration, bool all_frames, const Observer& observer) {
@@ -242,6 +268,7 @@ Outcome run_icar_vane(const icar_vane::Scene& scene, const Measured& measured, b
 }
 
 std::vector<std::string> icar_vane_uses(const icar_vane::Scene& scene) {
+  if (scene.model.space == SpaceKind::cylindrical) return uses_with_ends(scene);
   const bool plane = scene.model.space == SpaceKind::plane;
   std::vector<std::string> lines{flocculation_use(scene.mix)};
   lines.push_back(

@@ -199,7 +199,7 @@ void check_against_reference(const Scene& scene, Outcome& outcome) {
   const Sample& last = outcome.series.back();
   const bool cylinder = scene.model.space == SpaceKind::couette;
   if (!reference || last.time < settled) return;
-  const double off = last.torque / *reference - 1.0;
+  const double off = last.torque / outcome.results.end_factor.value_or(1.0) / *reference - 1.0;
   if (!is_exact(scene.model.law) && std::abs(off) > (cylinder ? agreement_regularised : agreement_of_blades))
     outcome.checks.reasons.push_back(
         fmt::format("the torque is {:.0f} % off that of the yield stress itself: at this speed the "

@@ -11,7 +11,8 @@ namespace tremie::test_run {
 inline constexpr std::int64_t points_per_thread = 5000, points_per_explicit_thread = 1600;
 
 inline bool is_3d(SpaceKind space) {
-  return space == SpaceKind::quarter || space == SpaceKind::half || space == SpaceKind::full;
+  return space == SpaceKind::quarter || space == SpaceKind::half || space == SpaceKind::full ||
+         space == SpaceKind::cylindrical;
 }
 
 /// The number of threads for a body of so many points on so many hardware threads, where the user names none.

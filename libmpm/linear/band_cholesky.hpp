@@ -44,7 +44,8 @@ class BandCholesky {
       auto panel = columns_[k].middleRows(block, rows);
       diagonal.template triangularView<Eigen::Lower>().transpose().template solveInPlace<Eigen::OnTheRight>(
           panel);
-      for (int j = 0; j * block < rows; ++j)
+#pragma omp parallel for schedule(dynamic) if (rows > 600)
+      for (int j = 0; j < rows / block; ++j)
         columns_[k + 1 + j].topRows(rows - j * block).noalias() -=
             panel.bottomRows(rows - j * block) * panel.middleRows(j * block, block).transpose();
     }

@@ -11,22 +11,28 @@ namespace tremie {
 
 namespace {
 
-using Row = std::map<double, double>;  // container_over_radius -> factor
+using Curve = std::map<double, double>;  // ln(1 + Bingham number) -> factor
+using Row = std::map<double, Curve>;     // container_over_radius -> curve
 
-/// height_over_radius -> row.
+/// A number that round-off leaves where the table's is.
+double rounded(double x) { return std::round(1e9 * x) * 1e-9; }
+
+/// Radius over height -> row: the ends' share of the torque is in proportion to it.
 std::map<double, Row> table_of(const std::string& csv, const std::string& name) {
   std::istringstream in(csv);
   std::string line;
   std::map<double, Row> table;
   for (int number = 1; std::getline(in, line); ++number) {
     if (line.empty() || line.front() == '#' || line.starts_with("height_over_radius")) continue;
-    double h = 0.0, c = 0.0, f = 0.0;
-    char first = 0, second = 0;
+    double h = 0.0, c = 0.0, bingham = 0.0, f = 0.0;
+    char first = 0, second = 0, third = 0;
     std::istringstream fields(line);
-    if (!(fields >> h >> first >> c >> second >> f) || first != ',' || second != ',' || !(f >= 1.0))
-      throw std::invalid_argument(name + ":" + std::to_string(number) +
-                                  ": expected height_over_radius,container_over_radius,end_factor");
-    table[h][c] = f;
+    const bool read(fields >> h >> first >> c >> second >> bingham >> third >> f);
+    if (!read || first != ',' || second != ',' || third != ',' || !(h > 0.0 && bingham >= 0.0) || !(f >= 1.0))
+      throw std::invalid_argument(
+          name + ":" + std::to_string(number) +
+          ": expected height_over_radius,container_over_radius,bingham_number,end_factor");
+    table[rounded(1.0 / h)][rounded(c)][std::log1p(bingham)] = f;
   }
   return table;
 }
@@ -51,17 +57,26 @@ double textbook_end_factor(const Instrument& in) {
   return 1.0 + 2.0 * in.vane_radius / (3.0 * in.vane_height);
 }
 
-double end_factor_from_table(const std::string& csv, const std::string& name, const Instrument& in) {
+double end_factor_from_table(const std::string& csv, const std::string& name, const Instrument& in,
+                             double bingham_number) {
   const auto table = table_of(csv, name);
-  const double h = in.vane_height / in.vane_radius, c = in.container_radius / in.vane_radius;
-  const auto factor = between(
-      table, h, [&](const Row& row) { return between(row, c, [](double f) { return std::optional(f); }); });
+  if (table.empty()) throw std::invalid_argument(name + ": holds no row");
+  const double h = in.vane_height / in.vane_radius, c = rounded(in.container_radius / in.vane_radius);
+  const auto at_bingham = [&](const Curve& curve) {
+    return between(curve, std::log1p(bingham_number), [](double f) { return std::optional(f); });
+  };
+  const auto factor =
+      between(table, rounded(1.0 / h), [&](const Row& row) { return between(row, c, at_bingham); });
   if (factor) return *factor;
-  const std::string range = table.empty() ? "it is empty"
-                                          : "it holds heights from " + std::to_string(table.begin()->first) +
-                                                " to " + std::to_string(table.rbegin()->first) + " radii";
-  throw std::invalid_argument(name + ": no end factor for a vane of " + std::to_string(h) +
-                              " radii in a container of " + std::to_string(c) + " radii; " + range);
+  const Row& row = table.begin()->second;
+  const Curve& curve = row.begin()->second;
+  std::ostringstream what;
+  what << name << ": no end factor for a vane of " << h << " radii in a container of " << c
+       << " radii at a Bingham number of " << bingham_number << "; it holds heights from "
+       << 1.0 / table.rbegin()->first << " to " << 1.0 / table.begin()->first << " radii, containers from "
+       << row.begin()->first << " to " << row.rbegin()->first << " radii, Bingham numbers from 0 to "
+       << std::expm1(curve.rbegin()->first);
+  throw std::invalid_argument(what.str());
 }
 
 }  // namespace tremie

@@ -186,10 +186,13 @@ TEST(FitTorqueDecay, ChoosesTheKineticsAndIsNotMovedByTheLastDigitOfTheSpeed) {
 TEST(VaneEnds, TheTextbookAndATable) {
   EXPECT_NEAR(textbook_end_factor({}), 1.0 + 2.0 * 0.0635 / (3.0 * 0.127), 1e-12);
   const std::string table =
-      "height_over_radius,container_over_radius,end_factor\n1,2,1.6\n1,3,1.5\n3,2,1.2\n3,3,1.1\n";
-  EXPECT_NEAR(end_factor_from_table(table, "t.csv", {1.0, 2.0, 2.5}), 1.35, 1e-12);
-  EXPECT_THROW(end_factor_from_table(table, "t.csv", {1.0, 4.0, 2.5}), std::invalid_argument);
-  EXPECT_THROW(end_factor_from_table("1;2;3\n", "t.csv", {1.0, 2.0, 2.5}), std::invalid_argument);
+      "height_over_radius,container_over_radius,bingham_number,end_factor\n"
+      "1,2,0,1.6\n1,3,0,1.5\n3,2,0,1.2\n3,3,0,1.1\n1,2,3,1.8\n1,3,3,1.7\n3,2,3,1.4\n3,3,3,1.3\n";
+  EXPECT_NEAR(end_factor_from_table(table, "t.csv", {1.0, 2.0, 2.5}, 0.0), 1.25, 1e-9);  // 1/2 between 1 and 1/3
+  EXPECT_NEAR(end_factor_from_table(table, "t.csv", {1.0, 2.0, 2.5}, 1.0), 1.35, 1e-9);  // ln 2 of ln 4
+  EXPECT_THROW(end_factor_from_table(table, "t.csv", {1.0, 4.0, 2.5}, 1.0), std::invalid_argument);
+  EXPECT_THROW(end_factor_from_table(table, "t.csv", {1.0, 2.0, 2.5}, 4.0), std::invalid_argument);
+  EXPECT_THROW(end_factor_from_table("1;2;3;4\n", "t.csv", {1.0, 2.0, 2.5}, 0.0), std::invalid_argument);
 }
 
 // Three values of a normal sample: mean, s and t(0.975, 2) s/sqrt(3) by hand.

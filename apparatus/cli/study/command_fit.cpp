@@ -124,9 +124,30 @@ FitResult read_and_fit(const Options& o, const std::string& file, FitInput in) {
 
 // --- the ends of the vane
 
+constexpr double usual_bingham_number = 1.0;
+
+/// tau_0/(mu Omega) of the record at the middle of its speeds, by what is given or by a fit without ends, whose quotient
+/// the ends leave as it is; that of usual concrete where the record tells no viscosity or is a protocol's.
+double bingham_number(const Options& o, const FitInput& in) {
+  std::optional<double> tau_0 = in.tau_0, mu = in.mu, omega = in.omega;
+  if (!o.protocol) {
+    const FitResult none = read_and_fit(o, o.data.front(), in);
+    if (none.tau_0) tau_0 = none.tau_0->value;
+    if (none.mu) mu = none.mu->value;
+    std::vector<double> speeds = none.curve.x;
+    if (none.kind == RecordKind::flow_curve && !speeds.empty()) {
+      std::nth_element(speeds.begin(), speeds.begin() + static_cast<std::ptrdiff_t>(speeds.size() / 2),
+                       speeds.end());
+      omega = speeds[speeds.size() / 2];
+    }
+  }
+  if (!tau_0 || !mu || !omega || *mu <= 0.0 || *omega <= 0.0) return usual_bingham_number;
+  return std::max(0.0, *tau_0 / (*mu * *omega));
+}
+
 /// The factor of the ends on the height of the vane.
-double end_factor(const Options& o, const Instrument& in) {
-  if (o.ends == "textbook") return textbook_end_factor(in);
+double end_factor(const Options& o, const FitInput& in) {
+  if (o.ends == "textbook") return textbook_end_factor(in.instrument);
   if (o.ends == "none") return 1.0;
   for (const auto& folder : scene::data_folders()) {
     std::error_code error;
@@ -134,7 +155,8 @@ double end_factor(const Options& o, const Instrument& in) {
       if (entry.path().extension() == ".csv")
         return as_bad_input("--ends computed", [&] {
           return end_factor_from_table(read_text_file(entry.path().string()),
-                                       entry.path().filename().string(), in);
+                                       entry.path().filename().string(), in.instrument,
+                                       bingham_number(o, in));
         });
   }
   throw scene::InputError(
@@ -303,7 +325,7 @@ int run(const Options& options) {
     check(in.instrument);
     return 0;
   });
-  const double factor = end_factor(options, in.instrument);
+  const double factor = end_factor(options, in);
   const Json given = input_json(options, in);
   in.instrument.vane_height *= factor;  // torque and height enter all formulas as their quotient
   const Answer answer = options.protocol          ? protocol(options, in, factor)

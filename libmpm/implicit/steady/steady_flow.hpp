@@ -1,0 +1,49 @@
+#pragma once
+
+// Steady flow without inertia in a container that is full of concrete, in cylindrical coordinates: the convex problem of
+// a step (yield_problem.hpp) without masses, and its solution by ADMM with a Cholesky factor.
+//
+// The flow is the same at every time and no cell is ever empty, so there are no points: every cell is full and carries
+// the mix's yield stress. Bodies that carry flocculation, or whose inertia counts, need the steps.
+
+#include "libmpm/geometry/cylindrical.hpp"
+#include "libmpm/implicit/pose.hpp"
+#include "libmpm/implicit/update.hpp"
+
+namespace tremie {
+
+/// Of full cells: rows at every quadrature point, cell by cell.
+template <>
+struct Quadrature<Cylindrical> {
+  static constexpr int D = 3, n_strain = 5, n_places = 8, n_local = 27;
+  using StrainRows = std::array<Mat<n_strain, D>, n_local>;
+  using DivergenceRows = std::array<Vec<D>, n_local>;
+
+  std::vector<std::array<StrainRows, n_places>> B;  ///< strain rows [1/m]
+  std::vector<DivergenceRows> b;                    ///< rows of the cell's mean divergence [1/m]
+  std::vector<std::array<double, n_places>> V;      ///< [m^3]
+  std::vector<std::array<double, n_places>> tau_y;  ///< [Pa]
+  std::vector<double> V_cell;                       ///< sum of V [m^3]
+  std::vector<double> p;                            ///< pressure without divergence [Pa]
+  std::vector<std::array<Vec<D>, n_places>> place = {};
+
+  const DivergenceRows& divergence_rows(int c) const { return b[static_cast<std::size_t>(c)]; }
+};
+
+using SteadyBody = ImplicitBody<Cylindrical>;
+
+/// Activates all cells of a grid with three bounded or periodic axes, blocks left out, and lays out their quadrature.
+void lay_out_steady_flow(SteadyBody& body);
+
+/// Solves for the velocities at the walls' and blocks' speeds, from the stresses of the last solution; then v,
+/// wall_force and dissipation of the body are those of the flow. `rate`: a typical shear rate of it [1/s], above 0.
+SolveReport solve_steady_flow(SteadyBody& body, const YieldLaw& law, double rate, int max_iterations = 1000);
+
+/// Pressure of cell c in the flow [Pa].
+double steady_pressure(const SteadyBody& body, int c);
+
+/// Velocity in the middle of a cell [m/s], and its mean shear rate [1/s].
+Vec<3> velocity_in_middle(const SteadyBody& body, int c);
+double shear_rate_of_cell(const SteadyBody& body, int c);
+
+}  // namespace tremie
