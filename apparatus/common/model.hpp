@@ -15,7 +15,16 @@
 
 namespace tremie {
 
-enum class SpaceKind { axisymmetric, quarter, full, plane, plane_with_side_walls, couette, half, cylindrical };
+enum class SpaceKind {
+  axisymmetric,
+  quarter,
+  full,
+  plane,
+  plane_with_side_walls,
+  couette,
+  half,
+  cylindrical
+};
 enum class SchemeKind { implicit, explicit_usl, explicit_usf };
 enum class MethodKind { automatic, admm, newton };
 enum class ShapeKind { b_spline, gimp };

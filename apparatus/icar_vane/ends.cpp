@@ -233,6 +233,7 @@ Outcome run_with_ends(const Scene& scene, const Observer& observer) {
     outcome.checks.reasons.push_back(fmt::format("{} of {} steady flows did not converge to the tolerance",
                                                  outcome.checks.unconverged_steps, outcome.cost.steps));
   judge(scene, grid, fastest, slowest, outcome.checks);
+  outcome.checks.max_speed_end = angular(std::abs(last_speed)) * scene.vane.radius;
   outcome.results.profile = profile_of(grid, body);
   body = {};  // the plane section takes its place
   outcome.results.torque_plane = plane_torque(scene, last_speed, outcome.checks);

@@ -188,7 +188,8 @@ TEST(VaneEnds, TheTextbookAndATable) {
   const std::string table =
       "height_over_radius,container_over_radius,bingham_number,end_factor\n"
       "1,2,0,1.6\n1,3,0,1.5\n3,2,0,1.2\n3,3,0,1.1\n1,2,3,1.8\n1,3,3,1.7\n3,2,3,1.4\n3,3,3,1.3\n";
-  EXPECT_NEAR(end_factor_from_table(table, "t.csv", {1.0, 2.0, 2.5}, 0.0), 1.25, 1e-9);  // 1/2 between 1 and 1/3
+  EXPECT_NEAR(end_factor_from_table(table, "t.csv", {1.0, 2.0, 2.5}, 0.0), 1.25,
+              1e-9);  // 1/2 between 1 and 1/3
   EXPECT_NEAR(end_factor_from_table(table, "t.csv", {1.0, 2.0, 2.5}, 1.0), 1.35, 1e-9);  // ln 2 of ln 4
   EXPECT_THROW(end_factor_from_table(table, "t.csv", {1.0, 4.0, 2.5}, 1.0), std::invalid_argument);
   EXPECT_THROW(end_factor_from_table(table, "t.csv", {1.0, 2.0, 2.5}, 4.0), std::invalid_argument);
