@@ -110,7 +110,7 @@ class BlockSystem {
   }
   /// Numbers the unknowns with the grid's shortest way running fastest and decides between band and sparse:
   /// in a plane the band's n b^2 operations win, by measurement, up to about 800 n^1.5; in 3D
-  /// sparse wins where the body is small, and beyond that the band's dense kernels, with all threads.
+  /// sparse wins where the body is small, and beyond that the band's dense kernels, with all threads, up to 800 MB.
   void number_across_the_thin_way(const ActiveGrid<D>& grid) {
     Index<D> way;
     for (int d = 0; d < D; ++d) way[d] = d;
@@ -136,7 +136,7 @@ class BlockSystem {
       for (int j : neighbours_[i])
         bandwidth_ = std::max(bandwidth_, std::abs(band_dof_[i * D] - band_dof_[j * D]) + D - 1);
     const double n = n_nodes_ * D, b = bandwidth_;
-    banded_ = D < 3 ? b * b < 800.0 * std::sqrt(n) : n > 4000.0 && b * b < 200.0 * n;
+    banded_ = D < 3 ? b * b < 800.0 * std::sqrt(n) : n > 4000.0 && b * b < 200.0 * n && n * b < 1e8;
   }
   bool factorise_band() {
     band_.reset(n_nodes_ * D, bandwidth_);

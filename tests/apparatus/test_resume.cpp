@@ -69,10 +69,10 @@ TEST_F(Refused, ARunOverAnUnfinishedOneNamesResume) {
 }
 
 TEST_F(Refused, TwoRunsIntoOneFolder) {
-  const auto both = tremie(
-      "'" TREMIE_PROGRAM
-      "' run scene.toml --quiet --set 'test.duration=\"100 s\"' --out two & sleep 0.3; '" TREMIE_PROGRAM
-      "' run scene.toml --out two; code=$?; kill -KILL $!; exit $code");
+  const auto both = tremie("'" TREMIE_PROGRAM
+                           "' run scene.toml --quiet --set 'test.duration=\"100 s\"' --set 'model.cell=\"3 "
+                           "mm\"' --out two & sleep 0.3; '" TREMIE_PROGRAM
+                           "' run scene.toml --out two; code=$?; kill -KILL $!; exit $code");
   EXPECT_EQ(both.code, 2) << both.text;
   EXPECT_NE(both.text.find("another process"), std::string::npos) << both.text;
 }
