@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numeric>
+#include <map>
+#include <utility>
 
 namespace tremie::report {
 namespace {
@@ -23,20 +24,39 @@ MovingFrame seen(const Frame& frame, const scene::Stage& stage, bool thixotropic
   return result;
 }
 
-/// Which points of a frame stand for all: those next to y = 0 where they fill a space, then evenly every so many.
-std::vector<std::size_t> points_shown(const std::vector<std::array<double, 3>>& x, std::size_t most) {
-  std::vector<std::size_t> chosen(x.size());
-  std::iota(chosen.begin(), chosen.end(), std::size_t{0});
-  if (chosen.size() <= most) return chosen;
-  std::vector<double> depth;
-  for (const auto& p : x) depth.push_back(std::abs(p[1]));
-  std::nth_element(depth.begin(), depth.begin() + static_cast<std::ptrdiff_t>(most - 1), depth.end());
-  const bool space = std::any_of(x.begin(), x.end(), [](const auto& p) { return p[2] != 0.0; });
-  if (space) std::erase_if(chosen, [&](std::size_t p) { return std::abs(x[p][1]) > depth[most - 1]; });
-  const std::size_t every = (chosen.size() + most - 1) / most;
-  std::vector<std::size_t> result;
-  for (std::size_t i = 0; i < chosen.size(); i += every) result.push_back(chosen[i]);
-  return result;
+using Places = std::vector<std::array<double, 3>>;
+
+/// Of points that fill a space the section y = 0: of each rectangle of x and z the point that is nearest to it, so that
+/// no part of the section stays empty where the points have moved apart.
+std::vector<std::size_t> nearest_to_section(const Places& places, std::size_t most) {
+  std::array<double, 3> low = places.front(), high = low;
+  for (const auto& x : places)
+    for (std::size_t d = 0; d < 3; ++d) low[d] = std::min(low[d], x[d]), high[d] = std::max(high[d], x[d]);
+  const double width = std::max(high[0] - low[0], 1e-9), height = std::max(high[2] - low[2], 1e-9),
+               h = std::sqrt(width * height / static_cast<double>(most));
+  std::map<std::pair<int, int>, std::size_t> nearest;
+  for (std::size_t p = 0; p < places.size(); ++p) {
+    const std::pair at{static_cast<int>((places[p][0] - low[0]) / h),
+                       static_cast<int>((places[p][2] - low[2]) / h)};
+    const auto [there, is_new] = nearest.try_emplace(at, p);
+    if (!is_new && std::abs(places[p][1]) < std::abs(places[there->second][1])) there->second = p;
+  }
+  std::vector<std::size_t> chosen;
+  for (const auto& [at, p] : nearest) chosen.push_back(p);
+  std::sort(chosen.begin(), chosen.end());
+  return chosen;
+}
+
+/// Which points of a frame stand for all.
+std::vector<std::size_t> points_shown(const Places& places, std::size_t most) {
+  const bool all = places.size() <= most;
+  if (!all && std::any_of(places.begin(), places.end(), [](const auto& x) { return x[2] != 0.0; }) &&
+      std::any_of(places.begin(), places.end(), [](const auto& x) { return x[1] != 0.0; }))
+    return nearest_to_section(places, most);
+  std::vector<std::size_t> chosen;
+  const std::size_t every = all ? 1 : (places.size() + most - 1) / most;
+  for (std::size_t p = 0; p < places.size(); p += every) chosen.push_back(p);
+  return chosen;
 }
 
 Frame thin_frame(const Frame& frame, std::size_t most) {
