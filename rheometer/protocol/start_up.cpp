@@ -34,6 +34,13 @@ std::optional<double> rise(const ProtocolRecord& r, std::size_t begin, std::size
   return aa > 0.0 && at > 0.0 ? std::optional(at / aa) : std::nullopt;
 }
 
+/// Whether rows up to the peak share their times, as in an export that rounds them to fewer digits than its rows need.
+bool times_are_rounded(const ProtocolRecord& r, std::size_t begin, std::size_t peak) {
+  int shared = 0;
+  for (std::size_t i = begin + 1; i <= peak; ++i) shared += r.time[i] == r.time[i - 1] ? 1 : 0;
+  return shared >= 2;
+}
+
 /// G of an elastic material between the vane and the container: T = 4 pi h G angle/(R_i^-2 - R_o^-2).
 std::optional<double> modulus(std::optional<double> slope, const Instrument& in, double compliance,
                               std::vector<std::string>& notes) {
@@ -66,7 +73,11 @@ StartUpReading read_start_up(const ProtocolRecord& r, const Section& s, const In
   reading.peak_inside = peak > s.begin && peak + 2 < s.end && reading.end_torque < 0.98 * reading.peak_torque;
   if (reading.peak_inside) {
     reading.static_yield_stress = shear_stress_at(in.vane_radius, reading.peak_torque, in);
-    reading.shear_modulus = modulus(rise(r, s.begin, peak), in, options.compliance, notes);
+    if (times_are_rounded(r, s.begin, peak))
+      notes.push_back(
+          "shear_modulus: several rows share one time, so that the rise over the angle is not told");
+    else
+      reading.shear_modulus = modulus(rise(r, s.begin, peak), in, options.compliance, notes);
   } else {
     notes.push_back(peak <= s.begin + 1
                         ? "static_yield_stress: the torque does not rise, so no start-up was recorded"
