@@ -91,7 +91,7 @@ TEST_F(SomeWorld, LittleMemory) {
   }
   // One thread: the allocator keeps 64 MB of addresses for each further one, which the estimate does not know.
   const auto told =
-      tremie("run s.toml --quiet --threads 1 --out out --set model.cell='1 mm'", "ulimit -v 120000;");
+      tremie("run s.toml --quiet --threads 1 --out out --set model.cell='1 mm'", "ulimit -v 100000;");
   EXPECT_EQ(told.code, 2) << told.text;
   EXPECT_TRUE(holds(told, "--force")) << told.text;
 }
