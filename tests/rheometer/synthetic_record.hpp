@@ -18,9 +18,9 @@ inline const double omega = angular_speed(0.25);
 
 inline void finish(TorqueRecord& record, double noise, std::uint64_t seed) {
   std::mt19937_64 generator(seed);
-  std::normal_distribution<double> normal(0.0, noise);
+  std::normal_distribution<double> normal(0.0, 1.0);
   for (double& torque : record.torque) {
-    if (noise > 0.0) torque *= 1.0 + normal(generator);
+    if (noise > 0.0) torque *= 1.0 + noise * normal(generator);
     record.line.push_back(static_cast<long>(record.line.size()) + 2);
   }
 }
