@@ -5,6 +5,8 @@
 #include <numbers>
 
 #include "apparatus/icar_vane/readings.hpp"
+#include "apparatus/icar_vane/stages.hpp"
+#include "rheometer/reference/instrument.hpp"
 
 namespace tremie::icar_vane {
 namespace {
@@ -14,8 +16,6 @@ constexpr double most_inertia =
 // Cells: a sheared layer of fewer makes the torque more than 2 % too high.
 constexpr double thinnest_layer = 2.0;
 constexpr double sheet = 0.5;  // of a cell around: a thinner blade is a sheet
-
-double angular(double speed) { return 2.0 * std::numbers::pi * speed; }
 
 int cells(double length, double size, int least) {
   return std::max(least, static_cast<int>(std::lround(length / size)));
@@ -35,13 +35,14 @@ int cells_along(const Vane& vane, double size) {
   return best;
 }
 
-/// Stages of the test: speed [rev/s] and how long it is held [s].
-std::vector<std::pair<double, double>> stages_of(const Scene& scene) {
-  if (scene.speeds.empty())
-    return {{scene.speed, start_up_time}, {scene.speed, scene.duration - start_up_time}};
-  std::vector<std::pair<double, double>> stages = {{scene.pre_shear_speed, scene.pre_shear_time}};
-  for (double speed : scene.speeds) stages.emplace_back(speed, scene.hold_time);
-  std::erase_if(stages, [](const auto& stage) { return stage.second <= 0.0; });
+/// The test's stages; of a constant speed the start is one of its own, so that a record has more than one line.
+std::vector<Stage> lines_of(const Scene& scene) {
+  std::vector<Stage> stages = stages_of(scene);
+  if (scene.speeds.empty()) {
+    const double start = std::min(start_up_time, scene.duration);
+    stages = {{scene.speed, start}, {scene.speed, scene.duration - start}};
+  }
+  std::erase_if(stages, [](const Stage& stage) { return stage.duration <= 0.0; });
   return stages;
 }
 
@@ -107,7 +108,7 @@ double plane_torque(const Scene& scene, double speed, Checks& checks) {
 /// What a steady flow without inertia on these cells cannot tell.
 void judge(const Scene& scene, const EndsGrid& grid, double fastest, double slowest, Checks& checks) {
   const Mix& mix = scene.mix;
-  const double R = scene.vane.radius, omega = angular(std::abs(fastest));
+  const double R = scene.vane.radius, omega = angular_speed(std::abs(fastest));
   const double mu = mix.mu + viscosity(scene.model.law, omega);
   const double inertia = mix.density * omega * R * R / (mu + mix.tau_0 / omega);
   if (inertia > most_inertia)
@@ -115,7 +116,7 @@ void judge(const Scene& scene, const EndsGrid& grid, double fastest, double slow
         "model.space = \"cylindrical\" leaves inertia out, and the Reynolds number is {:.3g}; it counts from "
         "about {:g} on: a lower test.speed",
         inertia, most_inertia));
-  const double slow = angular(std::abs(slowest));
+  const double slow = angular_speed(std::abs(slowest));
   const double layer =
       R * std::sqrt((mix.mu + viscosity(scene.model.law, slow)) * slow / std::max(1e-9, mix.tau_0));
   if (mix.tau_0 > 0.0 && layer < thinnest_layer * grid.cell[0])
@@ -176,7 +177,7 @@ SteadyBody steady_body(const Scene& scene, const EndsGrid& g) {
 }
 
 SteadyTorques turn_steadily(const Scene& scene, const EndsGrid& grid, double speed, SteadyBody& body) {
-  const double omega = angular(speed);
+  const double omega = angular_speed(speed);
   for (auto& block : body.grid.blocks)
     block.velocity = [omega](const Vec<3>& x) { return Vec<3>(0.0, omega * x[0], 0.0); };
   SteadyTorques t;
@@ -199,7 +200,7 @@ Outcome run_with_ends(const Scene& scene, const Observer& observer) {
   Outcome outcome;
   double time = 0.0, turned = 0.0, last_speed = 0.0;
   SteadyTorques t;
-  const auto stages = stages_of(scene);
+  const auto stages = lines_of(scene);
   double fastest = 0.0, slowest = 1e300;
   for (const auto& [speed, duration] : stages) {
     if (observer.interrupted && *observer.interrupted) {
@@ -211,7 +212,7 @@ Outcome run_with_ends(const Scene& scene, const Observer& observer) {
       outcome.checks.unconverged_steps += t.solve.converged ? 0 : 1;
       outcome.cost.steps += 1;
     }
-    last_speed = speed, time += duration, turned += angular(speed) * duration;
+    last_speed = speed, time += duration, turned += angular_speed(speed) * duration;
     fastest = std::max(fastest, std::abs(speed)), slowest = std::min(slowest, std::abs(speed));
     outcome.series.push_back({.time = time,
                               .speed = speed,
@@ -233,7 +234,7 @@ Outcome run_with_ends(const Scene& scene, const Observer& observer) {
     outcome.checks.reasons.push_back(fmt::format("{} of {} steady flows did not converge to the tolerance",
                                                  outcome.checks.unconverged_steps, outcome.cost.steps));
   judge(scene, grid, fastest, slowest, outcome.checks);
-  outcome.checks.max_speed_end = angular(std::abs(last_speed)) * scene.vane.radius;
+  outcome.checks.max_speed_end = angular_speed(std::abs(last_speed)) * scene.vane.radius;
   outcome.results.profile = profile_of(grid, body);
   body = {};  // the plane section takes its place
   outcome.results.torque_plane = plane_torque(scene, last_speed, outcome.checks);
@@ -255,7 +256,7 @@ Estimate estimate_with_ends(const Scene& scene) {
   e.points = e.cells_active = grid.n_cells();
   e.bytes_per_point = static_cast<std::int64_t>(8.0 * n * band / grid.n_cells() +
                                                 sizeof(Quadrature<Cylindrical>::StrainRows) * 8.0);
-  e.steps = e.steps_expected = scene.speeds.empty() ? 1 : static_cast<std::int64_t>(stages_of(scene).size());
+  e.steps = e.steps_expected = static_cast<std::int64_t>(stages_of(scene).size());
   for (const auto& [speed, duration] : stages_of(scene)) e.time_expected += duration;
   e.point_step =
       (1e-10 * n * band * band + 100.0 * (1.5e-9 * n * band + 1e-5 * grid.n_cells())) / grid.n_cells();

@@ -5,30 +5,18 @@
 #include "apparatus/icar_vane/ends.hpp"
 #include "apparatus/icar_vane/readings.hpp"
 #include "apparatus/icar_vane/sections.hpp"
+#include "apparatus/icar_vane/stages.hpp"
 #include "apparatus/run/frames.hpp"
 #include "apparatus/run/run_checks.hpp"
 #include "apparatus/run/run_loop.hpp"
 #include "libmpm/implicit/archived_state.hpp"
+#include "rheometer/reference/instrument.hpp"
 
 namespace tremie::icar_vane {
 namespace {
 
 constexpr double largest_dt = 0.02;  // resolves the decay: lambda follows the flow by one step [s]
 constexpr double reach = 1.2;  // of a step, in cells: points move along arcs, without error in a whole turn
-
-/// A speed held for a time.
-struct Stage {
-  double speed = 0.0, duration = 0.0;  // [rev/s], [s]
-};
-
-std::vector<Stage> stages_of(const Scene& scene) {
-  if (scene.speeds.empty()) return {{scene.speed, scene.duration}};
-  std::vector<Stage> stages = {{scene.pre_shear_speed, scene.pre_shear_time}};
-  for (double speed : scene.speeds) stages.push_back({speed, scene.hold_time});
-  return stages;
-}
-
-double angular(double revolutions_per_second) { return 2.0 * std::numbers::pi * revolutions_per_second; }
 
 template <class Section>
 Sample read(const Body<typename Section::Geometry>& body, const Scene& scene, const Torques& t,
@@ -39,7 +27,7 @@ Sample read(const Body<typename Section::Geometry>& body, const Scene& scene, co
   s.speed = speed;
   s.torque = h * t.blades;
   s.torque_wall = h * t.wall;
-  s.torque_power = speed != 0.0 ? h * t.power / angular(speed) : 0.0;
+  s.torque_power = speed != 0.0 ? h * t.power / angular_speed(speed) : 0.0;
   s.momentum_rate = step.dt > 0.0 ? h * (t.angular_momentum - last_momentum) / step.dt : 0.0;
   s.shear_rate_mean = step.shear_rate_mean;
   s.flocculation_mean = test_run::mean_flocculation(body.points);
@@ -126,12 +114,12 @@ Outcome run_section(const Scene& scene, const Section& section, const Observer& 
             settings.dt_max = left / std::ceil(left / (scene.model.step_scale * largest_dt) - 1e-9);
             settings.fixed_dt = test_run::fixed_step(scene.model, left);
             speed = schedule.speed(body.time);
-            section.turn(body, angular(speed));
+            section.turn(body, angular_speed(speed));
           },
       .advance =
           [&](Checks& checks, Cost& cost) {
             const StepReport step = implicit_step(body, scene.model.law, settings);
-            turned += angular(speed) * step.dt;
+            turned += angular_speed(speed) * step.dt;
             test_run::count_step(body, step, checks, cost);
             return step;
           },

@@ -206,6 +206,11 @@ double whole_time(const icar_vane::Scene& scene) {
   return scene.pre_shear_time + static_cast<double>(scene.speeds.size()) * scene.hold_time;
 }
 
+std::string flow_curve_use(const icar_vane::Scene& scene) {
+  return scene.speeds.empty() ? "flow curve: left out (no test.speeds)"
+                              : fmt::format("flow curve: {} speeds", scene.speeds.size());
+}
+
 /// Faces of the grid stand for shaft and gaps: where they are.
 std::vector<std::string> uses_with_ends(const icar_vane::Scene& scene) {
   const icar_vane::EndsGrid grid(scene, true);
@@ -222,8 +227,7 @@ std::vector<std::string> uses_with_ends(const icar_vane::Scene& scene) {
   lines.push_back("surface: flat, slips; no vortex, no waves");
   lines.push_back("inertia: left out, steady flow at each speed");
   lines.push_back("third dimension: one blade's sector, which repeats");
-  lines.push_back(scene.speeds.empty() ? "flow curve: left out (no test.speeds)"
-                                       : fmt::format("flow curve: {} speeds", scene.speeds.size()));
+  lines.push_back(flow_curve_use(scene));
   add_model_uses(scene.model, lines);
   return lines;
 }
@@ -276,8 +280,7 @@ std::vector<std::string> icar_vane_uses(const icar_vane::Scene& scene) {
             : "blades: left out (model.space = \"couette\"): the vane is a solid cylinder");
   lines.push_back("end effects above and below the vane: neglected");
   lines.push_back("third dimension: left out (model.space)");
-  lines.push_back(scene.speeds.empty() ? "flow curve: left out (no test.speeds)"
-                                       : fmt::format("flow curve: {} speeds", scene.speeds.size()));
+  lines.push_back(flow_curve_use(scene));
   add_model_uses(scene.model, lines);
   return lines;
 }

@@ -26,14 +26,8 @@ void count(const Scene& scene, Estimate& e) {
   const auto [n, n_up] = scene.model.points_per_cell;
   double cells = scene.box.column_length * scene.box.column_height / (h * h_up), in_a_cell = n * n_up;
   if (Geometry::dim == 3) cells *= computed_width(scene) / h, in_a_cell *= n_up;
-  if (cells * in_a_cell > test_run::most_counted) {
-    e.points = test_run::whole_steps(cells * in_a_cell), e.cells_active = test_run::whole_steps(cells);
-  } else {
-    Body<Geometry> body = filled_column<Geometry>(scene);
-    activate(body.grid, body.points.x);
-    e.points = static_cast<std::int64_t>(body.points.size());
-    e.cells_active = body.grid.n_cells();
-  }
+  test_run::count_points(
+      cells, in_a_cell, [&] { return filled_column<Geometry>(scene); }, e);
   e.bytes_per_point = bytes_per_point<Geometry::dim>(scene.mix.thixotropy.has_value());
 }
 

@@ -28,6 +28,19 @@ inline constexpr double most_counted = 1e6;
 /// A number of steps, points or cells as a whole number; what no program could count is 1e15.
 inline std::int64_t whole_steps(double steps) { return std::llround(std::clamp(steps, 0.0, 1e15)); }
 
+/// Points and active cells of a body at rest: `filled` makes it, where it is not too large to be counted one by one.
+template <class Filled, class Estimate>
+void count_points(double cells, double in_a_cell, Filled filled, Estimate& e) {
+  if (cells * in_a_cell > most_counted) {
+    e.points = whole_steps(cells * in_a_cell), e.cells_active = whole_steps(cells);
+    return;
+  }
+  auto body = filled();
+  activate(body.grid, body.points.x);
+  e.points = static_cast<std::int64_t>(body.points.size());
+  e.cells_active = body.grid.n_cells();
+}
+
 inline StepSettings step_settings(const Model& model) {
   StepSettings settings;
   settings.method = model.method == MethodKind::admm     ? YieldMethod::admm

@@ -34,14 +34,8 @@ template <class Geometry>
 void count(const Scene& scene, Estimate& e) {
   const auto [n, n_up] = scene.model.points_per_cell;
   const double cells = cells_of(scene), in_a_cell = std::pow(n, Geometry::dim - 1) * n_up;
-  if (cells * in_a_cell > test_run::most_counted) {
-    e.points = test_run::whole_steps(cells * in_a_cell), e.cells_active = test_run::whole_steps(cells);
-  } else {
-    Body<Geometry> body = filled_cone<Geometry>(scene);
-    activate(body.grid, body.points.x);
-    e.points = static_cast<std::int64_t>(body.points.size());
-    e.cells_active = body.grid.n_cells();
-  }
+  test_run::count_points(
+      cells, in_a_cell, [&] { return filled_cone<Geometry>(scene); }, e);
   const bool thixotropic = scene.mix.thixotropy.has_value();
   e.bytes_per_point = is_explicit(scene.model) ? explicit_bytes_per_point<Geometry::dim>(thixotropic)
                                                : bytes_per_point<Geometry::dim>(thixotropic);

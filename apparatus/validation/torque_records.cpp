@@ -51,33 +51,6 @@ std::string record_file() {
   throw std::runtime_error("reference_data/rheocem is not there ($TREMIE_DATA names its folder)");
 }
 
-/// The line through the peaks, and the interval of one more peak (Student).
-struct Line {
-  double slope = 0.0, offset = 0.0, mean = 0.0, spread = 0.0, deviation = 0.0;
-  double n = 0.0;
-  double at(double rest) const { return offset + slope * rest; }
-  double half_width(double rest) const {
-    return student_quantile(0.975, n - 2.0) * deviation *
-           std::sqrt(1.0 + 1.0 / n + (rest - mean) * (rest - mean) / spread);
-  }
-};
-
-Line line_through(const std::vector<double>& x, const std::vector<double>& y) {
-  Line line;
-  line.n = static_cast<double>(x.size());
-  double mean_y = 0.0, product = 0.0, squares = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) line.mean += x[i] / line.n, mean_y += y[i] / line.n;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    line.spread += (x[i] - line.mean) * (x[i] - line.mean);
-    product += (x[i] - line.mean) * (y[i] - mean_y);
-  }
-  line.slope = product / line.spread;
-  line.offset = mean_y - line.slope * line.mean;
-  for (std::size_t i = 0; i < x.size(); ++i) squares += std::pow(y[i] - line.at(x[i]), 2);
-  line.deviation = std::sqrt(squares / (line.n - 2.0));
-  return line;
-}
-
 /// Half-width of a 95 % interval over the peak: the source's averaged records have a standard deviation of 11 %.
 constexpr double peak_scatter = 0.21;
 
@@ -90,11 +63,11 @@ void compare_paste(Section& section) {
   const auto &rest = reading.structuration.rest, &stress = reading.structuration.stress;
   for (std::size_t next = 3; next < rest.size(); ++next) {
     const auto end = static_cast<std::ptrdiff_t>(next);
-    const Line line =
-        line_through({rest.begin(), rest.begin() + end}, {stress.begin(), stress.begin() + end});
+    const StraightLine line =
+        straight_line({rest.begin(), rest.begin() + end}, {stress.begin(), stress.begin() + end});
     section.comparisons.push_back({fmt::format("paste after {:.0f} s, from shorter rests", rest[next]), "Pa",
                                    stress[next], peak_scatter * stress[next], line.at(rest[next]),
-                                   line.half_width(rest[next])});
+                                   line.half_width_of_reading(rest[next])});
   }
   if (reading.structuration.early && reading.structuration.late)
     section.findings.push_back(

@@ -23,15 +23,9 @@ std::optional<double> rise(const ProtocolRecord& r, std::size_t begin, std::size
     angle.push_back(turned);
     torque.push_back(r.torque[i]);
   }
-  const auto n = static_cast<double>(angle.size());
-  if (n < 3.0) return std::nullopt;
-  double ma = 0.0, mt = 0.0, aa = 0.0, at = 0.0;
-  for (std::size_t i = 0; i < angle.size(); ++i) ma += angle[i] / n, mt += torque[i] / n;
-  for (std::size_t i = 0; i < angle.size(); ++i) {
-    aa += (angle[i] - ma) * (angle[i] - ma);
-    at += (angle[i] - ma) * (torque[i] - mt);
-  }
-  return aa > 0.0 && at > 0.0 ? std::optional(at / aa) : std::nullopt;
+  if (angle.size() < 3) return std::nullopt;
+  const double slope = straight_line(angle, torque).slope;
+  return slope > 0.0 ? std::optional(slope) : std::nullopt;
 }
 
 /// Whether rows up to the peak share their times, as in an export that rounds them to fewer digits than its rows need.
@@ -94,30 +88,21 @@ Structuration structuration_of(const std::vector<SectionReading>& sections) {
     result.rest.push_back(s.section.rest_before);
     result.stress.push_back(*s.start_up->static_yield_stress);
   }
-  const auto n = static_cast<double>(result.rest.size());
-  double mx = 0.0, my = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
-  for (std::size_t i = 0; i < result.rest.size(); ++i) mx += result.rest[i] / n, my += result.stress[i] / n;
-  for (std::size_t i = 0; i < result.rest.size(); ++i) {
-    const double x = result.rest[i] - mx, y = result.stress[i] - my;
-    xx += x * x, xy += x * y, yy += y * y;
-  }
-  if (n < 2.0 || !(xx > 1e-6 * mx * mx)) {
+  const StraightLine line = straight_line(result.rest, result.stress);
+  if (line.n < 2.0 || !(line.spread_x > 1e-6 * line.mean_x * line.mean_x)) {
     result.notes.push_back("structuration_rate: needs the peaks after two rests of different length");
     return result;
   }
-  const double slope = xy / xx, intercept = my - slope * mx;
-  result.A_thix = Estimate{slope, std::nullopt, false};
-  result.at_no_rest = Estimate{intercept, std::nullopt, false};
-  if (n < 3.0) {
+  result.A_thix = Estimate{line.slope, std::nullopt, false};
+  result.at_no_rest = Estimate{line.at(0.0), std::nullopt, false};
+  if (line.n < 3.0) {
     result.notes.push_back("structuration_rate: two peaks tell no interval");
     return result;
   }
-  const double variance = std::max(0.0, yy - slope * xy) / (n - 2.0), t = student_quantile(0.975, n - 2.0);
-  const double half = t * std::sqrt(variance / xx),
-               half_0 = t * std::sqrt(variance * (1.0 / n + mx * mx / xx));
-  result.A_thix->ci95 = Interval{slope - half, slope + half};
-  result.at_no_rest->ci95 = Interval{intercept - half_0, intercept + half_0};
-  result.scatter = std::sqrt(variance) / my;
+  const double half = line.half_width_of_slope(), half_0 = line.half_width(0.0);
+  result.A_thix->ci95 = Interval{line.slope - half, line.slope + half};
+  result.at_no_rest->ci95 = Interval{line.at(0.0) - half_0, line.at(0.0) + half_0};
+  result.scatter = line.deviation / line.mean_y;
   std::vector<std::size_t> order(result.rest.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::sort(order.begin(), order.end(),
@@ -129,7 +114,7 @@ Structuration structuration_of(const std::vector<SectionReading>& sections) {
   result.early = between(order[0], order[1]);
   result.late = between(order[order.size() - 2], order.back());
   if (*result.scatter > 0.05 && result.early && result.late &&
-      std::abs(*result.early - *result.late) > 0.3 * slope) {
+      std::abs(*result.early - *result.late) > 0.3 * line.slope) {
     char text[200];
     std::snprintf(text, sizeof text,
                   "structuration_rate: the peaks do not lie on a line over the rest: %.3g Pa/s between the "

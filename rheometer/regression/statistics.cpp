@@ -72,6 +72,33 @@ double robust_deviation(std::vector<double> values) {
   return 1.4826 * median(std::move(values));
 }
 
+StraightLine straight_line(const std::vector<double>& x, const std::vector<double>& y) {
+  StraightLine line;
+  line.n = static_cast<double>(x.size());
+  double product = 0.0, squares = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) line.mean_x += x[i] / line.n, line.mean_y += y[i] / line.n;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    line.spread_x += (x[i] - line.mean_x) * (x[i] - line.mean_x);
+    product += (x[i] - line.mean_x) * (y[i] - line.mean_y);
+  }
+  line.slope = line.spread_x > 0.0 ? product / line.spread_x : 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) squares += (y[i] - line.at(x[i])) * (y[i] - line.at(x[i]));
+  line.deviation = line.n > 2.0 ? std::sqrt(squares / (line.n - 2.0)) : 0.0;
+  return line;
+}
+
+double StraightLine::half_width_of_slope() const {
+  return student_quantile(0.975, n - 2.0) * deviation / std::sqrt(spread_x);
+}
+double StraightLine::half_width(double x) const {
+  return student_quantile(0.975, n - 2.0) * deviation *
+         std::sqrt(1.0 / n + (x - mean_x) * (x - mean_x) / spread_x);
+}
+double StraightLine::half_width_of_reading(double x) const {
+  return student_quantile(0.975, n - 2.0) * deviation *
+         std::sqrt(1.0 + 1.0 / n + (x - mean_x) * (x - mean_x) / spread_x);
+}
+
 double successive_correlation(const std::vector<double>& values) {
   double product = 0.0, square = 0.0;
   for (std::size_t i = 0; i < values.size(); ++i) {

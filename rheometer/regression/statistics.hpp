@@ -21,6 +21,20 @@ double median(std::vector<double> values);
 /// Robust estimate of the standard deviation: 1.4826 times the median of |values|, for values about 0.
 double robust_deviation(std::vector<double> values);
 
+/// y = mean_y + slope (x - mean_x) by least squares.
+struct StraightLine {
+  double n = 0.0, slope = 0.0, mean_x = 0.0, mean_y = 0.0;
+  double spread_x = 0.0;   ///< sum of (x - mean_x)^2; 0: no slope
+  double deviation = 0.0;  ///< standard deviation of the readings about the line, for n > 2
+
+  double at(double x) const { return mean_y + slope * (x - mean_x); }
+  /// Half of the 95 % interval of the line at x, or of one more reading there (Student); for n > 2.
+  double half_width(double x) const;
+  double half_width_of_reading(double x) const;
+  double half_width_of_slope() const;
+};
+StraightLine straight_line(const std::vector<double>& x, const std::vector<double>& y);
+
 /// Correlation of successive values of a series about 0.
 double successive_correlation(const std::vector<double>& values);
 

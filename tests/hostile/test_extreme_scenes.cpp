@@ -18,6 +18,7 @@
 #include "apparatus/registry/registry.hpp"
 #include "rheometer/reference/instrument.hpp"
 #include "rheometer/reference/reiner_riwlin.hpp"
+#include "tests/hostile/finite.hpp"
 #include "tests/hostile/random_scene.hpp"
 
 namespace tremie {
@@ -61,15 +62,6 @@ double largest(const scene::Outcome& outcome, const std::string& column) {
     if (c.name == column)
       for (const double value : c.values) most = std::fmax(most, value);
   return most;
-}
-
-bool is_finite(const std::vector<scene::Result>& results) {
-  for (const auto& [name, value] : results) {
-    if (const auto* number = std::get_if<double>(&value); number && !std::isfinite(*number)) return false;
-    if (const auto* below = std::get_if<std::vector<scene::Result>>(&value); below && !is_finite(*below))
-      return false;
-  }
-  return true;
 }
 
 std::string said(const char* what, double value, double bound) {

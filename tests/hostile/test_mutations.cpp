@@ -17,6 +17,7 @@
 #include "apparatus/registry/registry.hpp"
 #include "rheometer/fits/fit.hpp"
 #include "tests/apparatus/temporary_folder.hpp"
+#include "tests/hostile/finite.hpp"
 #include "tests/hostile/mutation.hpp"
 
 namespace tremie {
@@ -30,15 +31,6 @@ double peak_memory() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return 1024.0 * static_cast<double>(usage.ru_maxrss);
-}
-
-bool is_finite(const std::vector<scene::Result>& results) {
-  for (const auto& [name, value] : results) {
-    if (const auto* number = std::get_if<double>(&value); number && !std::isfinite(*number)) return false;
-    if (const auto* below = std::get_if<std::vector<scene::Result>>(&value); below && !is_finite(*below))
-      return false;
-  }
-  return true;
 }
 
 /// What is wrong with a run that says nothing of it; empty: nothing.
