@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "apparatus/registry/registry.hpp"
 #include "apparatus/scene/input_error.hpp"
@@ -73,12 +74,14 @@ double quantity(const Node& node, const std::string& key, const Known& known) {
     } catch (const std::invalid_argument& error) {
       complain(node, key, error.what());
     }
-  } else if (text || std::holds_alternative<bool>(node.value)) {
-    complain(node, key, "must be a plain number");
+  } else if (const auto* number = std::get_if<double>(&node.value)) {
+    value = *number;
+  } else if (const auto* whole = std::get_if<std::int64_t>(&node.value)) {
+    value = static_cast<double>(*whole);
   } else {
-    value = std::stod(text_of(node, key));
+    complain(node, key, "must be a plain number");
   }
-  if (!(value > 0.0)) complain(node, key, "must be greater than 0");
+  if (!(value > 0.0) || std::isinf(value)) complain(node, key, "must be greater than 0 and finite");
   return value;
 }
 

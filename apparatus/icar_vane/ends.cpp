@@ -109,7 +109,7 @@ double plane_torque(const Scene& scene, double speed, Checks& checks) {
 void judge(const Scene& scene, const EndsGrid& grid, double fastest, double slowest, Checks& checks) {
   const Mix& mix = scene.mix;
   const double R = scene.vane.radius, omega = angular_speed(std::abs(fastest));
-  const double mu = mix.mu + viscosity(scene.model.law, omega);
+  const double mu = mix.mu + viscosity(scene.model.law, omega, mix.tau_0);
   const double inertia = mix.density * omega * R * R / (mu + mix.tau_0 / omega);
   if (inertia > most_inertia)
     checks.reasons.push_back(fmt::format(
@@ -118,7 +118,7 @@ void judge(const Scene& scene, const EndsGrid& grid, double fastest, double slow
         inertia, most_inertia));
   const double slow = angular_speed(std::abs(slowest));
   const double layer =
-      R * std::sqrt((mix.mu + viscosity(scene.model.law, slow)) * slow / std::max(1e-9, mix.tau_0));
+      R * std::sqrt((mix.mu + viscosity(scene.model.law, slow, mix.tau_0)) * slow / std::max(1e-9, mix.tau_0));
   if (mix.tau_0 > 0.0 && layer < thinnest_layer * grid.cell[0])
     checks.reasons.push_back(fmt::format(
         "the concrete is sheared in a layer of about {:.2g} mm at the vane, which cells of {:.2g} mm do "

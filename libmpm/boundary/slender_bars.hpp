@@ -33,10 +33,10 @@
 namespace tremie {
 
 /// Limit load of a rough cylinder across itself, per length, in tau_y D: 11.94.
-inline const double bar_yield_drag = 4.0 * std::sqrt(2.0) + 2.0 * std::numbers::pi;
+inline constexpr double bar_yield_drag = 4.0 * std::numbers::sqrt2 + 2.0 * std::numbers::pi;
 
 /// Drag along a bar over that across it: the shear on its surface, pi tau_y D, over its limit load.
-inline const double bar_drag_along = std::numbers::pi / bar_yield_drag;
+inline constexpr double bar_drag_along = std::numbers::pi / bar_yield_drag;
 
 /// Cells for which bar_mobility() was measured, in radii of the bar. On smaller ones boundary points resolve it.
 inline constexpr double bar_cells_least = 1.0, bar_cells_most = 3.4;

@@ -28,7 +28,7 @@ struct ExactBingham {
   double stress(double, double tau_y) const { return tau_y; }
   double dual_limit(double, double tau_y) const { return tau_y; }
   double newtonian() const { return 0.0; }
-  double viscosity(double) const { return 0.0; }
+  double viscosity(double, double) const { return 0.0; }
   double largest_secant(double tau_y) const { return tau_y > 0.0 ? unbounded : 0.0; }
 };
 

@@ -69,7 +69,7 @@ struct HerschelBulkley {
   double dual_limit(double gamma_dot, double tau_y) const {
     return n == 1.0 ? tau_y : secant(gamma_dot, tau_y) * gamma_dot;
   }
-  double viscosity(double gamma_dot) const {
+  double viscosity(double gamma_dot, double) const {
     return n == 1.0 ? 0.0 : k * std::pow(std::max(gamma_dot, slowest_rate), n - 1.0);
   }
   double largest_secant(double tau_y) const {
@@ -128,7 +128,7 @@ struct RegularisedHerschelBulkley {
   double dual_limit(double gamma_dot, double tau_y) const {
     return n == 1.0 ? tau_y : stress(gamma_dot, tau_y);
   }
-  double viscosity(double gamma_dot) const { return power(gamma_dot); }
+  double viscosity(double gamma_dot, double) const { return power(gamma_dot); }
   double largest_secant(double tau_y) const { return m * tau_y + std::max(power(0.0), power(fastest_rate)); }
 };
 

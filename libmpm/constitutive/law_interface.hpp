@@ -22,8 +22,8 @@
 //                               positive: |s| <= secant^2 / (|slope| gamma_dot); tau_y for exact Bingham [Pa]
 //   newtonian()                 its share in the mix's mu: 0 unless it is Bingham in other words, with no viscous part
 //                               left in f (Reiner-Riwlin's formulas then hold) [Pa s]
-//   viscosity(gamma_dot)        of its viscous part beyond mu, 0 unless f has one; for the stress scale of ADMM and the
-//                               drag of side walls [Pa s]
+//   viscosity(gamma_dot, tau_y) (f - tau_y) / gamma_dot where f has a viscous part beyond mu, 0 else; for the stress
+//                               scale of ADMM and the drag of side walls and bars [Pa s]
 //   largest_secant(tau_y)       over the shear rates of a test, for the explicit step's limit; infinite where there is
 //                               none [Pa s]
 //

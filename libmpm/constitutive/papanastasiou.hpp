@@ -54,7 +54,7 @@ struct Papanastasiou {
   double stress(double gamma_dot, double tau_y) const { return secant(gamma_dot, tau_y) * gamma_dot; }
   double dual_limit(double, double tau_y) const { return tau_y; }
   double newtonian() const { return 0.0; }
-  double viscosity(double) const { return 0.0; }
+  double viscosity(double, double) const { return 0.0; }
   double largest_secant(double tau_y) const { return m * tau_y; }
   /// The secant of points side by side.
   template <class Simd>

@@ -50,8 +50,8 @@ inline double prox(const YieldLaw& law, double a, double tau_y, double r) {
 inline double stress(const YieldLaw& law, double gamma_dot, double tau_y) {
   return std::visit([&](const auto& l) { return l.stress(gamma_dot, tau_y); }, law);
 }
-inline double viscosity(const YieldLaw& law, double gamma_dot) {
-  return std::visit([&](const auto& l) { return l.viscosity(gamma_dot); }, law);
+inline double viscosity(const YieldLaw& law, double gamma_dot, double tau_y) {
+  return std::visit([&](const auto& l) { return l.viscosity(gamma_dot, tau_y); }, law);
 }
 inline double newtonian(const YieldLaw& law) {
   return std::visit([](const auto& l) { return l.newtonian(); }, law);

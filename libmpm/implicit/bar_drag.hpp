@@ -33,7 +33,7 @@ void add_bar_point(const ImplicitBody<Geometry>& body, const YieldLaw& law, int 
   drag.reach = length / bar.mobility;
   const double rate = bar_velocity<D>(point, drag, grid.cell_nodes, body.v).norm() / bar.diameter;
   drag.viscous =
-      (problem.mu + viscosity(law, std::clamp(rate, typical_rates[0], typical_rates[1]))) * drag.reach;
+      (problem.mu + viscosity(law, std::clamp(rate, typical_rates[0], typical_rates[1]), tau_y)) * drag.reach;
   problem.bars.points.push_back(point);
   problem.bars.drag.push_back(drag);
 }

@@ -34,7 +34,8 @@ void add_side_walls(double W, const YieldLaw& law, const std::vector<Vec<Geometr
   fold_mirrors<D>(grid, limit);
   problem.drag.resize(V.size());
   for (std::size_t i = 0; i < V.size(); ++i) {
-    const double mu = problem.mu + viscosity(law, 6.0 * v[i].norm() / W);
+    const double tau_y = V[i] > 0.0 ? 0.5 * W * limit[i] / V[i] : 0.0;
+    const double mu = problem.mu + viscosity(law, 6.0 * v[i].norm() / W, tau_y);
     problem.drag[i] = 12.0 * mu / (W * W) * V[i];
     FrictionNode<D> held;
     held.node = static_cast<int>(i);
@@ -55,7 +56,8 @@ void pose(ImplicitBody<Geometry>& body, const YieldLaw& law, const StepSettings&
   for (std::size_t i = 0; i < v_old.size(); ++i) body.nodes.v[i] = v_old[i] + dt * body.gravity;
   posed.emplace(YieldProblem<Geometry>{
       body.grid, body.quadrature, body.nodes, dt, body.mix.mu, body.mix.K, {}, {}, {}, {}, {}, {}});
-  posed->eta += viscosity(law, std::clamp(body.shear_rate, typical_rates[0], typical_rates[1]));
+  posed->eta +=
+      viscosity(law, std::clamp(body.shear_rate, typical_rates[0], typical_rates[1]), body.mix.tau_0);
   posed->zeta = settings.alternating_viscosity * posed->eta;
   apply_flat_walls<D>(body.grid, body.walls, posed->fixed, posed->friction, body.v);
   apply_blocks<D>(body.grid, posed->fixed, body.v);
