@@ -4,6 +4,7 @@
 
 #include "apparatus/l_box/l_box.hpp"
 #include "apparatus/l_box/reading.hpp"
+#include "apparatus/l_box/series.hpp"
 #include "apparatus/l_box/set_up.hpp"
 #include "apparatus/run/frames.hpp"
 #include "apparatus/run/run_checks.hpp"
@@ -38,16 +39,6 @@ double longest_dt(const Scene& scene, double time) {
          (Geometry::dim == 3 ? shortest : std::clamp(share_of_time * time, shortest, longest_step));
 }
 
-/// When the front passed a distance from the gate.
-inline std::optional<double> time_of_front(const std::vector<Sample>& series, double distance) {
-  for (std::size_t i = 1; i < series.size(); ++i) {
-    const Sample &a = series[i - 1], &b = series[i];
-    if (b.front < distance) continue;
-    return a.time + (distance - a.front) / (b.front - a.front) * (b.time - a.time);
-  }
-  return std::nullopt;
-}
-
 template <class Geometry>
 void read_results(const Body<Geometry>& body, const Scene& scene, std::optional<double> stopped_at,
                   Outcome& outcome) {
@@ -56,6 +47,7 @@ void read_results(const Body<Geometry>& body, const Scene& scene, std::optional<
   r.h1 = last.h1;
   r.h2 = last.h2;
   if (last.h2 && last.h1 > 0.0) r.passing_ratio = *last.h2 / last.h1;
+  r.ratio_change = ratio_change(outcome.series);
   r.t200 = time_of_front(outcome.series, 0.2);
   r.t400 = time_of_front(outcome.series, 0.4);
   r.stopped_at = stopped_at;
@@ -65,8 +57,17 @@ void read_results(const Body<Geometry>& body, const Scene& scene, std::optional<
 }
 
 /// The drag of a bar between cells that resolve it and those for which it was measured; and a gap wants two cells.
-inline void judge_bars(const Scene& scene, Checks& checks) {
+inline void judge_bars(const Scene& scene, const std::vector<Sample>& series, Checks& checks) {
   const double cell = scene.model.cell[0], most = 0.5 * bar_cells_most * bar_diameter;
+  const double inertia = scene.bars > 0 ? bar_reynolds(scene, series) : 0.0;
+  if (inertia > most_bar_reynolds) {
+    char text[200];
+    std::snprintf(
+        text, sizeof text,
+        "the bars' drag leaves inertia out, and their Reynolds number is %.3g, more than %g: a stiffer mix",
+        inertia, most_bar_reynolds);
+    checks.reasons.push_back(text);
+  }
   if (scene.bars > 0 && cell > most * (1.0 + 1e-9))
     checks.reasons.push_back("cells of " + std::to_string(std::lround(1e3 * cell)) +
                              " mm are too large for the gaps between the bars: a model.cell of at most " +
@@ -131,6 +132,7 @@ Outcome run_in(const Scene& scene, const Observer& observer) {
       .speed = [](const StepReport& step) { return step.bulk_speed; },
       .free_to_flow =
           [&] { return !scene.gate_speed || *scene.gate_speed * body.time > scene.box.channel_height; },
+      .stands_since = [&] { return Geometry::dim == 3 ? stands_since(outcome.series) : std::nullopt; },
       .state = [&](Archive& archive) { archive(body, outcome.series); }};
   const auto stopped_at =
       test_run::run_loop(flow,
@@ -141,7 +143,7 @@ Outcome run_in(const Scene& scene, const Observer& observer) {
   read_results(body, scene, stopped_at, outcome);
   test_run::judge(body, start_mass, outcome.checks, outcome.cost);
   test_run::judge_volume(outcome.series.front().volume_change, outcome.checks);
-  judge_bars(scene, outcome.checks);
+  judge_bars(scene, outcome.series, outcome.checks);
   judge_cells(scene, outcome.results, outcome.checks);
   outcome.final_frame = test_run::frame_of(body);
   if (observer.on_frame) observer.on_frame(outcome.final_frame);

@@ -62,6 +62,7 @@ struct Sample {
 struct Results {
   double h1 = 0.0;                          ///< [m]
   std::optional<double> h2, passing_ratio;  ///< empty where the concrete never reached the end
+  std::optional<double> ratio_change;       ///< of the passing ratio over the last standing_lasts [1/s]
   std::optional<double> t200, t400;         ///< front 200 and 400 mm from the gate [s]
   std::optional<double> stopped_at;         ///< [s]
   std::optional<double> flocculation_mean_start, flocculation_mean_end;

@@ -20,6 +20,7 @@ std::vector<Result> results_of(const l_box::Scene& scene, const l_box::Results& 
   return {{"h1_mm", number(r.h1, mm)},
           {"h2_mm", number(r.h2, mm)},
           {"passing_ratio", number(r.passing_ratio)},
+          {"passing_ratio_change_per_min", number(r.ratio_change, 60.0)},
           {"t200_s", number(r.t200)},
           {"t400_s", number(r.t400)},
           {"class_en12350_10", word_or_null(class_of(scene, r))},

@@ -13,8 +13,11 @@ bool gave_up(const StepReport& step, Status& status, Checks& checks, double time
   return true;
 }
 
-bool is_at_rest(const Flow& flow, const StepReport& step, RestWatch& watch) {
-  return flow.speed && watch.at_rest(flow.free_to_flow(), flow.speed(step), flow.time());
+/// Since when the flow rests; empty while it moves.
+std::optional<double> rests_since(const Flow& flow, const StepReport& step, RestWatch& watch) {
+  if (flow.speed && watch.at_rest(flow.free_to_flow(), flow.speed(step), flow.time()))
+    return watch.slow_since;
+  return flow.stands_since && flow.free_to_flow() ? flow.stands_since() : std::nullopt;
 }
 
 void show_frame(const Flow& flow, Onlooker& onlooker) {
@@ -37,7 +40,7 @@ VisitState state_of(const Flow& flow, Onlooker& onlooker, RestWatch& watch, Chec
 std::optional<double> run_loop(const Flow& flow, Onlooker onlooker, Status& status, Checks& checks,
                                Cost& cost) {
   RestWatch watch;
-  bool at_rest = false;
+  std::optional<double> at_rest;
   const Checkpoints* checkpoints = flow.state ? onlooker.checkpoints : nullptr;
   const VisitState state = state_of(flow, onlooker, watch, checks, cost);
   if (goes_on(checkpoints)) checkpoints->restore(state);
@@ -47,13 +50,13 @@ std::optional<double> run_loop(const Flow& flow, Onlooker onlooker, Status& stat
     const StepReport step = flow.advance(checks, cost);
     if (gave_up(step, status, checks, flow.time())) break;
     flow.read(step);
-    at_rest = is_at_rest(flow, step, watch);
+    at_rest = rests_since(flow, step, watch);
     if (onlooker.interrupted && *onlooker.interrupted) status = Status::interrupted;
     if (flow.gains_energy && flow.gains_energy()) status = Status::failed;
     show_frame(flow, onlooker);
   }
   if (checkpoints && status == Status::interrupted && !at_rest && flow.unfinished()) checkpoints->keep(state);
-  return at_rest ? watch.slow_since : std::nullopt;
+  return at_rest;
 }
 
 }  // namespace tremie::test_run

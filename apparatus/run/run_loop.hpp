@@ -43,6 +43,8 @@ struct Flow {
   /// test takes its whole time.
   std::function<double(const StepReport&)> speed = {};
   std::function<bool()> free_to_flow = {};
+  /// Since when the readings stand still, as a laboratory would judge it [s]: rest too, where it is not empty.
+  std::function<std::optional<double>()> stands_since = {};
   std::function<bool()> gains_energy = {};  ///< more than a stable run can; may be empty
   /// All that goes on from one step to the next: body, schedule and series. Empty: the test keeps no checkpoints.
   VisitState state = {};

@@ -1,7 +1,8 @@
-// What an L-box is marked for: cells that do not resolve its concrete.
+// What an L-box is marked for: cells that do not resolve its concrete, bars in a fast flow. When it stands.
 
 #include <gtest/gtest.h>
 
+#include "apparatus/l_box/series.hpp"
 #include "apparatus/registry/registry.hpp"
 
 namespace tremie {
@@ -34,6 +35,45 @@ TEST(LBoxChecks, CellsThatDoNotResolveTheDepthAreMarked) {
 
 // While the column is high nothing is thin.
 TEST(LBoxChecks, AHighColumnIsNotThin) { EXPECT_TRUE(reasons("25 mm", "0.3 s").empty()); }
+
+/// A line a second in which H1 falls by `fall` each [m] and H2 is half of it.
+std::vector<l_box::Sample> sinking(int seconds, double fall) {
+  std::vector<l_box::Sample> series;
+  for (int t = 0; t <= seconds; ++t) {
+    l_box::Sample s;
+    s.time = t, s.front = 0.7, s.h1 = 0.1 - fall * t, s.h2 = 0.5 * s.h1;
+    series.push_back(s);
+  }
+  return series;
+}
+
+// 0.9 mm in 30 s is less than the millimetre that a rule shows, 1.2 mm is more; and 30 s must have gone by.
+TEST(LBoxStands, WhereItsDepthsKeepForHalfAMinute) {
+  EXPECT_FALSE(l_box::stands_since(sinking(29, 0.0)));
+  EXPECT_EQ(l_box::stands_since(sinking(40, 3e-5)), 10.0);
+  EXPECT_FALSE(l_box::stands_since(sinking(40, 4e-5)));
+  auto arrives = sinking(40, 0.0);
+  for (int t = 0; t < 20; ++t) arrives[t].h2.reset();
+  EXPECT_FALSE(l_box::stands_since(arrives));
+}
+
+// H2/H1 from 0.5 at 10 s to 0.56 at 40 s: 0.12 a minute.
+TEST(LBoxStands, RatioChangesByTheMinute) {
+  auto series = sinking(40, 0.0);
+  series.back().h2 = 0.56 * series.back().h1;
+  EXPECT_NEAR(*l_box::ratio_change(series) * 60.0, 0.12, 1e-12);
+  EXPECT_FALSE(l_box::ratio_change(sinking(20, 0.0)));
+}
+
+// rho U D / (mu + tau_0 D/U) = 2000 . 0.5 . 0.012 / (1 + 0.012 . 25 / 0.5) = 7.5.
+TEST(LBoxChecks, ReynoldsNumberOfTheBarsIsThatOfTheFastestFront) {
+  l_box::Scene scene;
+  scene.mix.density = 2000.0, scene.mix.mu = 1.0, scene.mix.tau_0 = 25.0;
+  auto series = sinking(2, 0.0);
+  series[0].front = 0.0, series[1].front = 0.2;
+  EXPECT_NEAR(l_box::bar_reynolds(scene, series), 7.5, 1e-12);
+  EXPECT_EQ(l_box::bar_reynolds(scene, sinking(2, 0.0)), 0.0);
+}
 
 }  // namespace
 }  // namespace tremie

@@ -48,6 +48,7 @@ const std::map<std::string, std::string>& glossary() {
       {"h1_mm", "H1, depth behind the gate"},
       {"h2_mm", "H2, depth at the channel's end"},
       {"passing_ratio", "passing ratio H2/H1"},
+      {"passing_ratio_change_per_min", "change of the passing ratio over the last 30 s, a minute"},
       {"t200_s", "t200, front 200 mm from the gate"},
       {"t400_s", "t400, front 400 mm from the gate"},
       {"volume_in_channel_m3", "volume in the channel"},
