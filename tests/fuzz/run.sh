@@ -19,7 +19,7 @@ run() {
     -artifact_prefix="$build/found/$target-" "$build/corpus/$target" "$@") >"$build/found/$target.log" 2>&1 ||
     { tail -n 60 "$build/found/$target.log"; exit 1; }
 }
-run scene "$here/apparatus/scenes" "$here/reference_data/mixes"
+run scene "$here/apparatus/scenes" "$here/reference_data/mixes" "$here/tests/fuzz/corpus/scene"
 run units "$here/tests/fuzz/corpus/units"
 run record "$here/reference_data/site_torque" "$here/reference_data/rheocem"
 run checkpoint "$here/tests/fuzz/corpus/checkpoint"
