@@ -13,8 +13,10 @@ set yrange [0.05:50]
 set key outside right
 set arrow from 5040, 0.05 to 5040, 50 nohead dt 2 lc 8
 set arrow from 29160, 0.05 to 29160, 50 nohead dt 2 lc 8
-set label "CB-GEO, linear: cost alone" at 4200, 0.06 rotate left tc lt 8
-set label "CB-GEO, GIMP, the paper's grid: cost alone" at 24500, 0.06 rotate left tc lt 8
+set label "CB-GEO, linear: cost alone" at 3900, 0.06 rotate left tc lt 8
+set label "CB-GEO, GIMP, the paper's grid: cost alone" at 22500, 0.06 rotate left tc lt 8
+set object rectangle from 0.1, 0.05 to 60000, 0.5 behind fillcolor rgb "#eeeeee" fillstyle solid noborder
+set label "the finite elements' own uncertainty, ± 0.5 %" at 0.12, 0.062
 middle(a, b) = sqrt(a * b)
 plot rows("section", "C") using 5:($4*100) with linespoints pt 7 lc 1 title "Tremie, section, Mix C", \
      rows("section", "A") using 5:($4*100) with linespoints pt 6 lc 1 dt 2 title "Tremie, section, Mix A", \
@@ -25,13 +27,13 @@ plot rows("section", "C") using 5:($4*100) with linespoints pt 7 lc 1 title "Tre
 
 reset
 set datafile separator ","
-set terminal svg size 1000,520 font "sans,13" background "white"
+set terminal svg size 1000,640 font "sans,13" background "white"
 set grid lc "#dddddd"
 set output "validation.svg"
 set multiplot layout 1,2
 table(pattern) = sprintf("< grep '%s' ../../tests/verification/validation.csv | sed 's/\"[^\"]*\"/text/g'", pattern)
-set key top left reverse Left
-set xlabel "measured / mm"
+set key below vertical maxrows 7 reverse Left
+set xlabel "measured / mm" offset 0, 0.6
 set ylabel "predicted / mm"
 set xrange [0:700]
 set yrange [0:700]
@@ -42,7 +44,7 @@ plot x with lines lc 8 dt 2 title "predicted as measured", \
      table("rested, friction") using 4:6:5:7 with xyerrorbars pt 4 lc 7 title "spread, 240 s, friction, α = 0.01", \
      table("^alpha") using 4:6:5:7 with xyerrorbars pt 9 lc 2 title "spread, 240 s, α from the other two mixes", \
      table("^slump") using 4:6:5:7 with xyerrorbars pt 2 lc rgb "#888888" title "slump: a published correlation, no measurement"
-set xlabel "measured / Pa"
+set xlabel "measured / Pa" offset 0, 0.6
 set ylabel "predicted / Pa"
 set xrange [0:2700]
 set yrange [0:2700]
