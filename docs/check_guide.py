@@ -19,8 +19,8 @@ def tremie(*arguments):
 def judge(page, line, words):
     command, arguments = words[1], words[2:]
     help_text = tremie(command, "--help")
-    if help_text.returncode != 0 or not re.search(r"--(?!help\b)\w", help_text.stdout):
-        return  # not in this build, or a command without options
+    if help_text.returncode != 0 or not re.search(r"--(?!help\b)\w|^Positionals", help_text.stdout, re.M):
+        return  # not in this build: it takes nothing but --help
     for option in (w for w in arguments if w.startswith("--")):
         if not re.search(rf"{option}\b", help_text.stdout):
             wrong.append(f"{page}: {line}: tremie {command} has no {option}")
