@@ -2,7 +2,10 @@
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
 set(exported tremie_flags tremie_constitutive tremie_mpm tremie_rheometer tremie_scene_reader tremie_run_loop
-             tremie_slump_flow tremie_l_box tremie_icar_vane tremie_cell tremie_scene)
+             tremie_scene)
+foreach(name ${TREMIE_APPARATUS})
+  list(APPEND exported tremie_${name})
+endforeach()
 if(TARGET tremie_fits)
   list(APPEND exported tremie_fits)
 endif()
@@ -11,8 +14,7 @@ foreach(target ${exported})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
 endforeach()
 install(TARGETS ${exported} EXPORT tremieTargets)
-foreach(folder libmpm rheometer apparatus/cell apparatus/common apparatus/icar_vane apparatus/l_box apparatus/registry
-               apparatus/run apparatus/scene apparatus/slump_flow)
+foreach(folder ${TREMIE_PUBLIC_FOLDERS})
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tremie/${folder}
           FILES_MATCHING PATTERN *.hpp)
 endforeach()

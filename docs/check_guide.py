@@ -2,7 +2,8 @@
 """The guide's commands and scenes, held against the program: check_guide.py PROGRAM. Run in the repository's root.
 
 Every `tremie …` line of a guide page must name a command and options that its --help has; what it runs must be a scene that `tremie check`
-takes with the same --set. A scene that a page shows must check, too. Nothing is computed."""
+takes with the same --set. A scene that a page shows must check, too. Nothing is computed. And every test that docs/extremes.md names
+must stand in tests/."""
 import pathlib, re, shlex, subprocess, sys, tempfile
 
 program = str(pathlib.Path(sys.argv[1]).resolve())
@@ -18,8 +19,8 @@ def tremie(*arguments):
 def judge(page, line, words):
     command, arguments = words[1], words[2:]
     help_text = tremie(command, "--help")
-    if help_text.returncode != 0:
-        return  # not in this build
+    if help_text.returncode != 0 or not re.search(r"--(?!help\b)\w|^Positionals", help_text.stdout, re.M):
+        return  # not in this build: it takes nothing but --help
     for option in (w for w in arguments if w.startswith("--")):
         if not re.search(rf"{option}\b", help_text.stdout):
             wrong.append(f"{page}: {line}: tremie {command} has no {option}")
@@ -45,5 +46,12 @@ for page in sorted(pathlib.Path("docs/guide").glob("*.md")):
             if line.startswith("tremie "):
                 lines += 1
                 judge(page, line.split("  #")[0], shlex.split(line, comments=True))
+tests = {f"{suite}.{case}" for file in pathlib.Path("tests").rglob("*.cpp")
+         for suite, case in re.findall(r"^TEST(?:_[PF])?\((\w+),\s*(\w+)\)", file.read_text(), re.M)}
+rows = [line.split("|")[1] for line in pathlib.Path("docs/extremes.md").read_text().splitlines() if line.startswith("| `")]
+named = [name for row in rows for name in re.findall(r"`([\w.]+)`", row)]
+wrong += [f"docs/extremes.md: there is no test {name}" for name in named if name not in tests]
+if len(named) < 30:
+    wrong.append(f"docs/extremes.md: {len(named)} tests, fewer than the table has")
 print("\n".join(wrong) or f"{lines} commands as the program has them")
 sys.exit(bool(wrong) or lines == 0)

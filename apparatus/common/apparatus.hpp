@@ -1,7 +1,7 @@
 #pragma once
 
 // An apparatus as the program sees it: its keys, and what can be done with a scene of it. Its folder exports
-// one function that returns this; apparatus/registry/all_apparatus.cpp lists them.
+// one function that returns this; apparatus/registry/apparatus.cmake lists them.
 
 #include <any>
 #include <cstdint>

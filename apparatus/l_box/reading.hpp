@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "apparatus/l_box/set_up.hpp"
 
@@ -56,20 +55,6 @@ inline Stretch at_the_end(const Box& box) {
   return {end - (box.column_length - 2.0 * off_the_walls), end};
 }
 
-/// Distance of the front from the gate: of the outermost point that has company (three others less than half
-/// a cell behind).
-template <int D>
-double front_of(const Points<D>& points, double gate, double cell) {
-  constexpr std::size_t most_detached = 500;
-  std::vector<double> x;
-  for (const auto& p : points.x) x.push_back(p[0]);
-  const std::size_t n = std::min(most_detached, x.size());
-  std::partial_sort(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(n), x.end(), std::greater<>());
-  std::size_t i = 0;
-  while (i + 4 < n && x[i] - x[i + 3] > 0.5 * cell) ++i;
-  return std::max(0.0, x[i] - gate);
-}
-
 /// As points are seeded along the box [m].
 template <class Geometry>
 double point_length(const Body<Geometry>& body, const Scene& scene) {
@@ -85,7 +70,7 @@ Sample read(const Body<Geometry>& body, const Scene& scene, const StepReport& st
   };
   Sample s;
   s.time = body.time;
-  s.front = front_of(body.points, box.column_length, body.grid.axes[0].h);
+  s.front = test_run::front_of(body.points, box.column_length, body.grid.axes[0].h);
   s.h1 = depth_over(behind_the_gate(box));
   if (s.front > box.channel_length - 0.5 * off_the_walls) s.h2 = depth_over(at_the_end(box));
   s.max_speed = step.max_speed;

@@ -1,7 +1,7 @@
 #pragma once
 
 // From a file to a checked scene, and from a scene to a result, in one in-process call each. What every
-// command uses; an apparatus joins by one line in all_apparatus.cpp.
+// command uses; an apparatus joins by its name in apparatus.cmake.
 
 #include <any>
 #include <filesystem>

@@ -1,8 +1,12 @@
 #pragma once
 
-// Sums and means over the points of a body, and its flocculation after a rest.
+// Sums, means and the front over the points of a body, and its flocculation after a rest.
 
+#include <algorithm>
+#include <cstddef>
+#include <functional>
 #include <optional>
+#include <vector>
 
 #include "libmpm/body/body.hpp"
 #include "libmpm/constitutive/flocculation.hpp"
@@ -55,6 +59,20 @@ std::optional<double> mean_flocculation(const Points<D>& points) {
   double sum = 0.0;
   for (std::size_t p = 0; p < points.size(); ++p) sum += points.volume(p) * points.lambda[p];
   return sum / total_volume(points);
+}
+
+/// Distance of the front from the gate: of the outermost point that has company (three others less than half
+/// a cell behind).
+template <int D>
+double front_of(const Points<D>& points, double gate, double cell) {
+  constexpr std::size_t most_detached = 500;
+  std::vector<double> x;
+  for (const auto& p : points.x) x.push_back(p[0]);
+  const std::size_t n = std::min(most_detached, x.size());
+  std::partial_sort(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(n), x.end(), std::greater<>());
+  std::size_t i = 0;
+  while (i + 4 < n && x[i] - x[i + 3] > 0.5 * cell) ++i;
+  return std::max(0.0, x[i] - gate);
 }
 
 }  // namespace tremie::test_run

@@ -15,6 +15,12 @@ def says(*arguments):
     return done.stdout.strip() if done.returncode == 0 else None
 
 
+def help_of(command):
+    """Its help; none of a command that is not in this build, which takes nothing but --help."""
+    text = says(command, "--help")
+    return text if text and re.search(r"--(?!help\b)\w|^Positionals", text, re.M) else None
+
+
 def section(title, language, text):
     lines = [line.rstrip() for line in text.splitlines()]
     return f"## {title}\n\n```{language}\n" + "\n".join(lines) + "\n```\n"
@@ -32,14 +38,17 @@ def flat(results, prefix=""):
         yield from flat(value, prefix + name + ".") if isinstance(value, dict) else [prefix + name]
 
 
+# A brief scene of every apparatus.
+brief = {"slump_flow": 'mix = "mix_a"\n[test]\nduration = "0.02 s"\n[output]\nframes = false\n',
+         "l_box": 'mix = "mix_a"\n[test]\nduration = "0.02 s"\n[output]\nframes = false\n[model]\ncell = "50 mm"\n',
+         "icar_vane": 'mix = "mix_a"\n[test]\nrest = "60 s"\nduration = "1 s"\n[output]\nframes = false\n',
+         "cell": 'mix = "mix_a"\n[[history]]\nduration = "1 s"\nfrom = "0 1/s"\nto = "1 1/s"\n'}
+
+
 def readings(name):
     """The names in `results` of a brief run, whatever it is worth."""
-    scene = {"slump_flow": 'mix = "mix_a"\n[test]\nduration = "0.02 s"\n[output]\nframes = false\n',
-             "l_box": 'mix = "mix_a"\n[test]\nduration = "0.02 s"\n[output]\nframes = false\n[model]\ncell = "50 mm"\n',
-             "icar_vane": 'mix = "mix_a"\n[test]\nrest = "60 s"\nduration = "1 s"\n[output]\nframes = false\n',
-             "cell": 'mix = "mix_a"\n[[history]]\nduration = "1 s"\nfrom = "0 1/s"\nto = "1 1/s"\n'}[name]
     with tempfile.TemporaryDirectory() as folder:
-        (pathlib.Path(folder) / "scene.toml").write_text(f'apparatus = "{name}"\n' + scene)
+        (pathlib.Path(folder) / "scene.toml").write_text(f'apparatus = "{name}"\n' + brief[name])
         command = "cell" if name == "cell" else "run"
         subprocess.run([program, command, folder + "/scene.toml", "--out", folder + "/out", "--quiet"], capture_output=True)
         return list(flat(json.loads((pathlib.Path(folder) / "out/summary.json").read_text())["results"]))
@@ -68,19 +77,18 @@ A run fills a folder ([which files](../guide/slump_flow.md#what-a-run-leaves)); 
 `checks.reasons` is a list of sentences; where it is not empty the result is not to be trusted, and the exit code is 3. The same series as in
 `timeseries.csv` are in `results.h5`, with the points over time and where the numbers come from.
 """
-apparatus = ["slump_flow", "l_box", "icar_vane", "cell"]
 listed = says("--commands")
 commands = [line.split("\t")[0] for line in listed.splitlines()] if listed else []
 pages = {
     "scenes.md": (
         "# Every key of a scene\n\nWhat `tremie new APPARATUS` prints: every key with its default, a comment and the words it takes. "
         "A value with a dimension is a string with a unit.\n",
-        [section(f"`apparatus = \"{name}\"`", "toml", says("new", name) or "") for name in apparatus]),
+        [section(f"`apparatus = \"{name}\"`", "toml", says("new", name) or "") for name in brief]),
     "commands.md": (
         "# Every command\n\nWhat `tremie COMMAND --help` prints.\n",
         [section("`tremie`", "text", says("--help") or "")]
-        + [section(f"`tremie {name}`", "text", text) for name in commands if (text := says(name, "--help"))]),
-    "results.md": (results_head, [table(name) for name in apparatus]),
+        + [section(f"`tremie {name}`", "text", text) for name in commands if (text := help_of(name))]),
+    "results.md": (results_head, [table(name) for name in brief]),
 }
 
 differ = False

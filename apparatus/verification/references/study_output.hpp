@@ -18,7 +18,7 @@ inline std::string processor() {
   return "unknown processor";
 }
 
-/// "tremie 0.1.0 (commit), GNU 12.2.0, one core of …. Made by `…`."
+/// "tremie 0.2.0 (commit), GNU 12.2.0, one core of …. Made by `…`."
 inline std::string made_by(const std::string& target) {
   return "tremie " + std::string(version) + " (" + commit + "), " + compiler + ", one core of " +
          processor() + ".\nMade by `ninja -C build/release " + target + "`.";

@@ -1,0 +1,15 @@
+# The registry: the apparatus that the program has. Each is a folder of apparatus/ with a library tremie_<name> and a
+# function tremie::<name>::apparatus() in its apparatus.hpp.
+set(TREMIE_APPARATUS slump_flow l_box icar_vane cell)
+
+# tremie_registry(FILE NAME...): writes the source of scene::all_apparatus() for these apparatus.
+function(tremie_registry file)
+  set(includes "")
+  set(calls "")
+  foreach(name ${ARGN})
+    string(APPEND includes "#include \"apparatus/${name}/apparatus.hpp\"\n")
+    list(APPEND calls "${name}::apparatus()")
+  endforeach()
+  list(JOIN calls ", " calls)
+  configure_file(${PROJECT_SOURCE_DIR}/apparatus/registry/all_apparatus.cpp.in ${file} @ONLY)
+endfunction()
