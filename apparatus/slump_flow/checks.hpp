@@ -85,12 +85,13 @@ inline void judge_points_across(const Scene& scene, Outcome& outcome) {
 }
 
 /// The opening under a rim that has risen by less than some cells is narrow to the grid, and lets too little through: at
-/// two cells a fluid mix has spread 11 % too little, at one 41 %.
+/// two cells a fluid mix has spread 11 % too little, at one 41 %. In the time of a free fall from the cone's height nothing
+/// has flowed yet.
 inline void judge_opening(const Scene& scene, Outcome& outcome) {
   constexpr double least = 2.5;
-  const double risen =
-      scene.lift_speed ? rim_height(scene, outcome.series.back().time) / scene.model.cell[1] : least;
-  if (risen >= least) return;
+  const double time = outcome.series.back().time, free_fall = std::sqrt(2.0 * scene.cone.height / gravity);
+  const double risen = scene.lift_speed ? rim_height(scene, time) / scene.model.cell[1] : least;
+  if (risen >= least || time <= free_fall) return;
   char text[200];
   std::snprintf(text, sizeof text,
                 "the cone's rim has risen by %.2g cells, less than %g: a longer test.duration, or a smaller "
