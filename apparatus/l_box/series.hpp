@@ -53,6 +53,14 @@ inline std::optional<double> ratio_change(const std::vector<Sample>& series) {
   return (*last.h2 / last.h1 - *old->h2 / old->h1) / (last.time - old->time);
 }
 
+/// What H1 exceeds H2 by in a bed of depth h at rest, `length` between the two, where it flowed as far as its yield
+/// stress lets it: floor and side walls hold tau_0 (1 + 2 h/W) of rho g h dh/dx [m].
+inline double drop_at_rest(const Scene& scene, double h, double length) {
+  constexpr double g = 9.81;
+  return scene.mix.tau_0 / (scene.mix.density * g) *
+         (1.0 / h + (scene.side_walls_slip ? 0.0 : 2.0 / scene.box.width)) * length;
+}
+
 /// The drag law of a bar has no inertia. In a Newtonian fluid the drag of a cylinder over its speed is 2.5 times
 /// as large at a Reynolds number of 10 as at 1 (drag coefficients of 2.8 and 11).
 inline constexpr double most_bar_reynolds = 10.0;

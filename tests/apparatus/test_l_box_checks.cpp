@@ -65,6 +65,17 @@ TEST(LBoxStands, RatioChangesByTheMinute) {
   EXPECT_FALSE(l_box::ratio_change(sinking(20, 0.0)));
 }
 
+// In a box without side walls F(h) = h^2/2 falls by tau_0 L/rho g: from 80 mm to 60 mm over 0.7 m at 47.1 Pa. The drop at
+// the mean depth is the same.
+TEST(LBoxChecks, DropOfABedAtRestIsTheThinLayersOne) {
+  l_box::Scene scene;
+  scene.box.width = 1e9, scene.mix.density = 2400.0;
+  scene.mix.tau_0 = 0.5 * (0.08 * 0.08 - 0.06 * 0.06) / 0.7 * 2400.0 * 9.81;
+  EXPECT_NEAR(l_box::drop_at_rest(scene, 0.07, 0.7), 0.02, 1e-9);
+  scene.box.width = 0.14;  // half the bed's depth on each side again
+  EXPECT_NEAR(l_box::drop_at_rest(scene, 0.07, 0.7), 0.04, 1e-9);
+}
+
 // rho U D / (mu + tau_0 D/U) = 2000 . 0.5 . 0.012 / (1 + 0.012 . 25 / 0.5) = 7.5.
 TEST(LBoxChecks, ReynoldsNumberOfTheBarsIsThatOfTheFastestFront) {
   l_box::Scene scene;
