@@ -15,7 +15,7 @@ struct Parameter {
   std::optional<double> laboratories;
 };
 
-// Haist et al. (2020), Materials and Structures 53:92: concretes and pastes in the rheometers of several laboratories.
+// Haist et al. (2020), doi 10.1617/s11527-020-01477-w: one cement paste in the rheometers of several laboratories.
 const Parameter parameters[] = {{"yield_stress", "Pa", &FitResult::tau_0, 0.27},
                                 {"plastic_viscosity", "Pa s", &FitResult::mu, 0.24},
                                 {"static_yield_stress", "Pa", &FitResult::static_yield_stress, std::nullopt},

@@ -19,7 +19,7 @@ struct ReplicateMean {
   std::optional<double>
       within;  ///< what the single fits' intervals promise, as a relative standard deviation
   std::optional<double>
-      laboratories;  ///< relative scatter between laboratories (Haist et al. 2020), where it is known
+      laboratories;  ///< relative scatter of one paste between laboratories (Haist et al. 2020), where it is known
 };
 
 /// The parameters that at least one of the fits tells and was not given.

@@ -308,9 +308,8 @@ Answer replicates(const Options& o, const FitInput& in, double factor) {
           m.mean.ci95 ? fmt::format("[{:.4g}, {:.4g}] {}", m.mean.ci95->low, m.mean.ci95->high, m.unit) : "-",
           percent(m.between), percent(m.within), percent(m.laboratories));
     fmt::print(
-        "between laboratories the same material scatters by 27 % in yield stress and 24 % in viscosity "
-        "(Haist "
-        "et al. 2020)\n");
+        "between laboratories one cement paste scattered by 27 % in yield stress and 24 % in viscosity "
+        "(Haist et al. 2020)\n");
   };
   return a;
 }
