@@ -6,3 +6,12 @@ function(tremie_precompile target)
     target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <functional> <optional> <string> <vector> ${ARGN})
   endif()
 endfunction()
+
+# tremie_cold(TARGET...): little time of a run is spent in these; compiling them takes a third less with fewer
+# optimisations, half with none, as under sanitizers.
+function(tremie_cold)
+  foreach(target ${ARGN})
+    target_compile_options(${target} PRIVATE $<IF:$<BOOL:${TREMIE_SANITIZE}>,-O0,$<$<CONFIG:Release>:-O1>>
+                           $<$<CXX_COMPILER_ID:GNU>:-Wno-uninitialized$<SEMICOLON>-Wno-stringop-overflow>)  # false, in the compiler's own headers
+  endforeach()
+endfunction()

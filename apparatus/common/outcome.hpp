@@ -94,12 +94,15 @@ struct Stage {
   int depth = 1;       ///< the third direction
   double slice = 0.0;  ///< points within this of depth = 0 are shown [m]; 0: all
   bool mirrored = false;
-  std::vector<Outline> walls;   ///< that stay
-  std::vector<Outline> lifted;  ///< that rise from time 0 on
-  double lift_speed = 0.0;      ///< [m/s]
-  double point_size = 0.005;    ///< about the distance of points [m]
-  std::string plan = {};        ///< result that is the body's diameter from above [mm]; empty: no plan
-  double ring_diameter = 0.0;   ///< of the circle on the plate [m]; 0: none
+  std::vector<Outline> walls;                      ///< that stay
+  std::vector<Outline> lifted;                     ///< that rise from time 0 on
+  double lift_speed = 0.0;                         ///< [m/s]
+  bool full = false;                               ///< concrete fills the first of the walls
+  std::vector<Outline> turning = {};               ///< closed, solid; turn about the origin
+  std::vector<std::array<double, 2>> turned = {};  ///< times [s], increasing, and their angles then [rad]
+  double point_size = 0.005;                       ///< about the distance of points [m]
+  std::string plan = {};       ///< result that is the body's diameter from above [mm]; empty: no plan
+  double ring_diameter = 0.0;  ///< of the circle on the plate [m]; 0: none
 };
 
 struct Outcome {

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "apparatus/common/outcome_parts.hpp"
 #include "apparatus/icar_vane/ends.hpp"
 #include "apparatus/icar_vane/lines.hpp"
+#include "rheometer/reference/instrument.hpp"
 
 namespace tremie::scene {
 namespace {
@@ -185,19 +187,45 @@ std::vector<std::string> remarks_on(const icar_vane::Scene& scene, const icar_va
   return remarks;
 }
 
+Outline circle_of(double radius) {
+  Outline circle;
+  for (int i = 0; i <= 96; ++i) {
+    const double a = 2.0 * std::numbers::pi * i / 96.0;
+    circle.push_back({radius * std::cos(a), radius * std::sin(a)});
+  }
+  return circle;
+}
+
+/// Shaft and blades as they stand at the start, the first along x.
+std::vector<Outline> blades_of(const icar_vane::Vane& vane) {
+  std::vector<Outline> outlines{circle_of(vane.shaft_radius)};
+  const double half = 0.5 * vane.blade_thickness;
+  for (int b = 0; b < vane.blades; ++b) {
+    const double a = 2.0 * std::numbers::pi * b / vane.blades, c = std::cos(a), s = std::sin(a);
+    Outline blade;
+    for (const auto& [r, t] :
+         {std::array{0.0, -half}, {vane.radius, -half}, {vane.radius, half}, {0.0, half}, {0.0, -half}})
+      blade.push_back({c * r - s * t, s * r + c * t});
+    outlines.push_back(blade);
+  }
+  return outlines;
+}
+
 /// Blades in the plane have a shape to be seen; a solid cylinder's section is a line.
-std::optional<Stage> stage_of(const icar_vane::Scene& scene) {
+std::optional<Stage> stage_of(const icar_vane::Scene& scene, const std::vector<Sample>& series) {
   if (scene.model.space != SpaceKind::plane)
     return std::nullopt;  // with ends: no picture, the frames have it
   Stage stage;
   stage.up = 1, stage.depth = 2;
-  Outline circle;
-  for (int i = 0; i <= 96; ++i) {
-    const double a = 2.0 * 3.14159265358979 * i / 96.0;
-    circle.push_back({scene.vane.container_radius * std::cos(a), scene.vane.container_radius * std::sin(a)});
-  }
-  stage.walls = {circle};
+  stage.walls = {circle_of(scene.vane.container_radius)};
   stage.point_size = scene.model.cell[0] / scene.model.points_per_cell[0];
+  stage.full = true;
+  stage.turning = blades_of(scene.vane);
+  stage.turned = {{0.0, 0.0}};
+  for (const Sample& s : series) {
+    const auto [time, angle] = stage.turned.back();
+    stage.turned.push_back({s.time, angle + angular_speed(s.speed) * (s.time - time)});
+  }
   return stage;
 }
 
@@ -261,7 +289,7 @@ Outcome run_icar_vane(const icar_vane::Scene& scene, const Measured& measured, b
   outcome.asked = asked_text(measured.name, test_text(scene), scene.rest);
   outcome.answers = answers_of(raw.results);
   outcome.remarks = remarks_on(scene, raw.results);
-  outcome.stage = stage_of(scene);
+  outcome.stage = stage_of(scene, raw.series);
   outcome.tables = {profile_of(raw.results.profile), record_of(scene, raw)};
   outcome.charts = charts_of(scene, raw.results);
   outcome.lines = vane_lines(scene, raw);

@@ -82,16 +82,18 @@ Sample read(const Body<Geometry>& body, const Scene& scene, const StepReport& st
   return s;
 }
 
-/// Depths along the channel, a station every two cells, and the volume below its ceiling.
+/// Depths along the channel, a station a cell, and the volume below its ceiling. A depth is the mean of four cells:
+/// single cells hold one point more or less, which is no shape of the concrete.
 template <class Geometry>
 void read_profile(const Body<Geometry>& body, const Scene& scene, Results& r) {
   const Box& box = scene.box;
-  const double step = 2.0 * body.grid.axes[0].h, row = body.grid.axes[Geometry::up].h;
+  const double h = body.grid.axes[0].h, reach = 2.0 * h, row = body.grid.axes[Geometry::up].h;
   const double width = computed_width(scene);
-  for (double x = 0.0; x < box.channel_length - 0.5 * step; x += step)
+  for (double x = reach; x < box.channel_length - reach + 0.5 * h; x += h) {
+    const double at = box.column_length + x;
     r.profile.push_back(
-        {x + 0.5 * step, depth<Geometry>(body.points, box.column_length + x, box.column_length + x + step,
-                                         row, width, point_length(body, scene))});
+        {x, depth<Geometry>(body.points, at - reach, at + reach, row, width, point_length(body, scene))});
+  }
   double volume = 0.0;
   for (std::size_t p = 0; p < body.points.size(); ++p)
     if (body.points.x[p][0] >= box.column_length && body.points.x[p][Geometry::up] < box.channel_height)

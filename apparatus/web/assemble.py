@@ -6,7 +6,7 @@ JavaScript with worker.js; scripts, all others; mixes, the bundled mixes as JSON
 import base64, json, pathlib, re, sys, tomllib
 
 SCRIPTS = ["numbers.js", "scene.js", "solver.js", "colours.js", "section.js", "plate.js", "chart.js", "answer.js",
-           "controls.js", "player.js", "take_away.js", "main.js"]  # in the order in which they are read
+           "controls.js", "estimate.js", "player.js", "take_away.js", "main.js"]  # in the order in which they are read
 
 
 def mix_values(file):

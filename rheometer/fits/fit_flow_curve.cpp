@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 #include <stdexcept>
 
@@ -259,6 +260,30 @@ Fitted choose(const Readings& r, const FitInput& input, FitResult& result) {
   return fits[best];
 }
 
+/// A sentence where Herschel-Bulkley describes the readings of a Bingham fit far better and gives another yield stress:
+/// a difference of 10 in AICc leaves Bingham no support (Burnham and Anderson 2002). Empty otherwise.
+std::string better_law(const Readings& r, const FitInput& input, const Fitted& bingham) {
+  constexpr double no_support = 10.0, another = 0.1;
+  constexpr std::size_t fewest = 6, most = 1000;
+  if (input.law != FlowLaw::bingham || input.mu || input.tau_0 || r.size() < fewest || r.size() > most)
+    return {};
+  const Fitted hb = least_squares(r, input, FlowLaw::herschel_bulkley);
+  const auto n = static_cast<double>(r.size());
+  const auto aicc = [&](const Fitted& f) {
+    return corrected_akaike(mean_square(f.fit), n, static_cast<int>(f.free.size()));
+  };
+  const double tau_0 = bingham.fluid.tau_0, other = hb.fluid.tau_0;
+  if (at_bound(hb) || aicc(hb) > aicc(bingham) - no_support || std::abs(other - tau_0) < another * tau_0)
+    return {};
+  char text[240];
+  std::snprintf(text, sizeof text,
+                "yield_stress: hangs on the law: Herschel-Bulkley describes these readings far better "
+                "(scatter %.2g %% for "
+                "%.2g %%) and has %.3g Pa with n = %.2g; --law herschel_bulkley",
+                100.0 * hb.fit.scatter, 100.0 * bingham.fit.scatter, other, hb.fluid.n);
+  return text;
+}
+
 /// The torque falls as the speed rises, over the whole record and by more than scatter: no material of either law does.
 bool torque_falls(const Readings& r) {
   const auto n = static_cast<double>(r.size());
@@ -328,6 +353,7 @@ FitResult fit_flow_curve(const TorqueRecord& record, const FitInput& input) {
         "the torque falls as the speed rises, which neither a Bingham nor a Herschel-Bulkley "
         "material does: structure still broke down, or a layer slips at the vane");
   if (const std::string why = misfit(r, f.fit); !why.empty()) result.reasons.push_back(why);
+  if (const std::string better = better_law(r, input, f); !better.empty()) result.notes.push_back(better);
   if (!result.reasons.empty()) forget(input, result);
   if (slip > 0.0)
     result.reasons.push_back("wall slip is likely: the slowest third of the readings lies " +

@@ -54,6 +54,12 @@ std::optional<ReplicateMean> mean_of(const Parameter& p, const std::vector<FitRe
 
 }  // namespace
 
+const std::optional<Estimate>& value_of(const FitResult& fit, const ReplicateMean& parameter) {
+  return fit.*std::find_if(std::begin(parameters), std::end(parameters), [&](const Parameter& p) {
+                return p.name == parameter.name;
+              })->member;
+}
+
 std::vector<ReplicateMean> replicate_means(const std::vector<FitResult>& fits) {
   std::vector<ReplicateMean> means;
   for (const Parameter& p : parameters)

@@ -25,4 +25,7 @@ struct ReplicateMean {
 /// The parameters that at least one of the fits tells and was not given.
 std::vector<ReplicateMean> replicate_means(const std::vector<FitResult>& fits);
 
+/// What a fit tells of a parameter.
+const std::optional<Estimate>& value_of(const FitResult& fit, const ReplicateMean& parameter);
+
 }  // namespace tremie

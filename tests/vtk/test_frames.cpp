@@ -118,5 +118,27 @@ TEST_F(Frames, ArePaintedOnAVirtualDisplay) {
   EXPECT_GT(std::unique(red.begin(), red.end()) - red.begin(), 20);
 }
 
+/// A movie is of all frames: a folder with one of them, or none, is told what to do, and nothing is left.
+TEST_F(Frames, OfAMovieMustBeThere) {
+  const std::string picture = TREMIE_PICTURE;
+  const test::Result none = test::shell("'" + picture + "' . --movie out.gif", folder_->path());
+  EXPECT_EQ(none.code, 1);
+  EXPECT_NE(none.text.find("frames.pvd"), std::string::npos) << none.text;
+  const test::Result wrong = test::shell("'" + picture + "' run --movie out.png", folder_->path());
+  EXPECT_EQ(wrong.code, 1);
+  EXPECT_NE(wrong.text.find(".mp4 or .gif"), std::string::npos) << wrong.text;
+  EXPECT_NE(test::shell("test -e out.gif", folder_->path()).code, 0);
+}
+
+TEST_F(Frames, BecomeAMovie) {
+  for (const char* program : {"ffmpeg", "xvfb-run"})
+    if (test::shell(std::string("command -v ") + program, folder_->path()).code != 0)
+      GTEST_SKIP() << "needs " << program;
+  const std::string picture = TREMIE_PICTURE;
+  const test::Result made = test::shell("xvfb-run -a '" + picture + "' run --movie out.gif", folder_->path());
+  ASSERT_EQ(made.code, 0) << made.text;
+  EXPECT_EQ(test::read_file(*folder_ / "out.gif").substr(0, 6), "GIF89a");
+}
+
 }  // namespace
 }  // namespace tremie

@@ -4,6 +4,8 @@ import base64, json, pathlib, re, shutil, subprocess, tempfile, time, urllib.req
 FLAGS = ["--headless=new", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking",
          "--disable-component-update", "--disable-sync", "--disable-dev-shm-usage"]
 
+CODES = {"Tab": "\ue004", "Enter": "\ue007", "Control": "\ue009", "Space": " ", "Right": "\ue014"}
+
 
 def is_there():
     return all(shutil.which(program) for program in ("chromium", "chromedriver"))
@@ -69,6 +71,21 @@ class Browser:
 
     def console_errors(self):
         return [entry["message"] for entry in self.post("/se/log", {"type": "browser"}) if entry["level"] == "SEVERE"]
+
+    def save_into(self, folder):
+        """Downloads go to this folder, and nobody is asked."""
+        self.devtools("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(folder)})
+
+    def press(self, *keys):
+        """Keys of a keyboard one after the other, as WebDriver names them; Control with a letter as "Control+a"."""
+        actions = []
+        for key in keys:
+            held = CODES["Control"] if key.startswith("Control+") else None
+            key = CODES.get(key.removeprefix("Control+"), key.removeprefix("Control+"))
+            actions += [{"type": "keyDown", "value": held}] if held else []
+            actions += [{"type": "keyDown", "value": key}, {"type": "keyUp", "value": key}]
+            actions += [{"type": "keyUp", "value": held}] if held else []
+        self.post("/actions", {"actions": [{"type": "key", "id": "keyboard", "actions": actions}]})
 
     def screenshot(self, file):
         """The whole page, not the window alone."""

@@ -4,7 +4,7 @@
 The same numbers to 1e-9 relative: both do the same arithmetic in double precision; what differs is the order in
 which compilers contract products and the last digit of exp and log, 1e-14 on the spread. Leaves screenshots in OUT.
 Exit 77, a skipped test, where there is no Chromium or no native program."""
-import json, pathlib, subprocess, sys, tempfile
+import json, pathlib, subprocess, sys, tempfile, time
 
 from browser import Browser, is_there
 
@@ -77,7 +77,66 @@ def ask_in_other_ways(browser, program):
         check("yield_stress" in str(error) and "scene.toml:3" in str(error), f"a wrong key is an error: {error}")
 
 
-def use_the_page(page, out, width, dark):
+def estimate(browser, program):
+    """The page's estimate is the program's own, to the last digits of exp and log."""
+    asked = {"spread_mm": 590, "t500_s": 2.5, "density_kg_m3": 2350, "spread_error_mm": 12, "t500_error_s": 0.3}
+    options = ["--spread", "590 mm", "--t500", "2.5 s", "--density", "2350 kg/m3", "--spread-error", "12 mm", "--t500-error", "0.3 s"]
+    for page_keys, line in ((asked, options), ({"spread_mm": 480}, ["--spread", "480 mm"])):
+        here = json.loads(subprocess.run([program, "estimate", "--json", *line], check=True, capture_output=True).stdout)
+        there = json.loads(browser.wait_for("return JSON.stringify(await window.tremie.estimate(args[0]))", page_keys))
+        worst, where = max(difference(here["results"][key], there["results"][key], key) for key in here["results"])
+        check(worst < 1e-9 and here["checks"] == there["checks"], f"estimate of {page_keys['spread_mm']} mm within {worst:.1e} ({where})")
+
+
+def tab_to(browser, name):
+    for _ in range(80):
+        if browser.run("return document.activeElement.id") == name:
+            return True
+        browser.press("Tab")
+    return False
+
+
+def settled(browser):
+    browser.until("document.querySelector('#result-error').textContent && !document.body.classList.contains('busy')", 120)
+
+
+def use_the_keyboard(browser):
+    settled(browser)
+    browser.run("document.activeElement.blur()")
+    check(tab_to(browser, "field-yield_stress"), "the yield stress is reached by Tab")
+    browser.press("Control+a", *"61,5", "Tab")
+    browser.until("location.hash.includes('yield_stress=61.5')")
+    settled(browser)
+    check(tab_to(browser, "scrubber"), "the time is reached by Tab")
+    browser.press("Right", "Right")
+    browser.run("document.querySelector('#estimate summary').focus()")
+    browser.press("Enter")
+    check(tab_to(browser, "estimate-run"), "the estimate is reached by Tab")
+    browser.press("Enter")
+    browser.until("document.querySelector('#estimate-answer li')")
+    check("Yield stress" in browser.run("return document.querySelector('#estimate-answer').textContent"), "the estimate is answered")
+
+
+def take_away(browser, program):
+    """What is saved: a picture, the series, and a scene that the program runs to the page's spread."""
+    with tempfile.TemporaryDirectory() as folder:
+        browser.save_into(folder)
+        for button, ending in (("save-png", "png"), ("save-csv", "csv"), ("save-toml", "toml")):
+            browser.run(f"document.getElementById('{button}').click()")
+            end = time.time() + 20
+            while not list(pathlib.Path(folder).glob(f"*.{ending}")) and time.time() < end:
+                time.sleep(0.1)
+        files = {f.suffix: f for f in pathlib.Path(folder).iterdir()}
+        check(set(files) == {".png", ".csv", ".toml"}, f"saved: {', '.join(sorted(f.name for f in files.values()))}")
+        check(files[".png"].read_bytes()[:8] == b"\x89PNG\r\n\x1a\n" and files[".png"].stat().st_size > 20000, "the picture is a PNG")
+        shown = float(browser.run("return document.getElementById('result-spread').dataset.value"))
+        rows = files[".csv"].read_text().strip().split("\n")
+        check(rows[0].startswith("time") and abs(float(rows[-1].split(",")[1]) - shown) < 1e-3, f"the series ends at {shown:.2f} mm")
+        spread = native(program, files[".toml"].read_text())["results"]["spread_mm"]
+        check(abs(spread - shown) < 1e-9 * shown, f"the saved scene spreads to {spread:.2f} mm in the program")
+
+
+def use_the_page(page, program, out, width, dark):
     browser = Browser(width, 900 if width > 500 else 844, dark)
     try:
         browser.open(page + "#yield_stress=54&rest=0&yield_stress2=130&plastic_viscosity2=30.2&structuration_rate2=2.9")
@@ -92,6 +151,10 @@ def use_the_page(page, out, width, dark):
         browser.run("const at = document.getElementById('scrubber'); at.value = 30; at.dispatchEvent(new Event('input'))")
         check("0.3" in browser.run("return document.getElementById('time').textContent"), "the time can be chosen")
         browser.screenshot(out / f"moving_{width}_{'dark' if dark else 'light'}.png")
+        if width > 500:
+            use_the_keyboard(browser)
+            browser.screenshot(out / "estimate_1280_light.png")
+            take_away(browser, program)
         check(browser.console_errors() == [], f"{width} px, {'dark' if dark else 'light'}: no console error")
     finally:
         browser.close()
@@ -109,11 +172,12 @@ def main():
         browser.open(page.as_uri())
         compare_with_native(browser, program)
         ask_in_other_ways(browser, program)
+        estimate(browser, program)
         check(browser.console_errors() == [], "no console error")
     finally:
         browser.close()
-    use_the_page(page.as_uri(), out, 1280, False)
-    use_the_page(page.as_uri(), out, 390, True)
+    use_the_page(page.as_uri(), program, out, 1280, False)
+    use_the_page(page.as_uri(), program, out, 390, True)
     return 1 if failures else 0
 
 

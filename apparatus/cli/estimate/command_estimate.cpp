@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "apparatus/cli/commands.hpp"
 #include "apparatus/cli/options/command.hpp"
 #include "apparatus/cli/options/quantity.hpp"
 #include "apparatus/estimate/estimate.hpp"
+#include "apparatus/estimate/estimate_json.hpp"
 #include "apparatus/estimate/rheograph.hpp"
 #include "apparatus/report/process.hpp"
 #include "apparatus/scene/document.hpp"
@@ -20,7 +20,6 @@
 namespace tremie::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using scene::Dimension;
 
 struct Options {
@@ -38,21 +37,6 @@ estimate::Measured measured_of(const Options& o) {
   m.t500_error = quantity("--t500-error", o.t500_error, Dimension::time).value_or(m.t500_error);
   if (!m.t500 && !o.t500_error.empty()) throw scene::InputError("--t500-error: goes with --t500");
   return m;
-}
-
-Json json_of(const std::optional<estimate::Interval>& i) {
-  if (!i) return nullptr;
-  return {{"value", i->value}, {"ci95", {i->low, i->high}}};
-}
-
-void print_json(const estimate::Estimate& e) {
-  const Json json{{"results",
-                   {{"yield_stress_Pa", json_of(e.tau_0)},
-                    {"plastic_viscosity_Pa_s", json_of(e.mu)},
-                    {"yield_stress_thin_layer_law_Pa", e.tau_0_thin_layer},
-                    {"yield_stress_with_plug_stress_Pa", e.tau_0_plug}}},
-                  {"checks", {{"reasons", e.reasons}}}};
-  fmt::print("{}\n", json.dump(2));
 }
 
 void print_interval(const char* name, const std::optional<estimate::Interval>& i, const char* unit,
@@ -120,7 +104,7 @@ int run(const Options& options) {
   const auto measured = measured_of(options);
   const auto result = estimate::estimate(table, measured);
   if (!options.chart.empty()) draw_chart(options, estimate::at_density(table, measured.density), result);
-  options.json ? print_json(result) : print_text(options, result);
+  options.json ? fmt::print("{}\n", estimate::estimate_json(result)) : print_text(options, result);
   for (const auto& reason : result.reasons) fmt::print(stderr, "not to be trusted: {}\n", reason);
   return result.reasons.empty() ? done : not_to_be_trusted;
 }

@@ -46,6 +46,31 @@ struct Options {
   bool protocol = false, json = false, quiet = false, force = false;
 };
 
+/// What repeats a fit of these files, to be typed where it was.
+std::string repeat(const Options& o, const std::vector<std::string>& files) {
+  const Options unset;
+  std::string text = "tremie fit";
+  for (const std::string& file : files) text += " " + file;
+  const auto add = [&](const char* name, std::string Options::*member) {
+    if (o.*member != unset.*member) text += fmt::format(" {} '{}'", name, o.*member);
+  };
+  add("--vane-radius", &Options::vane_radius);
+  add("--vane-height", &Options::vane_height);
+  add("--container-radius", &Options::container_radius);
+  add("--speed", &Options::speed);
+  add("--rest", &Options::rest);
+  add("--yield-stress", &Options::yield_stress);
+  add("--plastic-viscosity", &Options::plastic_viscosity);
+  add("--kinetics", &Options::kinetics);
+  add("--law", &Options::law);
+  add("--critical-shear-rate", &Options::critical_shear_rate);
+  add("--instrument-compliance", &Options::compliance);
+  add("--torque-offset", &Options::torque_offset);
+  add("--ends", &Options::ends);
+  add("--max-aggregate", &Options::max_aggregate);
+  return text + (o.protocol ? " --protocol" : "");
+}
+
 // --- in
 // ---------------------------------------------------------------------------------------------------------
 
@@ -228,13 +253,12 @@ void print_moves(const Json& moves, const Options& o, double factor) {
 Answer one_record(const Options& o, const FitInput& in, double factor) {
   const std::string& file = o.data.front();
   auto result = std::make_shared<FitResult>(read_and_fit(o, file, in));
-  Answer a{
-      report::fit_results(*result),
-      result->reasons,
-      {{"fit.csv", fit_csv(*result, in.instrument)},
-       {"report.html", report::fit_html(fit_report(*result, in.instrument, file, "tremie fit " + file))}},
-      fit_charts(*result, in.instrument),
-      {}};
+  Answer a{report::fit_results(*result),
+           result->reasons,
+           {{"fit.csv", fit_csv(*result, in.instrument)},
+            {"report.html", report::fit_html(fit_report(*result, in.instrument, file, repeat(o, {file})))}},
+           fit_charts(*result, in.instrument),
+           {}};
   const Json moves = o.ends == "none" ? Json() : ends_json(o, file, in, factor, *result);
   a.results["ends"] = {{"correction", o.ends}, {"factor", factor}, {"moves", moves}};
   a.print = [=] {
@@ -256,7 +280,7 @@ Answer protocol(const Options& o, FitInput in, double factor) {
   Answer a{protocol_json(*reading),
            reading->reasons,
            {{"sections.csv", protocol_csv(*reading)},
-            {"report.html", protocol_html(record, *reading, file, "tremie fit " + file + " --protocol")}},
+            {"report.html", protocol_html(record, *reading, file, repeat(o, {file}))}},
            protocol_charts(record, *reading),
            {}};
   a.results["understood"] = record.understood;
@@ -271,6 +295,7 @@ Answer protocol(const Options& o, FitInput in, double factor) {
 
 Answer replicates(const Options& o, const FitInput& in, double factor) {
   std::vector<FitResult> fits;
+  std::vector<report::FitReport> reports;
   Answer a;
   a.results = {{"kind", "replicates"}, {"records", Json::array()}};
   for (const std::string& file : o.data) {
@@ -280,9 +305,8 @@ Answer replicates(const Options& o, const FitInput& in, double factor) {
     a.results["records"].push_back(one);
     for (const auto& why : fits.back().reasons) a.reasons.push_back(file + ": " + why);
     a.files.emplace_back(fmt::format("fit_{}.csv", fits.size()), fit_csv(fits.back(), in.instrument));
-    a.files.emplace_back(
-        fmt::format("report_{}.html", fits.size()),
-        report::fit_html(fit_report(fits.back(), in.instrument, file, "tremie fit " + file)));
+    reports.push_back(fit_report(fits.back(), in.instrument, file, repeat(o, {file})));
+    a.files.emplace_back(fmt::format("report_{}.html", fits.size()), report::fit_html(reports.back()));
   }
   const std::vector<ReplicateMean> means = replicate_means(fits);
   Json& mean = a.results["mean"] = Json::object();
@@ -294,6 +318,8 @@ Answer replicates(const Options& o, const FitInput& in, double factor) {
                          {"scatter_within", json_of(m.within)},
                          {"scatter_between_laboratories", json_of(m.laboratories)}});
   }
+  a.files.emplace_back("report.html",
+                       report::replicates_html(replicates_report(fits, means, reports, repeat(o, o.data))));
   a.results["ends"] = {{"correction", o.ends}, {"factor", factor}};
   a.print = [=] {
     for (std::size_t i = 0; i < fits.size(); ++i) {

@@ -38,8 +38,7 @@ void add_torque(const FitReport& fit, Page& page) {
       .title = fit.decay ? "Decay of the torque" : "Torque over speed",
       .x_label = x_label(fit),
       .y_label = "torque (N·m)",
-      .curves = {{"readings", fit.x, fit.observed, Mark::points},
-                 {fit.decay ? "thixotropic Couette model" : "Reiner-Riwlin", fit.x, fit.fitted}},
+      .curves = {{"readings", fit.x, fit.observed, Mark::points}, {fit.model, fit.x, fit.fitted}},
       .bands = band_of(fit)};
   add(chart, "torque", "", page);
 }

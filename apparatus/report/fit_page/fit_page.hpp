@@ -19,6 +19,7 @@ struct FitParameter {
 struct FitReport {
   std::string record;  ///< the file
   bool decay = false;  ///< torque over time at one speed; else over the speed
+  std::string model;   ///< of the fitted line, in words
   std::vector<FitParameter> parameters;
   std::vector<double> x;                                     ///< [s] of a decay, [rev/s] of a flow curve
   std::vector<double> observed, fitted, standard_error;      ///< torque [N m]; the last may be empty

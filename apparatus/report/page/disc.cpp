@@ -60,7 +60,14 @@ std::string disc_svg(const Disc& disc) {
         scale * disc.radius[i],
         fmt::format("fill=\"{}\"", colour_at(std::log(value / disc.low) / std::log(disc.high / disc.low))));
   }
-  rings += circle(scale * disc.radius[0], "class=\"hole\" fill=\"#fff\"");
+  if (disc.solids.empty()) rings += circle(scale * disc.radius[0], "class=\"hole\" fill=\"#fff\"");
+  for (const Polyline& solid : disc.solids) {
+    std::string path;
+    for (const auto& p : solid)
+      path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", 0.5 * width + scale * p[0],
+                          top + reach - scale * p[1]);
+    rings += "<path class=\"solid\" fill=\"#1c2126\" d=\"" + path + "z\"/>";
+  }
   for (const double r : {disc.radius[0], disc.radius[n - 1]})
     rings += circle(scale * r, "class=\"wall\" fill=\"none\" stroke=\"#1c2126\" stroke-width=\"2\"");
   const double end = top + 2 * reach;

@@ -88,15 +88,17 @@ std::string data_json(const MovingPicture& picture) {
   const Extent e = extent_of(picture);
   std::string frames, fields;
   for (const MovingFrame& frame : picture.frames)
-    frames += fmt::format("{}{{\"t\":{:.4g},\"n\":{},\"d\":\"{}\"}}", frames.empty() ? "" : ",\n", frame.time,
-                          frame.places.size(), base64(bytes_of(frame, picture.fields, e)));
+    frames += fmt::format("{}{{\"t\":{:.4g},\"a\":{:.5g},\"n\":{},\"d\":\"{}\"}}",
+                          frames.empty() ? "" : ",\n", frame.time, frame.turned, frame.places.size(),
+                          base64(bytes_of(frame, picture.fields, e)));
   for (const ColourField& field : picture.fields)
     fields += fmt::format("{}{}", fields.empty() ? "" : ",", number_words(field));
   return fmt::format(
-      "{{\"box\":[{:.6g},{:.6g},{:.6g},{:.6g}],\"mirrored\":{},\"speed\":{:.5g},\"fixed\":{},\"lifted\":{},"
-      "\"fields\":[{}],\"frames\":[{}]}}",
-      e.x0, e.x1, e.y0, e.y1, picture.mirrored, picture.lift_speed, walls_json(picture.fixed),
-      walls_json(picture.lifted), fields, frames);
+      "{{\"box\":[{:.6g},{:.6g},{:.6g},{:.6g}],\"mirrored\":{},\"full\":{},\"speed\":{:.5g},\"fixed\":{},"
+      "\"lifted\":{},"
+      "\"turning\":{},\"fields\":[{}],\"frames\":[{}]}}",
+      e.x0, e.x1, e.y0, e.y1, picture.mirrored, picture.full, picture.lift_speed, walls_json(picture.fixed),
+      walls_json(picture.lifted), walls_json(picture.turning), fields, frames);
 }
 
 void thin_points(MovingFrame& frame, std::size_t most) {
@@ -154,14 +156,14 @@ const rgb=Array.from({length:256},(_,i)=>{const s=i/255*4,k=Math.min(3,Math.floo
 return stops[k].map((c,j)=>Math.round(c+f*(stops[k+1][j]-c)));}),shades=rgb.map(c=>"rgb("+c+")");
 const frames=m.frames.map(f=>{const raw=atob(f.d),b=Uint8Array.from(raw,c=>c.charCodeAt(0)),n=f.n,x=new Float32Array(n),y=new Float32Array(n);
 for(let i=0;i<n;i++){x[i]=bx0+(b[2*i]+256*b[2*i+1])/65535*(bx1-bx0);y[i]=y0+(b[2*n+2*i]+256*b[2*n+2*i+1])/65535*(y1-y0);}
-return {t:f.t,n,x,y,shade:b.subarray(4*n)};});
+return {t:f.t,a:f.a,n,x,y,shade:b.subarray(4*n)};});
 // Thinned points stand for all: what lies within reach of one has its colour, and the outline is drawn back by as
 // much as the reach goes beyond a point's own half-width.
 function fill(c,f,k,css,h,X,Y,scale){
 const g=2,W=Math.ceil(css/g),H=Math.ceil(h/g),far=1e9,d2=new Float32Array(W*H).fill(far),shade=new Uint8Array(W*H),sides=m.mirrored?[1,-1]:[1];
 const q=Math.max(g,Math.sqrt((bx1-bx0)*(y1-y0)/f.n)*scale*1.5),seen=new Set();
 for(let i=0;i<f.n;i++)seen.add(Math.floor(X(f.x[i])/q)*8192+Math.floor(Y(f.y[i])/q));
-const space=Math.sqrt(seen.size/f.n)*q,R=Math.min(24,Math.max(3,2.5*space))/g,back=Math.max(0,R-.55*space/g);
+const space=Math.sqrt(seen.size/f.n)*q,R=Math.min(m.full?40:24,Math.max(3,(m.full?5:2.5)*space))/g,back=m.full?-1:Math.max(0,R-.55*space/g);
 for(let i=0;i<f.n;i++)for(const s of sides){const x=X(s*f.x[i])/g,y=Y(f.y[i])/g,col=f.shade.length?f.shade[k*f.n+i]:0;
 for(let b=Math.max(0,Math.ceil(y-R));b<=Math.min(H-1,y+R);b++)for(let a=Math.max(0,Math.ceil(x-R));a<=Math.min(W-1,x+R);a++){
 const d=(a-x)*(a-x)+(b-y)*(b-y),at=b*W+a;if(d<=R*R&&d<d2[at]){d2[at]=d;shade[at]=col;}}}
@@ -179,10 +181,14 @@ canvas.width=css*dpr;canvas.height=h*dpr;canvas.style.height=h+"px";
 const c=canvas.getContext("2d");c.scale(dpr,dpr);c.clearRect(0,0,css,h);
 const ox=css/2-(x0+x1)/2*scale,oy=pad+y1*scale,X=v=>ox+v*scale,Y=v=>oy-v*scale,ink=getComputedStyle(document.body).color;
 const k=+field.value||0;
+c.save();if(m.full){c.beginPath();m.fixed[0].forEach(p=>c.lineTo(X(p[0]),Y(p[1])));c.clip();}
 if(f.n)fill(c,f,k,css,h,X,Y,scale);
+c.restore();
 c.strokeStyle=ink;c.lineWidth=2;
 const wall=(w,up,s)=>{c.beginPath();w.forEach((p,i)=>i?c.lineTo(X(s*p[0]),Y(p[1]+up)):c.moveTo(X(s*p[0]),Y(p[1]+up)));c.stroke();};
 for(const s of m.mirrored?[1,-1]:[1]){for(const w of m.fixed)wall(w,0,s);for(const w of m.lifted)wall(w,m.speed*f.t,s);}
+const ca=Math.cos(f.a),sa=Math.sin(f.a);c.fillStyle=ink;
+for(const w of m.turning){wall(w.map(([x,y])=>[ca*x-sa*y,sa*x+ca*y]),0,1);c.fill();}
 if(m.fields.length){const r=m.fields[k],w=Math.min(220,css-150),top=h-22,left=css/2-w/2;
 for(let i=0;i<w;i++){c.fillStyle=shades[Math.floor(i/w*255)];c.fillRect(left+i,top,1.5,10);}
 c.fillStyle=ink;c.font="13px system-ui,sans-serif";c.textAlign="right";c.fillText(r.low,left-6,top+10);

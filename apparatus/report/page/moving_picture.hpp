@@ -20,7 +20,8 @@ struct ColourField {
 
 /// The points at one time: places [m], and a value a point for each field.
 struct MovingFrame {
-  double time = 0.0;  ///< [s]
+  double time = 0.0;    ///< [s]
+  double turned = 0.0;  ///< what turns has turned by then [rad]
   std::vector<std::array<float, 2>> places;
   std::vector<std::vector<float>> values;
 };
@@ -29,10 +30,12 @@ struct MovingPicture {
   std::string caption;
   std::vector<ColourField> fields;
   std::vector<MovingFrame> frames;
-  std::vector<Polyline> fixed;   ///< walls that stay
-  std::vector<Polyline> lifted;  ///< walls that rise from time 0 on
-  double lift_speed = 0.0;       ///< of those [m/s]
-  bool mirrored = false;         ///< drawn again at -x: half of a body of revolution
+  std::vector<Polyline> fixed;    ///< walls that stay
+  std::vector<Polyline> lifted;   ///< walls that rise from time 0 on
+  double lift_speed = 0.0;        ///< of those [m/s]
+  bool full = false;              ///< the first of the walls is full of points
+  std::vector<Polyline> turning;  ///< solid bodies that turn about the origin by the frame's angle
+  bool mirrored = false;          ///< drawn again at -x: half of a body of revolution
 };
 
 /// At most so many frames and points a frame, evenly thinned; the first and the last frame stay.

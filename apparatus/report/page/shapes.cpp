@@ -96,7 +96,7 @@ struct Paper {
 
 std::string section_path(const Shape& shape, const Box& box, const Paper& paper) {
   const double cell = std::max(0.5 * shape.point_size, (box.x1 - box.x0) / 320);
-  Bitmap bitmap(box, cell, static_cast<int>(std::ceil(1.5 * shape.point_size / cell)));
+  Bitmap bitmap(box, cell, static_cast<int>(std::ceil(2.2 * shape.point_size / cell)));
   for (const auto& p : shape.places) {
     bitmap.mark(p[0], p[1]);
     if (shape.mirrored) bitmap.mark(-p[0], p[1]);
@@ -157,6 +157,7 @@ std::string shape_svg(const Shape& shape) {
     text += wall_svg(wall, paper, 1.0);
     if (shape.mirrored) text += wall_svg(wall, paper, -1.0);
   }
+
   text += fmt::format(
       "<line class=\"wall\" stroke=\"#1c2126\" stroke-width=\"2\" x1=\"{0:.1f}\" x2=\"{1:.1f}\" "
       "y1=\"{2:.1f}\" y2=\"{2:.1f}\"/>",

@@ -30,7 +30,7 @@ svg .l0{stroke:var(--c0)!important}svg .l1{stroke:var(--c1)!important}svg .l2{st
 svg .l3{stroke:var(--c3)!important}svg .f0{fill:var(--c0)!important}svg .f1{fill:var(--c1)!important}
 svg .f2{fill:var(--c2)!important}svg .f3{fill:var(--c3)!important}svg .level{stroke:var(--ink)!important}
 svg .hole{fill:var(--paper)!important}
-svg .body{fill:var(--c0)!important}svg .wall{stroke:var(--ink)!important}
+svg .body{fill:var(--c0)!important}svg .wall{stroke:var(--ink)!important}svg .solid{fill:var(--ink)!important}
 .tables{columns:27rem 2;column-gap:2.4rem}
 .tables>section{break-inside:avoid}
 .tables>section>h2{margin-top:.6rem}

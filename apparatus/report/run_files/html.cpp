@@ -110,7 +110,7 @@ NumberTable cost_table(const Cost& c) {
 }
 
 void add_shape(const scene::Outcome& o, const MovingPicture& moving, Page& page) {
-  if (!o.stage || moving.frames.empty()) return;
+  if (!o.stage || o.stage->full || moving.frames.empty()) return;
   Shape shape{.title = "Shape at the end",
               .places = {},
               .point_size = o.stage->point_size,
@@ -126,8 +126,18 @@ void add_shape(const scene::Outcome& o, const MovingPicture& moving, Page& page)
   page.figures.push_back({"shape", "The concrete at the end, from the computed points.", shape_svg(shape)});
 }
 
+/// What turns, as it stands in the last frame.
+std::vector<Polyline> turned_at_the_end(const MovingPicture& moving) {
+  std::vector<Polyline> solids = moving.turning;
+  const double a = moving.frames.empty() ? 0.0 : moving.frames.back().turned, c = std::cos(a),
+               s = std::sin(a);
+  for (Polyline& body : solids)
+    for (auto& p : body) p = {c * p[0] - s * p[1], s * p[0] + c * p[1]};
+  return solids;
+}
+
 /// A shear rate over the radius as a section from above, where a table has one.
-void add_disc(const scene::Outcome& o, Page& page) {
+void add_disc(const scene::Outcome& o, const MovingPicture& moving, Page& page) {
   for (const auto& table : o.tables) {
     if (table.columns.empty() || table.columns.front().name != "radius_mm") continue;
     for (const auto& column : table.columns) {
@@ -135,9 +145,14 @@ void add_disc(const scene::Outcome& o, Page& page) {
       Disc disc{
           .title = "Section at the end", .words = "shear rate (1/s)", .radius = {}, .values = column.values};
       for (const double r : table.columns.front().values) disc.radius.push_back(1e-3 * r);
+      disc.solids = turned_at_the_end(moving);
       if (std::string svg = disc_svg(disc); !svg.empty())
         page.figures.push_back(
-            {"section", "The concrete between vane and container, by its shear rate.", svg});
+            {"section",
+             moving.turning.empty()
+                 ? "The concrete between vane and container, by its shear rate."
+                 : "The concrete about the blades, by its shear rate; mean over the angle.",
+             svg});
     }
   }
 }
@@ -177,7 +192,7 @@ std::string report_html(const scene::Outcome& o, const std::string& resolved, co
   page.trust = trust_of(o);
   page.remarks = o.remarks;
   add_shape(o, moving, page);
-  if (!o.stage) add_disc(o, page);
+  if (!o.stage || o.stage->full) add_disc(o, moving, page);
   for (const auto& chart : o.charts)
     if (const LineChart drawn = line_chart(chart, o); can_be_drawn(drawn))
       page.figures.push_back({chart.file.substr(0, chart.file.find('.')), "", chart_svg(drawn)});

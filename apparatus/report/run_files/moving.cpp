@@ -9,9 +9,20 @@
 namespace tremie::report {
 namespace {
 
+/// Between the times that the stage has.
+double turned_at(const scene::Stage& stage, double time) {
+  const auto& all = stage.turned;
+  const auto after = std::find_if(all.begin(), all.end(), [&](const auto& t) { return t[0] >= time; });
+  if (after == all.begin() || after == all.end())
+    return all.empty() ? 0.0 : (after == all.end() ? all.back() : *after)[1];
+  const auto &a = *std::prev(after), &b = *after;
+  return a[1] + (b[1] - a[1]) * (time - a[0]) / (b[0] - a[0]);
+}
+
 MovingFrame seen(const Frame& frame, const scene::Stage& stage, bool thixotropic) {
   MovingFrame result;
   result.time = frame.time;
+  result.turned = turned_at(stage, frame.time);
   result.values.resize(thixotropic ? 2 : 1);
   const auto at = [](const std::array<double, 3>& x, int d) { return x[static_cast<std::size_t>(d)]; };
   for (std::size_t p = 0; p < frame.position.size(); ++p) {
@@ -95,6 +106,7 @@ MovingPicture moving_picture(const scene::Outcome& outcome, const std::vector<Fr
   picture.caption = "The concrete over time; what was computed, point by point.";
   picture.fixed = stage.walls, picture.lifted = stage.lifted;
   picture.lift_speed = stage.lift_speed, picture.mirrored = stage.mirrored;
+  picture.turning = stage.turning, picture.full = stage.full;
   for (const Frame& frame : frames) picture.frames.push_back(seen(frame, stage, thixotropic));
   picture.fields = {{"shear rate", "1/s", 0.01, 10.0, true}};
   if (thixotropic) {

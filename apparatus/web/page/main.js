@@ -217,12 +217,16 @@ buildMixes(
     (name) => change(
         {...concreteOf(name), rest: state.concretes[state.active].rest, lift: state.concretes[state.active].lift}));
 buildFields(byId("fields"), (key, value) => change({...state.concretes[state.active], [key]: value}));
+buildEstimate(
+    byId("estimate-fields"), () => state.concretes[state.active].density,
+    (values) => change({...state.concretes[state.active], ...values, rest: 0}));
 buildPlayer();
 player.draw = draw;
 byId("scale").style.background = `linear-gradient(to right, ${shades.join(", ")})`;
 listen();
 window.tremie = {
   run: runScene,
+  estimate: estimateFor,
   version: byId("version").textContent
 };
 load(concretesOf(location.hash.slice(1)));

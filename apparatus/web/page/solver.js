@@ -72,11 +72,20 @@ function cancelAll() {
   stopJob("cancelled");
 }
 
-function solve(scene, look = {}) {
+function enqueue(message, look, giveWay) {
   return new Promise((resolve, reject) => {
-    const message = {...sceneText(scene), withError: look.withError ?? false};
     solver.queue.push({message, look, resolve, reject, frames: [], answered: false});
-    if (solver.job?.answered) stopJob("cancelled");
+    if (giveWay && solver.job?.answered) stopJob("cancelled");
     next();
   });
+}
+
+async function solve(scene, look = {}) {
+  return enqueue({...sceneText(scene), withError: look.withError ?? false}, look, true);
+}
+
+/// {results, checks} of `tremie estimate --json`, in SI but for the keys' units; waits for what runs.
+async function solveEstimate(measured) {
+  const {results, checks} = await enqueue({estimate: measured}, {}, false);
+  return {results, checks};
 }

@@ -1,4 +1,5 @@
-// The worker: the library, one scene at a time. Told {module} first, then {toml, overrides, withError}.
+// The worker: the library, one scene at a time. Told {module} first, then {toml, overrides, withError}
+// or {estimate: {spread, spreadError, t500, t500Error, density}} in SI.
 let library = null;
 
 function load(module) {
@@ -14,14 +15,22 @@ function load(module) {
   });
 }
 
+function run(ccall, {toml, overrides, withError}) {
+  ccall("tremie_page_run", null, ["string", "string", "number"], [toml, overrides, withError ? 1 : 0]);
+}
+
+function estimate(ccall, {spread, spreadError, t500, t500Error, density}) {
+  ccall("tremie_page_estimate", null, Array(5).fill("number"), [spread, spreadError, t500, t500Error, density]);
+}
+
 onmessage = async ({data}) => {
   if (data.module) {
     library = load(data.module);
     return;
   }
-  const types = ["string", "string", "number"];
   try {
-    (await library).ccall("tremie_page_run", null, types, [data.toml, data.overrides, data.withError ? 1 : 0]);
+    const {ccall} = await library;
+    data.estimate ? estimate(ccall, data.estimate) : run(ccall, data);
   } catch (fault) {
     postMessage({error: `the run broke off: ${fault.message ?? fault}`});
   }

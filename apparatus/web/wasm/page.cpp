@@ -7,9 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "apparatus/estimate/estimate.hpp"
+#include "apparatus/estimate/estimate_json.hpp"
 #include "apparatus/registry/error_estimate.hpp"
 #include "apparatus/registry/registry.hpp"
 #include "apparatus/report/summary.hpp"
+#include "apparatus/scene/load.hpp"
 #include "apparatus/slump_flow/slump_flow.hpp"
 
 // Written in JavaScript (callbacks.js). Texts are UTF-8 and the callee's to copy.
@@ -83,6 +86,20 @@ void run(const char* toml, const char* overrides, bool with_error) {
 extern "C" void tremie_page_run(const char* toml, const char* overrides, int with_error) {
   try {
     run(toml, overrides, with_error != 0);
+  } catch (const std::exception& error) {
+    tremie_page_error(error.what());
+  }
+}
+
+/// `tremie estimate --json` of a spread [m] and a t500 [s], not-a-number where none was measured; errors are one standard error.
+extern "C" void tremie_page_estimate(double spread, double spread_error, double t500, double t500_error,
+                                     double density) {
+  try {
+    estimate::Measured measured{
+        .spread = spread, .spread_error = spread_error, .t500_error = t500_error, .density = density};
+    if (!std::isnan(t500)) measured.t500 = t500;
+    const auto table = estimate::find_slump_table(scene::data_folders());
+    tremie_page_result(estimate::estimate_json(estimate::estimate(table, measured)).c_str());
   } catch (const std::exception& error) {
     tremie_page_error(error.what());
   }
