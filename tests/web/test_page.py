@@ -36,6 +36,8 @@ def difference(a, b, place=""):
         if not isinstance(b, dict) or list(a) != list(b):
             return float("inf"), place
         return max((difference(a[key], b[key], key) for key in a), default=(0.0, place))
+    if isinstance(a, list) and isinstance(b, list) and len(a) == len(b):
+        return max((difference(x, y, place) for x, y in zip(a, b)), default=(0.0, place))
     if isinstance(a, (int, float)) and not isinstance(a, bool) and isinstance(b, (int, float)):
         return abs(a - b) / max(abs(a), abs(b), 1e-300), place
     return (0.0 if a == b else float("inf")), place
