@@ -220,7 +220,7 @@ void report_readings(State& s) {
     const Prediction& best = e.predictions[s.result.posterior.best];
     const double deviation = (m.value - best.mean) / std::sqrt(variance_of(s, e, best));
     s.result.chi_square += deviation * deviation;
-    s.result.readings.push_back({label, m.result, m.value, m.error, e.error,
+    s.result.readings.push_back({label, s.lab.tests[e.test].words, m.result, m.value, m.error, e.error,
                                  s.discretisation[e.test][e.reading], best.mean, deviation,
                                  left_out_of(s, e)});
   }
@@ -237,10 +237,10 @@ void report_contradictions(State& s) {
   for (const ReadingReport& r : s.result.readings) {
     if (!worst || std::abs(r.deviation) > std::abs(worst->deviation)) worst = &r;
     if (std::abs(r.deviation) > far_off)
-      s.result.reasons.push_back(
-          fmt::format("{} {} = {:.4g} lies {:.1f} standard errors from the best fit, {:.4g}: it contradicts "
-                      "the other measurements or lies outside of what the model can do within the ranges",
-                      r.test, r.result, r.measured, std::abs(r.deviation), r.best_fit));
+      s.result.reasons.push_back(fmt::format(
+          "{} ({}) {} = {:.4g} lies {:.1f} standard errors from the best fit, {:.4g}: it contradicts "
+          "the other measurements or lies outside of what the model can do within the ranges",
+          r.test, r.words, r.result, r.measured, std::abs(r.deviation), r.best_fit));
   }
   if (!worst) {
     s.result.reasons.push_back("no measurement could be emulated");
@@ -250,9 +250,9 @@ void report_contradictions(State& s) {
       1.0, static_cast<double>(s.result.readings.size()) - static_cast<double>(s.lab.unknowns.size()));
   if (s.result.reasons.empty() && chance_above(s.result.chi_square, free) < contradiction)
     s.result.reasons.push_back(fmt::format(
-        "the measurements contradict each other: chi square {:.1f}; the farthest off is {} {}, by "
+        "the measurements contradict each other: chi square {:.1f}; the farthest off is {} ({}) {}, by "
         "{:.1f} standard errors",
-        s.result.chi_square, worst->test, worst->result, std::abs(worst->deviation)));
+        s.result.chi_square, worst->test, worst->words, worst->result, std::abs(worst->deviation)));
 }
 
 void report_emulators(State& s) {

@@ -24,7 +24,7 @@ struct Trial {
 
 /// How well a reading is emulated and met.
 struct ReadingReport {
-  std::string test, result;
+  std::string test, words, result;     ///< the test's label and words
   double measured = 0.0, error = 0.0;  ///< standard error
   double emulator_error = 0.0;         ///< root mean square of leaving one run out, near the posterior
   double discretisation_error = 0.0;   ///< of the runs' cells and steps, one standard error

@@ -99,7 +99,7 @@ report::Figure emulator(const ReadingReport& r) {
                           .y_label = "of the emulator",
                           .curves = {runs, {"equal", {low, high}, {low, high}, report::Mark::line}}};
   return {fmt::format("emulator-{}-{}", r.test, r.result),
-          fmt::format("{}: good to {:.2g} {} near the posterior; the measurement to {:.2g}.", r.test,
+          fmt::format("{}: good to {:.2g} {} near the posterior; the measurement to {:.2g}.", r.words,
                       r.emulator_error, unit_for_people(r.result), r.error),
           chart_svg(chart)};
 }
@@ -111,7 +111,7 @@ report::GridTable fit_table(const Calibration& c) {
                           {}};
   for (const auto& r : c.readings)
     table.rows.push_back(
-        {fmt::format("{}, {}", r.test, with_unit(words_of(r.result), unit_for_people(r.result))),
+        {fmt::format("{}, {}", r.words, with_unit(words_of(r.result), unit_for_people(r.result))),
          fmt::format("{:.4g}", r.measured), fmt::format("{:.2g}", r.error), fmt::format("{:.4g}", r.best_fit),
          fmt::format("{:+.1f}", r.deviation), fmt::format("{:.2g}", r.emulator_error),
          fmt::format("{:.2g}", r.discretisation_error)});
@@ -130,10 +130,9 @@ report::GridTable forecast_table(const Lab& lab, const Calibration& c) {
   report::GridTable table{"Forecast", {"test", "value", "95 % interval"}, {}};
   for (std::size_t i = 0; i < c.forecasts.size(); ++i) {
     const auto& test = lab.tests[lab.measured + i];
-    const std::string name = fmt::format("{} {}", words_of(test.apparatus), fmt::join(test.overrides, ", "));
     for (const auto& f : c.forecasts[i])
       table.rows.push_back(
-          {fmt::format("{}: {}", name, with_unit(words_of(f.result), unit_for_people(f.result))),
+          {fmt::format("{}: {}", test.words, with_unit(words_of(f.result), unit_for_people(f.result))),
            f.value ? person_number(*f.value, f.result) : "–",
            f.value ? fmt::format("{} to {}", person_number(f.low, f.result), person_number(f.high, f.result))
                    : ""});

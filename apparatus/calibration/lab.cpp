@@ -109,9 +109,23 @@ std::string readings_text(const std::string& apparatus) {
   return text;
 }
 
+/// The apparatus and what the test's own keys say, for people.
+std::string words_of(const Test& test) {
+  std::string words = test.apparatus;
+  std::replace(words.begin(), words.end(), '_', ' ');
+  for (std::string key : test.overrides) {
+    if (key.starts_with("test.")) key.erase(0, 5);
+    std::erase(key, '"');
+    std::replace(key.begin(), key.end(), '_', ' ');
+    if (const std::size_t equal = key.find('='); equal != std::string::npos) key.replace(equal, 1, " = ");
+    words += ", " + key;
+  }
+  return words;
+}
+
 /// [[measured]] or [[forecast]]: readings, and keys of [test] or of another section by their dotted name.
 Test read_test(const Node& node, const std::string& label, bool measured) {
-  Test test{label, {}, {}, {}};
+  Test test{label, {}, {}, {}, {}};
   const Node* apparatus = scene::find(node, "apparatus");
   if (!apparatus) complain(node, label, "missing key apparatus");
   test.apparatus = text_of(*apparatus, "apparatus");
@@ -122,6 +136,7 @@ Test read_test(const Node& node, const std::string& label, bool measured) {
     const std::string full = key.find('.') == std::string::npos ? "test." + key : key;
     test.overrides.push_back(full + "=" + override_text(value, key));
   }
+  test.words = words_of(test);
   for (const Known& known : known_readings) {
     if (test.apparatus != known.apparatus) continue;
     if (measured)

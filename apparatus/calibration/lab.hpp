@@ -21,6 +21,7 @@ struct Measurement {
 /// A test that was made, or that a forecast is asked for.
 struct Test {
   std::string label;  ///< "measured[0]"
+  std::string words;  ///< "slump flow, rest = 240 s"
   std::string apparatus;
   std::vector<std::string> overrides;  ///< of its own keys, as --set takes them
   std::vector<Measurement> readings;   ///< a forecast's have no value and no error

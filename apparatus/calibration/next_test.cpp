@@ -118,7 +118,7 @@ std::vector<Advice> advise(const Lab& lab, const Calibration& calibration, const
   asked.tests.clear();
   std::vector<Candidate> kept;
   for (const Candidate& c : candidates()) {
-    const Test test{c.words, c.apparatus, c.overrides, {{"", c.result}}};
+    const Test test{c.words, c.words, c.apparatus, c.overrides, {{"", c.result}}};
     if (!can_be_read(lab, test)) continue;
     asked.tests.push_back(test);
     kept.push_back(c);

@@ -158,12 +158,12 @@ void print_result(const Lab& lab, const Calibration& c) {
   for (const auto& p : c.parameters)
     fmt::print("{:<36} {:.4g} {} [{:.4g}, {:.4g}]  {}\n", p.key, p.value, p.unit, p.low, p.high, p.told);
   for (const auto& r : c.readings)
-    fmt::print("{:<36} measured {:.4g}, best fit {:.4g}, emulator ± {:.2g}\n", r.test + " " + r.result,
+    fmt::print("{:<36} measured {:.4g}, best fit {:.4g}, emulator ± {:.2g}\n", r.words + ": " + r.result,
                r.measured, r.best_fit, r.emulator_error);
   for (std::size_t i = 0; i < c.forecasts.size(); ++i)
     for (const auto& f : c.forecasts[i])
       if (f.value)
-        fmt::print("{:<36} {:.4g} [{:.4g}, {:.4g}]\n", lab.tests[lab.measured + i].label + " " + f.result,
+        fmt::print("{:<36} {:.4g} [{:.4g}, {:.4g}]\n", lab.tests[lab.measured + i].words + ": " + f.result,
                    *f.value, f.low, f.high);
 }
 
