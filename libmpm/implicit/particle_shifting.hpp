@@ -10,7 +10,7 @@
 //
 //   minimise  1/2 sum_i m_i |u_i|^2 + kappa/2 sum_c V_c (div u - e_c)^2,     e_c = share_c (fill_c - 1),
 //
-// never faster than the flow deforms the cell, so that a body at rest is left alone, unless `least` says otherwise.
+// never faster than the flow deforms the cell: a body at rest is left alone.
 
 #include "libmpm/implicit/problem/yield_problem.hpp"
 
@@ -20,8 +20,6 @@ struct ParticleShifting {
   bool on =
       false;  ///< for bodies that flow far; it keeps mass and momentum, angular momentum only to about 1e-6
   double rate = 1.0;  ///< share of a cell's misfill that is mended per unit of shear
-  double least =
-      0.0;  ///< and per second at least [1/s], where a body stops against walls with cells half full
 };
 
 /// kappa, in density times area of a cell.
@@ -53,8 +51,7 @@ CellFill cell_fill(const YieldProblem<Geometry>& problem, const Points<Geometry:
     }
     const double misfill = volume / full - 1.0;
     if (misfill <= 0.0 && !is_inside<D>(grid, grid.cell_index[c])) continue;
-    cells.misfill[c] =
-        misfill * -std::expm1(-std::max(settings.rate * gamma_dot[c], settings.least) * problem.dt);
+    cells.misfill[c] = misfill * -std::expm1(-settings.rate * gamma_dot[c] * problem.dt);
     cells.stiffness[c] = fill_stiffness * reach2 * mass / volume * full;
   }
   return cells;
