@@ -68,7 +68,8 @@ std::string objection(const CostEstimate& cost, double free_memory, int threads)
 void check_cost(const Scene& scene, int threads) {
   const auto e = estimate(scene);
   if (!e) return;
-  const std::string against = objection(cost_of(scene, *e), test_run::free_memory(), std::max(1, threads));
+  const std::string against =
+      objection(cost_of(scene, *e), test_run::free_memory(std::max(1, threads)), std::max(1, threads));
   if (!against.empty()) throw InputError(fmt::format("{}: the run {}; --force runs it", scene.path, against));
 }
 

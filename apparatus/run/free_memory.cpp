@@ -32,13 +32,16 @@ double of_group(const std::string& memory_max) {
   return bytes > 0.0 ? bytes : unlimited;
 }
 
-/// What the limit leaves beside the program itself, whose pages come first in statm.
-double of_process() {
+/// Addresses that each further thread takes without using them: its stack, and the arena of its heap (glibc).
+constexpr double addresses_of_a_thread = 72.0 * 1024 * 1024;
+
+/// What the limit leaves beside the program itself, whose pages come first in statm, and its further threads.
+double of_process(int threads) {
   rlimit limit{};
   if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return unlimited;
   const double used =
       std::atof(text_of("/proc/self/statm").c_str()) * static_cast<double>(sysconf(_SC_PAGESIZE));
-  return std::max(0.0, static_cast<double>(limit.rlim_cur) - used);
+  return std::max(0.0, static_cast<double>(limit.rlim_cur) - used - (threads - 1) * addresses_of_a_thread);
 }
 
 }  // namespace
@@ -47,8 +50,8 @@ double free_memory(const std::string& meminfo, const std::string& memory_max, do
   return std::min({available(meminfo), of_group(memory_max), process_limit});
 }
 
-double free_memory() {
-  return free_memory(text_of("/proc/meminfo"), text_of("/sys/fs/cgroup/memory.max"), of_process());
+double free_memory(int threads) {
+  return free_memory(text_of("/proc/meminfo"), text_of("/sys/fs/cgroup/memory.max"), of_process(threads));
 }
 
 }  // namespace tremie::test_run
