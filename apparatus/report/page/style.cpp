@@ -39,7 +39,7 @@ td,th{padding:.22rem .5rem .22rem 0;border-bottom:1px solid var(--line);text-ali
 td.n,th.n{text-align:right;font-variant-numeric:tabular-nums;white-space:nowrap;padding-right:0}
 .key{font-size:.76rem;display:block;overflow-wrap:anywhere;font-family:ui-monospace,"DejaVu Sans Mono",monospace}
 .wide{overflow-x:auto}.wide td,.wide th{padding-right:1.1rem}.wide td.n{white-space:normal}.wide td:first-child{min-width:8rem}
-.wide th{white-space:normal;overflow-wrap:anywhere;min-width:4.5rem}
+.wide th{white-space:normal;overflow-wrap:break-word;min-width:4.5rem}
 pre{background:var(--panel);padding:.7rem .9rem;overflow-x:auto;font-size:.82rem;white-space:pre-wrap;overflow-wrap:anywhere}
 .controls{display:flex;flex-wrap:wrap;gap:.4rem .8rem;align-items:center;margin:.4rem 0}
 .controls input[type=range]{flex:1 1 10rem;min-width:8rem;accent-color:var(--c0)}
