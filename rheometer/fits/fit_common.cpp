@@ -78,11 +78,13 @@ FitResult fit(const TorqueRecord& record, const FitInput& input) {
 
 namespace fitting {
 
-void Readings::push(double x_value, double torque_value, double rows, long line_number) {
+void Readings::push(double x_value, double torque_value, double rows, long line_number,
+                    double rows_variance) {
   x.push_back(x_value);
   torque.push_back(torque_value);
   count.push_back(rows);
   line.push_back(line_number);
+  variance.push_back(rows_variance);
 }
 
 void drop(FitResult& result, long line, double x, double torque, const std::string& reason) {
@@ -104,7 +106,7 @@ Readings condense(const Readings& all, std::size_t most, FitResult& result) {
     // 6 deviations: one row in a thousand million of a normal sample; runs of a few rows are left whole
     const double cut =
         end - begin < 8 ? HUGE_VAL : std::max(6.0 * robust_deviation(deviation), 1e-6 * middle);
-    double x = 0.0, torque = 0.0, count = 0.0;
+    double x = 0.0, torque = 0.0, count = 0.0, square = 0.0;
     for (std::size_t i = begin; i < end; ++i) {
       if (std::abs(deviation[i - begin]) > cut) {
         drop(result, all.line[i], all.x[i], all.torque[i], "outlier among its neighbours");
@@ -112,9 +114,14 @@ Readings condense(const Readings& all, std::size_t most, FitResult& result) {
       }
       x += all.x[i];
       torque += all.torque[i];
+      square += deviation[i - begin] * deviation[i - begin];
       count += 1.0;
     }
-    if (count > 0.0) means.push(x / count, torque / count, count, all.line[begin]);
+    if (count == 0.0) continue;
+    const double offset =
+        torque / count - middle;  // of the mean from the median, which the deviations are about
+    means.push(x / count, torque / count, count, all.line[begin],
+               std::max(0.0, square / count - offset * offset));
   }
   return means;
 }
@@ -122,7 +129,7 @@ Readings condense(const Readings& all, std::size_t most, FitResult& result) {
 Readings without(const Readings& all, const std::vector<char>& leave_out) {
   Readings kept;
   for (std::size_t i = 0; i < all.size(); ++i)
-    if (!leave_out[i]) kept.push(all.x[i], all.torque[i], all.count[i], all.line[i]);
+    if (!leave_out[i]) kept.push(all.x[i], all.torque[i], all.count[i], all.line[i], all.variance[i]);
   return kept;
 }
 
@@ -154,6 +161,19 @@ std::string misfit_of(std::span<const double> x, std::span<const double> residua
          percent(l.roughness_noise) + ": " + what;
 }
 
+double scatter_of_rows(const Readings& readings, const LeastSquaresFit& fit) {
+  double square = 0.0, rows = 0.0, left = 0.0;
+  bool means = false;
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    if (fit.outlier[i]) continue;
+    const double of_rows = readings.variance[i] / (fit.fitted[i] * fit.fitted[i]);
+    square += readings.count[i] * (fit.residual[i] * fit.residual[i] + of_rows);
+    rows += readings.count[i], left += 1.0;
+    means = means || readings.count[i] > 1.0;
+  }
+  return means && left > 0.0 ? std::sqrt(square / rows) : fit.scatter;
+}
+
 void report(const Readings& readings, const LeastSquaresFit& fit, FitResult& result) {
   double square = 0.0, left_out = 0.0;
   for (std::size_t i = 0; i < readings.size(); ++i) {
@@ -169,7 +189,7 @@ void report(const Readings& readings, const LeastSquaresFit& fit, FitResult& res
     result.readings += std::lround(readings.count[i]);
     square += fit.residual[i] * fit.residual[i];
   }
-  result.scatter = fit.scatter;
+  result.scatter = scatter_of_rows(readings, fit);
   result.correlation = fit.correlation;
   const auto n = static_cast<double>(readings.size());
   const double misfit = 100.0 * std::sqrt(square / std::max(1.0, n - left_out));

@@ -12,10 +12,11 @@ namespace tremie::fitting {
 /// Readings in ascending x; where a record has very many rows, each is the mean of its neighbours.
 struct Readings {
   std::vector<double> x, torque, count;
-  std::vector<long> line;  ///< of the first row of each
+  std::vector<double> variance;  ///< of the rows about their mean [(N m)^2]; 0 for a single row
+  std::vector<long> line;        ///< of the first row of each
 
   std::size_t size() const { return x.size(); }
-  void push(double x_value, double torque_value, double rows, long line_number);
+  void push(double x_value, double torque_value, double rows, long line_number, double rows_variance = 0.0);
 };
 
 void drop(FitResult& result, long line, double x, double torque, const std::string& reason);
@@ -31,6 +32,9 @@ std::optional<Estimate> tell(double value, double variance, double degrees, doub
 
 /// The given value as an estimate.
 Estimate given(double value);
+
+/// Relative standard deviation of a row about the fit: of the readings, and where they are means that of their rows too.
+double scatter_of_rows(const Readings& readings, const LeastSquaresFit& fit);
 
 /// Names the outliers and fills in the scatter and the curve.
 void report(const Readings& readings, const LeastSquaresFit& fit, FitResult& result);

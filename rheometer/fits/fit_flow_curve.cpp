@@ -247,7 +247,7 @@ Fitted choose(const Readings& r, const FitInput& input, FitResult& result) {
   for (std::size_t i = 0; i < fits.size(); ++i) {
     const bool finite = std::isfinite(aicc[i]);
     result.candidates.push_back({name_of(fits[i].law), static_cast<int>(fits[i].free.size()),
-                                 fits[i].fit.scatter, fits[i].fit.correlation,
+                                 scatter_of_rows(r, fits[i].fit), fits[i].fit.correlation,
                                  finite ? std::optional(aicc[i]) : std::nullopt,
                                  finite ? std::optional(aicc[i] - aicc[best]) : std::nullopt,
                                  misfit(r, fits[i].fit).empty(), i == best});

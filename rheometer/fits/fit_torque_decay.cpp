@@ -258,7 +258,7 @@ std::size_t choose(const Readings& r, const std::vector<DecayFit>& fits, FitResu
   for (std::size_t i = 0; i < fits.size(); ++i) {
     const bool finite = std::isfinite(aicc[i]);
     result.candidates.push_back({name_of(fits[i].kinetics), static_cast<int>(fits[i].layout.free.size()),
-                                 fits[i].fit.scatter, fits[i].fit.correlation,
+                                 scatter_of_rows(r, fits[i].fit), fits[i].fit.correlation,
                                  finite ? std::optional(aicc[i]) : std::nullopt,
                                  finite ? std::optional(aicc[i] - aicc[best]) : std::nullopt,
                                  misfit(r, fits[i].fit).empty(), i == best});
