@@ -47,6 +47,36 @@ std::vector<Holes> boxes() {
   return all;
 }
 
+// Cells of 1 m with one to three points of 0.5 m^3, that is between half and one and a half full. A node all of whose cells lie
+// inside weighs density times the integral of its spline, 2 kg/m^3 times 1 m^3; by its points it would not.
+TEST(NodeWeights, ACellInsideWeighsWhatAFullOneDoes) {
+  ActiveGrid<3> grid;
+  Points<3> points;
+  Quadrature<ThreeD> quadrature;
+  constexpr int n = 6;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      for (int k = 0; k < n; ++k)
+        for (int p = 0; p <= (i + 2 * j + 5 * k) % 3; ++p)
+          add_point<3>(points, Vec<3>(i + 0.2 + 0.3 * p, j + 0.5, k + 0.4), 1.0, 0.5, 0.0);
+  activate(grid, points.x);
+  lay_out_quadrature<ThreeD>(grid, points, 1.0, 1.0, quadrature);
+  NodalState<3> nodes;
+  point_to_grid(grid, points, nodes);
+  const std::vector<double> weight = node_weights(grid, points, quadrature);
+  int inside = 0;
+  double farthest = 0.0;
+  for (int i = 0; i < grid.n_nodes(); ++i) {
+    const Vec<3> x = grid.node_position(i);
+    if (x.minCoeff() < 2.4 || x.maxCoeff() > n - 2.4) continue;
+    ++inside;
+    EXPECT_NEAR(weight[i], 2.0, 1e-12);
+    farthest = std::max(farthest, std::abs(nodes.mass[i] - 2.0));
+  }
+  EXPECT_GT(inside, 0);
+  EXPECT_GT(farthest, 0.1);
+}
+
 // Sums of at most 27 numbers of the order 1, in whatever order: to rounding. Bits do not depend on the
 // threads.
 TEST(NodeReduction, AddsUpLikeOneLoop) {
