@@ -117,8 +117,8 @@ void judge(const Scene& scene, const EndsGrid& grid, double fastest, double slow
         "about {:g} on: a lower test.speed",
         inertia, most_inertia));
   const double slow = angular_speed(std::abs(slowest));
-  const double layer =
-      R * std::sqrt((mix.mu + viscosity(scene.model.law, slow, mix.tau_0)) * slow / std::max(1e-9, mix.tau_0));
+  const double layer = R * std::sqrt((mix.mu + viscosity(scene.model.law, slow, mix.tau_0)) * slow /
+                                     std::max(1e-9, mix.tau_0));
   if (mix.tau_0 > 0.0 && layer < thinnest_layer * grid.cell[0])
     checks.reasons.push_back(fmt::format(
         "the concrete is sheared in a layer of about {:.2g} mm at the vane, which cells of {:.2g} mm do "
