@@ -15,7 +15,6 @@ struct Shape {
   std::vector<std::array<double, 2>> places;  ///< of the points in the section [m]
   double point_size = 0.005;                  ///< side of what a point stands for [m]
   std::vector<Polyline> walls;
-
   bool mirrored = false;       ///< draw it again at -x
   double plan_diameter = 0.0;  ///< of the body seen from above [m]: drawn below the section; 0: no plan
   double ring_diameter = 0.0;  ///< a circle on the plate to compare it with [m]; 0: none
