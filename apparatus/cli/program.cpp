@@ -139,7 +139,7 @@ From a slump flow, or a torque record, to the mix
   tremie estimate --spread "590 mm" --t500 "2.5 s"
   tremie fit torque.csv
 Will it pass the bars? The L-box; the vane rheometer likewise
-  tremie new l_box | tremie check -; tremie new l_box > box.toml; tremie run box.toml
+  tremie new l_box > box.toml; tremie run box.toml --set model.space=half --set test.bars=2
 What matters, and which concrete is this? Many runs, with intervals
   tremie study study.toml; tremie calibrate lab.toml
 How wrong is it, and what differs?

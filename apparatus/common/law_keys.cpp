@@ -52,13 +52,17 @@ std::vector<std::string> mix_keys_of_laws() {
   return keys;
 }
 
-/// Whether the scene has just the keys of [mix] that the law asks for.
+/// Whether the scene has just the keys of [mix] that the law asks for, and none of another law.
 template <class L>
 bool has_its_mix_keys(const Values& values, const L& law) {
   const auto keys = law.keys();
+  const auto asks_for = [&](const std::string& name) {
+    return std::any_of(keys.begin(), keys.end(), [&](const auto& key) { return key.name == name; });
+  };
+  const std::vector<std::string> of_laws = mix_keys_of_laws();
   return law.viscous != values.has(plastic_viscosity) &&
-         std::all_of(keys.begin(), keys.end(),
-                     [&](const auto& key) { return section_of(key.name) != "mix" || values.has(key.name); });
+         std::all_of(of_laws.begin(), of_laws.end(),
+                     [&](const std::string& name) { return values.has(name) == asks_for(name); });
 }
 
 }  // namespace
@@ -123,7 +127,9 @@ void settle_law(Values& values) {
     allowed += (allowed.empty() ? "\"" : ", \"") + std::string(law.word) + "\"";
     found = found || law.word == values.word("model.yield");
   });
-  if (!found)
+  if (allowed.empty())
+    values.fail("mix", "has keys of more than one law; give those of one");
+  else if (!found)
     values.fail("model.yield", "\"" + values.word("model.yield") + "\" does not go with " +
                                    (other ? *other : std::string(plastic_viscosity)) +
                                    "; allowed: " + allowed);

@@ -1,7 +1,7 @@
 #pragma once
 
 // What every scene may choose about the model, and what every run reports about itself. Plain data, SI units.
-// The TOML keys and JSON keys with the same names are described in README.md.
+// The TOML keys are described in docs/reference/scenes.md, the JSON keys in docs/reference/results.md.
 
 #include <array>
 #include <cstddef>
@@ -68,7 +68,8 @@ struct Checks {
   std::vector<std::string> reasons;  ///< why the result is not to be trusted; empty: it is
 };
 
-/// What a run cost (summary.json, "cost"); wall, CPU and peak memory are filled in by apparatus/scene.
+/// What a run cost (summary.json, "cost"); wall, CPU and peak memory are filled in by
+/// apparatus/registry.
 struct Cost {
   double wall = 0.0, cpu = 0.0;  ///< [s]
   std::int64_t steps = 0;

@@ -15,7 +15,8 @@ double expected_time(const Scene& scene) {
   if (scene.mix.thixotropy)
     lambda = flocculation_after_rest(scene.mix.thixotropy->initial_flocculation, *scene.mix.thixotropy,
                                      scene.mix.tau_0, scene.rest);
-  const double viscous = scene.mix.mu / static_yield_stress(lambda, scene.mix.tau_0);
+  const double tau_y = static_yield_stress(lambda, scene.mix.tau_0);
+  const double viscous = (scene.mix.mu + viscosity(scene.model.law, typical_rate, tau_y)) / tau_y;
   const double time = 40.0 + (scene.mix.thixotropy ? 45.0 : 150.0) * viscous;
   return time < scene.duration ? time : scene.duration;
 }

@@ -225,7 +225,7 @@ class Checker {
   void visit_section(const Section& section, const std::string& key, const Node& node,
                      const std::string& place) {
     const auto* off = std::get_if<bool>(&node.value);
-    if (section.optional && off && !*off) return;  // "thixotropy = false" detached_share the table
+    if (section.optional && off && !*off) return;  // "thixotropy = false" leaves the table out
     const auto* array = std::get_if<Array>(&node.value);
     const bool is_table = std::holds_alternative<Table>(node.value);
     if (section.repeated && array) {

@@ -63,7 +63,8 @@ double first_explicit_step(const Scene& scene) {
 /// When the flow is expected to have come to rest and the run to end [s]: by the viscous time mu/tau_y, as Mixes A
 /// to C do with and without rest, to a third; longer where no build-up ends the creep.
 double expected_time(const Scene& scene) {
-  const double viscous = scene.mix.mu / static_yield_stress_at_start(scene);
+  const double tau_y = static_yield_stress_at_start(scene);
+  const double viscous = (scene.mix.mu + viscosity(scene.model.law, typical_rate, tau_y)) / tau_y;
   const bool space = scene.model.space != SpaceKind::axisymmetric;
   const double time = 1.2 + (space ? 19.0 : scene.mix.thixotropy ? 16.5 : 27.0) * viscous;
   return is_explicit(scene.model) || !(time < scene.duration) ? scene.duration : time;

@@ -18,8 +18,8 @@
 //   potential(gamma_dot, tau_y) int_0^gamma_dot f                   [Pa/s], convex
 //   prox(a, tau_y, r)           the d >= 0 with f(d) + r d = a; r may be 0 [1/s]
 //   stress(gamma_dot, tau_y)    f, and at gamma_dot = 0 its limit from the side of flow [Pa]
-//   dual_limit(gamma_dot, tau_y) the largest stress |s| that Newton's dual may carry, so that its tangent stays
-//                               positive: |s| <= secant^2 / (|slope| gamma_dot); tau_y for exact Bingham [Pa]
+//   dual_limit(gamma_dot, tau_y) the stress |s| that Newton's dual may carry, at most what keeps its tangent positive:
+//                               secant^2 / (|slope| gamma_dot); tau_y for exact Bingham, f will do elsewhere [Pa]
 //   newtonian()                 its share in the mix's mu: 0 unless it is Bingham in other words, with no viscous part
 //                               left in f (Reiner-Riwlin's formulas then hold) [Pa s]
 //   viscosity(gamma_dot, tau_y) (f - tau_y) / gamma_dot where f has a viscous part beyond mu, 0 else; for the stress
@@ -31,9 +31,10 @@
 //
 //   exact                       whether the stress at rest is anything up to tau_y
 //   viscous                     whether it takes the place of the mix's plastic viscosity
-//   word                        its name as model.yield. Laws may share one: which is meant is told by their keys in
-//                               [mix], as for Bingham and Herschel-Bulkley, which are both "exact"
-//   keys()                      the scene keys of its parameters; a law with keys in [mix] has no part in the mix's mu
+//   word                        the word of model.yield that says how its yield is smoothed: "exact" or one of its own.
+//                               Laws may share it, as Bingham and Herschel-Bulkley do; the keys in [mix] tell which is
+//                               meant
+//   keys()                      the scene keys of its parameters; those in [mix] take the place of plastic_viscosity
 //
 // and may state simd_secant(gamma_dot, tau_y) for points side by side, where one by one is too slow for it.
 
@@ -60,6 +61,9 @@ inline constexpr double unbounded = std::numeric_limits<double>::infinity();
 
 /// Hardly any point of a test shears faster for long [1/s].
 inline constexpr double fastest_rate = 100.0;
+
+/// What a flow of concrete under its own weight is about to stand at [1/s]: for the times that are expected of a run.
+inline constexpr double typical_rate = 1.0;
 
 /// Below it nothing is told from rest [1/s].
 inline constexpr double slowest_rate = 1e-6;

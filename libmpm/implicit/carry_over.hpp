@@ -13,7 +13,7 @@ bool by_iteration(const ImplicitBody<Geometry>& body, const StepSettings& settin
          body.grid.n_nodes() * Geometry::dim >= settings.admm.direct_below;
 }
 
-/// AdmmState of cells that were active before go on from where they were; new cells start unstressed.
+/// Cells that were active before go on from their stresses and rates; new cells start unstressed.
 template <class Geometry>
 void carry_over_admm_state(const IndexMap<Geometry::dim>& old_map, const ActiveGrid<Geometry::dim>& grid,
                            AdmmState<Geometry>& admm_state) {

@@ -2,7 +2,6 @@
 
 // The convex problem of a step over dt: inertia with gravity, viscosity and yield, bulk, and all walls.
 
-#include <cstdlib>
 #include <optional>
 #include <type_traits>
 
@@ -49,34 +48,6 @@ void add_side_walls(double W, const YieldLaw& law, const std::vector<Vec<Geometr
   }
 }
 
-/// What gravity pulls at each node [kg]. A cell inside the body weighs what a full one does, however many points
-/// are in it: its stresses are those of a full cell too, and what its points weigh more or less than it would stir a
-/// fluid at rest for good.
-template <class Geometry>
-std::vector<double> weights(const ActiveGrid<Geometry::dim>& grid, const Points<Geometry::dim>& points,
-                            const Quadrature<Geometry>& quadrature) {
-  constexpr int D = Geometry::dim;
-  std::vector<double> w(grid.node_index.size(), 0.0);
-  const auto add = [&](int c, double mass, const Vec<D>& s) {
-    const Stencil<D> st = stencil<D>(grid.axes, grid.cell_index[c], s);
-    for (int i = 0; i < power(3, D); ++i) w[grid.cell_nodes[c][i]] += mass * st.N[i];
-  };
-  for (int c = 0; c < grid.n_cells(); ++c) {
-    double mass = 0.0, volume = 0.0;
-    const bool inside = is_inside<D>(grid, grid.cell_index[c]);
-    for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
-      const int p = grid.order[i];
-      mass += points.mass[p], volume += points.volume(p);
-      if (!inside) add(c, points.mass[p], local_coordinates<D>(grid.axes, grid.cell_index[c], points.x[p]));
-    }
-    if (inside)
-      for (int k = 0; k < power(2, D); ++k)
-        add(c, mass / volume * quadrature.V[c][k], quadrature_point<D>(k));
-  }
-  fold_mirrors<D>(grid, w);
-  return w;
-}
-
 /// What the nodes' velocities become over dt by gravity alone.
 template <class Geometry>
 void add_gravity(ImplicitBody<Geometry>& body, const std::vector<Vec<Geometry::dim>>& v_old, double dt) {
@@ -97,15 +68,6 @@ void pose(ImplicitBody<Geometry>& body, const YieldLaw& law, const StepSettings&
   constexpr int D = Geometry::dim;
   body.v = v_old;
   add_gravity(body, v_old, dt);
-  if constexpr (D == 3) {
-    static const bool on = std::getenv("WEIGHT") != nullptr;
-    if (on) {
-      const auto w = weights<Geometry>(body.grid, body.points, body.quadrature);
-      for (std::size_t i = 0; i < v_old.size(); ++i)
-        if (body.nodes.mass[i] > 1e-9)
-          body.nodes.v[i] = v_old[i] + dt * w[i] / body.nodes.mass[i] * body.gravity;
-    }
-  }
   posed.emplace(YieldProblem<Geometry>{
       body.grid, body.quadrature, body.nodes, dt, body.mix.mu, body.mix.K, {}, {}, {}, {}, {}, {}});
   posed->eta +=

@@ -59,7 +59,8 @@ double update_normal_forces(YieldProblem<Geometry>& problem, const YieldLaw& law
   double change = 0.0, sum = 0.0;
   for (FrictionNode<D>& f : problem.friction) {
     if (f.normal_axis < 0) continue;
-    // The reaction pushes into the concrete: against -e at a low wall, against +e at a high one.
+    // R is what the wall must balance, and a wall only pushes: R points down the axis at its low wall, up it at its
+    // high one; what pulls gives no friction.
     const bool low =
         problem.grid.axes[f.normal_axis].on_low_wall(problem.grid.node_index[f.node][f.normal_axis]);
     const double reaction = (low ? -1.0 : 1.0) * R[f.node * D + f.normal_axis];
@@ -109,8 +110,8 @@ bool starts_to_fall(const ImplicitBody<Geometry>& body, const StepSettings& sett
   return runs_away(body, detached_share, dt, 1.0) || runs_away(body, settings.detached, dt, 10.0);
 }
 
-/// The ADMM state that another try at a step over dt starts from: those that the step began with; in a large body,
-/// where no memory is spent on them, what the last try found, or none if that ran away.
+/// The ADMM state that another try at a step over dt starts from: the one that the step began with; in a large body,
+/// where no memory is spent on it, what the last try found, or none if that ran away.
 template <class Geometry>
 void guess_again(const std::optional<AdmmState<Geometry>>& first, const StepSettings& settings, double dt,
                  ImplicitBody<Geometry>& body) {

@@ -1,4 +1,5 @@
-// Rung 1: the four functions of a yield law agree with each other and with their own definitions.
+// The functions of the laws with a Newtonian viscous part agree with each other and with their own definitions
+// (Herschel-Bulkley: test_herschel_bulkley.cpp).
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 #pragma once
 
-// The ADMM state of 3D, in the memory of one of them.
+// ADMM stress and rate of 3D, in the memory of one of them.
 //
-// Stress s and rate d of a place come out of one vector, a = s + r (rho q + (1 - rho) d) before them:
+// Stress s and rate d at a quadrature point come out of one vector, a = s + r (rho q + (1 - rho) d) before them:
 //
 //   d = prox(|a|) a/|a|,   s = a - r d,
 //
@@ -69,7 +69,7 @@ inline PackedAdmmState zero_admm_state(int n_cells) {
   return admm_state;
 }
 
-/// AdmmState of cells that were active before go on from where they were; new cells start unstressed.
+/// Cells that were active before go on from where they were; new cells start unstressed.
 inline PackedAdmmState carried(const IndexMap<3>& old_map, const ActiveGrid<3>& grid,
                                const PackedAdmmState& old) {
   PackedAdmmState now = zero_admm_state(grid.n_cells());

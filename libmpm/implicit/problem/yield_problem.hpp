@@ -3,7 +3,8 @@
 // The convex problem of one backward-Euler step: find the nodal velocities v that minimise
 //
 //   1/2 (v - v*)' M (v - v*) / dt  +  sum_q V_q [mu/2 gamma_dot^2 + Phi(gamma_dot)]
-//     +  sum_c V_c [K dt/2 (div v)^2 - p div v]  +  sum_q V_q zeta/2 (div_q v - div v)^2  +  contact,
+//     +  sum_c V_c [K dt/2 (div v)^2 - p div v]  +  sum_q V_q zeta/2 (div_q v - div v)^2
+//     +  contact  +  friction of walls  +  drag of side walls and bars,
 //
 // Phi the potential of the yield law, gamma_dot = |q| at quadrature point q, one divergence a cell. A velocity
 // that alternates from node to node has none in any cell: nothing but the shear stress resists it, and in a
@@ -98,7 +99,8 @@ double excess_divergence(const Vec<Geometry::n_strain>& q, double mean) {
     return 0.0;
 }
 
-/// Nodal forces of everything but the yield part at velocities v: inertia, pressure and moving contact; plus
+/// Nodal forces at velocities v of everything but yield and friction, which each solver adds in its own way
+/// (add_friction_forces(), ADMM's stresses): inertia, pressure, moving contact, drag; plus
 /// the deviatoric forces of the stresses that `stress(c, k, q)` returns for the strain rate q.
 template <class Geometry, class Stress>
 Eigen::VectorXd residual(const YieldProblem<Geometry>& problem, const std::vector<Vec<Geometry::dim>>& v,

@@ -58,7 +58,7 @@ Mat<N, N> primal_dual_tangent(const YieldLaw& law, double mu, double tau_y, cons
   return (mu + own_secant) * Mat<N, N>::Identity() + 0.5 * factor * (s * q.transpose() + q * s.transpose());
 }
 
-/// Full Newton step of the ADMM state along dv, projected to the largest stress the yield part can carry.
+/// Full Newton step of the dual stresses along dv, projected to the largest stress the yield part can carry.
 template <class Geometry>
 void step_dual_stress(const YieldProblem<Geometry>& problem, const YieldLaw& law,
                       const std::vector<Vec<Geometry::dim>>& v, const std::vector<Vec<Geometry::dim>>& dv,
@@ -78,8 +78,8 @@ void step_dual_stress(const YieldProblem<Geometry>& problem, const YieldLaw& law
     }
 }
 
-/// Brings the ADMM state that are carried over from the last step inside what this one can carry: beyond it the
-/// tangent is not positive.
+/// Brings the dual stresses that are carried over from the last step inside what this one can carry: beyond it
+/// the tangent is not positive.
 template <class Geometry>
 void project_dual_stress(YieldProblem<Geometry>& problem, const YieldLaw& law,
                          const std::vector<Vec<Geometry::dim>>& v, AdmmState<Geometry>& admm_state) {
@@ -97,7 +97,8 @@ void project_dual_stress(YieldProblem<Geometry>& problem, const YieldLaw& law,
 
 }  // namespace detail
 
-/// Solves the yield problem by primal-dual Newton from the guesses v and ADMM state, which it overwrites.
+/// Solves the yield problem by primal-dual Newton from the guesses v and `admm_state`
+/// (its stresses are the dual), which it overwrites.
 template <class Geometry>
 SolveReport solve_newton(YieldProblem<Geometry>& problem, const YieldLaw& law, const NewtonSettings& settings,
                          double force_scale, BlockSystem<Geometry::dim>& system,
