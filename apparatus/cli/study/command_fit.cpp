@@ -28,8 +28,9 @@
 #include "libmpm/io/write_error.hpp"
 #include "rheometer/fits/fit.hpp"
 #include "rheometer/fits/replicates.hpp"
-#include "rheometer/fits/vane_ends.hpp"
 #include "rheometer/protocol/protocol.hpp"
+#include "rheometer/vane/fit_with_blades.hpp"
+#include "rheometer/vane/vane_ends.hpp"
 
 namespace tremie::cli {
 namespace {
@@ -42,7 +43,7 @@ struct Options {
   std::string out;
   std::string vane_radius, vane_height, container_radius, speed, rest, yield_stress, plastic_viscosity;
   std::string kinetics = "auto", critical_shear_rate, law = "bingham", torque_offset;
-  std::string ends = "none", max_aggregate, compliance;
+  std::string ends = "none", blades = "none", max_aggregate, compliance;
   bool protocol = false, json = false, quiet = false, force = false;
 };
 
@@ -67,6 +68,7 @@ std::string repeat(const Options& o, const std::vector<std::string>& files) {
   add("--instrument-compliance", &Options::compliance);
   add("--torque-offset", &Options::torque_offset);
   add("--ends", &Options::ends);
+  add("--blades", &Options::blades);
   add("--max-aggregate", &Options::max_aggregate);
   return text + (o.protocol ? " --protocol" : "");
 }
@@ -137,11 +139,42 @@ auto as_bad_input(const std::string& file, Read read) {
   }
 }
 
+/// The first table of reference_data/`folder`, as its text and its file's name.
+std::pair<std::string, std::string> vane_table(const std::string& folder) {
+  for (const auto& data : scene::data_folders()) {
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(data / folder, error))
+      if (entry.path().extension() == ".csv")
+        return {read_text_file(entry.path().string()), entry.path().filename().string()};
+  }
+  throw scene::InputError(
+      fmt::format("reference_data/{}/*.csv, the table that is asked for, is not there", folder));
+}
+
+/// The fit of a vane: of the torques that its cylinder would have taken, where the blades are corrected for.
+FitResult fit_vane(const Options& o, const TorqueRecord& record, const FitInput& in) {
+  if (o.blades == "none") {
+    FitResult result = fit(record, in);
+    if (o.ends != "none")
+      result.notes.push_back(
+          "the ends alone are corrected: a vane with blades takes 15 to 30 % less than the cylinder of this "
+          "fit, which "
+          "--blades computed corrects");
+    return result;
+  }
+  const auto [text, name] = vane_table("vane_blades");
+  VaneFit vane = fit_with_blades(record, in, blade_table(text, name));
+  vane.fit.notes.push_back(
+      fmt::format("torques divided by {:.3f} to {:.3f}, what four thin blades take of their cylinder's",
+                  vane.least_factor, vane.most_factor));
+  return vane.fit;
+}
+
 FitResult read_and_fit(const Options& o, const std::string& file, FitInput in) {
   return as_bad_input(file, [&] {
     const TorqueRecord record = read_torque_record(file, torque_offset(o));
     if (!in.omega && record.speed > 0.0) in.omega = record.speed;
-    FitResult result = fit(record, in);
+    FitResult result = fit_vane(o, record, in);
     result.notes.insert(result.notes.begin(), record.understood.begin(), record.understood.end());
     return result;
   });
@@ -174,20 +207,10 @@ double bingham_number(const Options& o, const FitInput& in) {
 double end_factor(const Options& o, const FitInput& in) {
   if (o.ends == "textbook") return textbook_end_factor(in.instrument);
   if (o.ends == "none") return 1.0;
-  for (const auto& folder : scene::data_folders()) {
-    std::error_code error;
-    for (const auto& entry : std::filesystem::directory_iterator(folder / "vane_ends", error))
-      if (entry.path().extension() == ".csv")
-        return as_bad_input("--ends computed", [&] {
-          return end_factor_from_table(read_text_file(entry.path().string()),
-                                       entry.path().filename().string(), in.instrument,
-                                       bingham_number(o, in));
-        });
-  }
-  throw scene::InputError(
-      "--ends computed: its table of the three-dimensional vane, reference_data/vane_ends/*.csv, is not "
-      "there; "
-      "allowed without it: none, textbook");
+  return as_bad_input("--ends computed", [&] {
+    const auto [text, name] = vane_table("vane_ends");
+    return end_factor_from_table(text, name, in.instrument, bingham_number(o, in));
+  });
 }
 
 /// By how much the ends move each value: the same fit without them, beside the fit with them.
@@ -227,6 +250,7 @@ Json input_json(const Options& o, const FitInput& in) {
           {"kinetics", o.kinetics},
           {"law", o.law},
           {"ends", o.ends},
+          {"blades", o.blades},
           {"torque_offset_N_m", torque_offset(o)},
           {"critical_shear_rate_per_s", in.gamma_c}};
 }
@@ -261,6 +285,7 @@ Answer one_record(const Options& o, const FitInput& in, double factor) {
            {}};
   const Json moves = o.ends == "none" ? Json() : ends_json(o, file, in, factor, *result);
   a.results["ends"] = {{"correction", o.ends}, {"factor", factor}, {"moves", moves}};
+  a.results["blades"] = {{"correction", o.blades}};
   a.print = [=] {
     print_result(*result);
     print_moves(moves, o, factor);
@@ -321,6 +346,7 @@ Answer replicates(const Options& o, const FitInput& in, double factor) {
   a.files.emplace_back("report.html",
                        report::replicates_html(replicates_report(fits, means, reports, repeat(o, o.data))));
   a.results["ends"] = {{"correction", o.ends}, {"factor", factor}};
+  a.results["blades"] = {{"correction", o.blades}};
   a.print = [=] {
     for (std::size_t i = 0; i < fits.size(); ++i) {
       fmt::print("--- {}\n", o.data[i]);
@@ -346,6 +372,9 @@ int run(const Options& options) {
   if (options.protocol && options.data.size() > 1)
     throw scene::InputError("--protocol reads one record; " + std::to_string(options.data.size()) +
                             " are given");
+  if (options.blades != "none" && (options.protocol || options.law != "bingham"))
+    throw scene::InputError("--blades computed is for a flow curve by Bingham's law, or a decay; not with " +
+                            std::string(options.protocol ? "--protocol" : "--law " + options.law));
   as_bad_input("the instrument", [&] {
     check(in.instrument);
     return 0;
@@ -406,6 +435,9 @@ void add_command_fit(CLI::App& app, int& exit_code) {
                  "the instrument's own turn by torque: \"0.02 rad/(N.m)\"");
   command.option("--torque-offset", o->torque_offset, "of the unloaded instrument, taken off: \"0.3 mN.m\"");
   command.choice("--ends", o->ends, {"none", "textbook", "computed"}, "what the ends of the vane carry");
+  command.choice(
+      "--blades", o->blades, {"none", "computed"},
+      "what blades take less than the cylinder that they span; with --ends computed for a real vane");
   command.option("--max-aggregate", o->max_aggregate, "largest grain, to judge the gap by: \"16 mm\"");
   add_json_option(command, o->json);
   command.option("--out", o->out, "Folder for the result (default: runs/<record's name>)");

@@ -10,8 +10,7 @@
 
 namespace tremie {
 
-/// f = 1 + 2r/(3h): the ends carry the stress of the side (Dzuy and Boger 1985). It is an upper bound where the shear rate
-/// falls towards the axis.
+/// f = 1 + 2r/(3h): the ends carry the stress of the side (Dzuy and Boger 1985).
 double textbook_end_factor(const Instrument& instrument);
 
 /// f of a table with the columns height_over_radius, container_over_radius, bingham_number and end_factor on a full grid,

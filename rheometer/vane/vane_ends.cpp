@@ -1,4 +1,4 @@
-#include "rheometer/fits/vane_ends.hpp"
+#include "rheometer/vane/vane_ends.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,15 +7,16 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "rheometer/vane/table.hpp"
+
 namespace tremie {
+
+using detail::between, detail::rounded;
 
 namespace {
 
 using Curve = std::map<double, double>;  // ln(1 + Bingham number) -> factor
 using Row = std::map<double, Curve>;     // container_over_radius -> curve
-
-/// A number that round-off leaves where the table's is.
-double rounded(double x) { return std::round(1e9 * x) * 1e-9; }
 
 /// Radius over height -> row: the ends' share of the torque is in proportion to it.
 std::map<double, Row> table_of(const std::string& csv, const std::string& name) {
@@ -35,20 +36,6 @@ std::map<double, Row> table_of(const std::string& csv, const std::string& name) 
     table[rounded(1.0 / h)][rounded(c)][std::log1p(bingham)] = f;
   }
   return table;
-}
-
-/// Linear between the neighbours of x; empty outside.
-template <class Map, class Value>
-std::optional<double> between(const Map& map, double x, Value value) {
-  auto above = map.lower_bound(x);
-  if (above == map.end()) return std::nullopt;
-  if (above->first == x) return value(above->second);
-  if (above == map.begin()) return std::nullopt;
-  const auto below = std::prev(above);
-  const std::optional<double> a = value(below->second), b = value(above->second);
-  if (!a || !b) return std::nullopt;
-  const double share = (x - below->first) / (above->first - below->first);
-  return *a + share * (*b - *a);
 }
 
 }  // namespace

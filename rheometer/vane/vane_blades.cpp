@@ -1,0 +1,63 @@
+#include "rheometer/vane/vane_blades.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "rheometer/reference/reiner_riwlin.hpp"
+#include "rheometer/vane/table.hpp"
+
+namespace tremie {
+
+BladeTable blade_table(const std::string& csv, const std::string& name) {
+  std::istringstream in(csv);
+  std::string line;
+  BladeTable table;
+  for (int number = 1; std::getline(in, line); ++number) {
+    if (line.empty() || line.front() == '#' || line.starts_with("container_over_radius")) continue;
+    double container = 0.0, bingham = 0.0, factor = 0.0;
+    char first = 0, second = 0;
+    std::istringstream fields(line);
+    const bool read(fields >> container >> first >> bingham >> second >> factor);
+    if (!read || first != ',' || second != ',' || !(container > 1.0 && bingham >= 0.0 && factor > 0.0))
+      throw std::invalid_argument(name + ":" + std::to_string(number) +
+                                  ": expected container_over_radius,bingham_number,blade_factor");
+    table[detail::rounded(container)][std::log1p(bingham)] = factor;
+  }
+  if (table.empty()) throw std::invalid_argument(name + ": holds no row");
+  return table;
+}
+
+double blade_factor(const BladeTable& table, const Instrument& in, double bingham_number) {
+  const double container = detail::rounded(in.container_radius / in.vane_radius);
+  const auto factor = detail::between(table, container, [&](const std::map<double, double>& curve) {
+    const double x = std::clamp(std::log1p(bingham_number), curve.begin()->first, curve.rbegin()->first);
+    return detail::between(curve, x, [](double f) { return std::optional(f); });
+  });
+  if (factor) return *factor;
+  std::ostringstream what;
+  what << "no factor of the blades for a container of " << container << " vane radii; the table holds "
+       << table.begin()->first << " to " << table.rbegin()->first;
+  throw std::invalid_argument(what.str());
+}
+
+double torque_of_cylinder(const BladeTable& table, const Instrument& in, double mu, double omega,
+                          double torque) {
+  const auto cylinder = [&](double bingham) {
+    return reiner_riwlin({.tau_0 = bingham * mu * omega, .mu = mu}, omega, in).torque;
+  };
+  const auto too_much = [&](double bingham) {
+    return cylinder(bingham) * blade_factor(table, in, bingham) > torque;
+  };
+  double low = 0.0, high = 1.0;
+  if (too_much(low)) return torque / blade_factor(table, in, 0.0);
+  while (!too_much(high) && high < 1e9) low = high, high *= 4.0;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (too_much(middle) ? high : low) = middle;
+  }
+  return torque / blade_factor(table, in, low);
+}
+
+}  // namespace tremie
