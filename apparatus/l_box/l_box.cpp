@@ -63,7 +63,7 @@ double gap_between_bars(const Scene& scene) {
 Outcome run(const Scene& scene, const Observer& observer) {
   test_run::refuse_what_has_no_engine(scene.model, "L-box");
   omp_set_num_threads(scene.threads);
-  return in_space(scene) ? run_3d(scene, observer) : run_in_the_plane(scene, observer);
+  return in_space(scene) ? run_3d(scene, observer) : run_plane(scene, observer);
 }
 
 Estimate estimate(const Scene& scene) {

@@ -190,7 +190,7 @@ std::vector<std::string> l_box_uses(const l_box::Scene& scene) {
                                  : "bars: left out (test.bars = 0)");
   lines.push_back(space == SpaceKind::plane ? "side walls: left out (model.space = \"plane\")"
                   : space == SpaceKind::plane_with_side_walls
-                      ? "side walls: as friction, averaged over the width"
+                      ? "side walls: their drag, averaged over the width"
                       : "side walls: no slip");
   const bool plane = space == SpaceKind::plane || space == SpaceKind::plane_with_side_walls;
   lines.push_back(plane ? "third dimension: left out (model.space)" : "third dimension: computed");

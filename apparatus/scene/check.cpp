@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 
 #include "apparatus/scene/input_error.hpp"
@@ -219,6 +220,7 @@ class Checker {
       values_.entries[dotted(place, key)] = read_value(*known, node);
     } catch (const Problem& problem) {
       report(node.origin, dotted(place, key), problem.what());
+      refused_.insert(dotted(place, key));
     }
   }
 
@@ -277,7 +279,7 @@ class Checker {
   /// Whether a scene that leaves the key out is incomplete. What another key of the section decides was read before.
   bool is_needed(const Key& key, const std::string& place) const {
     const auto there = [&](const std::string& name) {
-      return !name.empty() && values_.has(dotted(place, name));
+      return !name.empty() && (values_.has(dotted(place, name)) || refused_.contains(dotted(place, name)));
     };
     if (there(key.needed_with)) return true;
     return key.required && applies(key, place) &&
@@ -341,6 +343,7 @@ class Checker {
   }
 
   const Schema& schema_;
+  std::set<std::string> refused_;  ///< keys whose value is told to be wrong, and so not missing
   Values values_;
   std::vector<std::string> problems_, reported_;
 };

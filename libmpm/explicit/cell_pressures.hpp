@@ -18,7 +18,7 @@
 // as high as the points on average: where they fill the upper half alone, what they carry away is what the cell
 // loses, and with the rate at the centre it would stay hollow.
 
-#include "libmpm/explicit/body.hpp"
+#include "libmpm/explicit/state.hpp"
 #include "libmpm/transfer/tile_sums.hpp"
 
 namespace tremie::detail {

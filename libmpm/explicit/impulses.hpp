@@ -9,7 +9,7 @@
 #include <omp.h>
 
 #include "libmpm/boundary/rigid_wall.hpp"
-#include "libmpm/explicit/body.hpp"
+#include "libmpm/explicit/state.hpp"
 
 namespace tremie::detail {
 

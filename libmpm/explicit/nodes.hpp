@@ -2,7 +2,7 @@
 
 // What happens on the nodes of an explicit step: sums of the tiles, gravity, flat walls.
 
-#include "libmpm/explicit/body.hpp"
+#include "libmpm/explicit/state.hpp"
 
 namespace tremie::detail {
 

@@ -8,7 +8,7 @@
 // yield stress is integrated over the whole cell. Pressure, mass and volume stay the points' own. The
 // pressure's row moves to where the points are (cell_pressures.hpp), so that the flow fills what is hollow.
 
-#include "libmpm/explicit/body.hpp"
+#include "libmpm/explicit/state.hpp"
 
 namespace tremie {
 

@@ -75,6 +75,12 @@ TEST(SceneReader, UnknownKeyNamesTheNearest) {
 TEST(SceneReader, MissingKey) {
   EXPECT_TRUE(says(complaint("apparatus = \"slump_flow\"\n[mix]\nyield_stress = \"54 Pa\"\n"),
                    {"bad.toml:2: mix.plastic_viscosity: missing key", "Pa.s"}));
+  // A key that is there with a wrong value is told once, and what it would have replaced is not missed.
+  EXPECT_EQ(
+      complaint("apparatus = \"slump_flow\"\n[mix]\nyield_stress = \"54 Pa\"\nconsistency = \"20 Pa.s\"\n"
+                "flow_index = 0.5\ndensity = \"2400 kg/m3\"\n")
+          .find("missing"),
+      std::string::npos);
   EXPECT_TRUE(says(complaint("apparatus = \"slump_flow\"\n"), {"bad.toml:1: mix: missing key", "mix_a"}));
   EXPECT_TRUE(says(complaint("mix = \"mix_a\"\n"), {"bad.toml:1: apparatus: missing key", "slump_flow"}));
   EXPECT_TRUE(says(complaint(mix_a + "[mix.thixotropy]\n"),
