@@ -127,8 +127,8 @@ void settle_law(Values& values) {
     allowed += (allowed.empty() ? "\"" : ", \"") + std::string(law.word) + "\"";
     found = found || law.word == values.word("model.yield");
   });
-  if (allowed.empty())
-    values.fail("mix", "has keys of more than one law; give those of one");
+  if (allowed.empty() && other)
+    values.fail(*other, "stands beside keys of another law; give those of one");
   else if (!found)
     values.fail("model.yield", "\"" + values.word("model.yield") + "\" does not go with " +
                                    (other ? *other : std::string(plastic_viscosity)) +
