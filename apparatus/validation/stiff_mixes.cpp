@@ -77,9 +77,8 @@ Section stiff_mixes(const Settings& settings) {
   section.findings.push_back(
       fmt::format("Tremie is near the closed form of a yielding cone (Schowalter and Christensen's balance "
                   "of weight and uniaxial "
-                  "stress, √3 τ0 by von Mises): {} mm. What slumps by twice as much is no Bingham material "
-                  "of the yield stress "
-                  "that this rheometer reports.",
+                  "stress, √3 τ0 by von Mises): {} mm. Either stiff concrete is no Bingham material, or the "
+                  "rheometer, known to read higher than others, reports too high a yield stress.",
                   closed));
   return section;
 }
