@@ -1,0 +1,30 @@
+#!/usr/bin/env bash
+# Every apparatus with two threads under the thread sanitizer: tests/thread_sanitizer.sh, in the repository's root. Some ten
+# minutes on two cores. Needs clang 14 and its OpenMP, whose tool (archer) tells the sanitizer what OpenMP orders.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+cmake -S . -B build/thread -G Ninja -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_C_COMPILER=clang \
+      -DCMAKE_CXX_FLAGS="-O1 -g1" -DTREMIE_SANITIZE=thread -DTREMIE_PICTURES=OFF -DTREMIE_PYTHON=OFF
+cmake --build build/thread --target tremie
+
+out=$(mktemp -d)
+trap 'rm -rf "$out"' EXIT
+export OMP_TOOL_LIBRARIES=/usr/lib/llvm-14/lib/libarcher.so TSAN_OPTIONS="ignore_noninstrumented_modules=1 exitcode=66"
+races=0
+scene() {  # NAME and what follows tremie run
+  local name=$1 code=0
+  shift
+  build/thread/tremie run "$@" --threads 2 --out "$out/$name" --quiet 2> "$out/$name.log" || code=$?
+  echo "$name: exit $code, $(grep -c 'WARNING: ThreadSanitizer' "$out/$name.log" || true) races"
+  if grep -q 'ThreadSanitizer' "$out/$name.log" || { [ "$code" -ne 0 ] && [ "$code" -ne 3 ]; }; then
+    cat "$out/$name.log" >&2
+    races=1
+  fi
+}
+coarse='model.cell=["20 mm","10 mm"]'
+scene section apparatus/scenes/slump_flow_mix_a.toml --set "$coarse" --set test.duration="0.5 s"
+scene quarter apparatus/scenes/slump_flow_mix_a_quarter.toml --set "$coarse" --set test.duration="0.3 s"
+scene box apparatus/scenes/l_box.toml --set model.space=half --set test.bars=2 --set model.cell="20 mm" --set test.duration="0.05 s"
+scene vane apparatus/scenes/icar_vane_mix_a.toml --set model.space=plane --set test.duration="0.2 s"
+scene explicit apparatus/scenes/paper_mix_a.toml --set test.duration="0.02 s"
+exit $races
