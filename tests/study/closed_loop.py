@@ -56,6 +56,7 @@ def calibrate(tremie, folder, spread, t500):
 
 
 def loop(tremie, mixes, folder):
+    folder.mkdir(parents=True, exist_ok=True)
     random_numbers = random.Random(11)
     held, told, untrusted = 0, 0, 0
     print("mix,key,truth,low,value,high,held,exit_code", flush=True)
