@@ -103,7 +103,7 @@ Section thixotropy_section() {
                .kind = Kind::number,
                .range = not_negative,
                .fallback = "0.01",
-               .help = "alpha"},
+               .help = "alpha; 0.01 is the paper's, measured spreads after a rest want 1 or more"},
               {.name = "kinetics", .kind = Kind::choice, .words = names(kinetics_words), .fallback = "gated"},
               {.name = "critical_shear_rate",
                .dimension = Dimension::rate,
