@@ -26,6 +26,7 @@ Outcome run_implicit_in(const Scene& scene, const Observer& observer) {
   RigidWall<D> wall;
   if (scene.lift_speed) lifted_wall(scene, settings.wall_gap + settings.cfl * scene.model.cell[0], wall);
 
+  const double longest = settings.dt_max;
   Outcome outcome;
   outcome.series.push_back(read(scene, body, {}));
   if (observer.on_frame && !goes_on(observer.checkpoints)) observer.on_frame(test_run::frame_of(body));
@@ -39,6 +40,7 @@ Outcome run_implicit_in(const Scene& scene, const Observer& observer) {
             const double left = scene.duration - body.time;
             settings.time_left = test_run::without_sliver(left, body.dt);
             settings.fixed_dt = test_run::fixed_step(scene.model, left);
+            settings.dt_max = std::min(longest, longest_step_beside_the_cone(scene, body.time));
             if constexpr (D == 3)
               settings.admm.tolerance = flows ? flowing_tolerance : StepSettings{}.admm.tolerance;
             cone_gone = cone_is_gone(scene, body.time, outcome.series.back());

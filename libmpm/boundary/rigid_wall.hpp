@@ -29,8 +29,7 @@ inline constexpr double contact_relaxation = 1e-3;
 
 /// How much stiffer than a step needs it a wall is that moves with `speed` [m/s]. What gives way a little in every
 /// step adds up for as long as the wall is passed: the slower it is, the less may go through in a step. The
-/// constants are calibrated: about a hundredth of the concrete goes through a cone lifted at 5 to 50 mm/s, 2.4 % at
-/// 10 mm/s (lift.md).
+/// constants are calibrated: about a hundredth of the concrete goes through a cone lifted at 5 to 50 mm/s (lift.md).
 inline double slow_wall_factor(double speed) {
   constexpr double fast = 0.15, most = 100.0;  // [m/s], [1]
   if (speed <= 0.0) return 1.0;                // a wall that stands is not passed
