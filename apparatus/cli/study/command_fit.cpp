@@ -165,7 +165,8 @@ FitResult fit_vane(const Options& o, const TorqueRecord& record, const FitInput&
   const auto [text, name] = vane_table("vane_blades");
   VaneFit vane = fit_with_blades(record, in, blade_table(text, name));
   vane.fit.notes.push_back(
-      fmt::format("torques divided by {:.3f} to {:.3f}, what four thin blades take of their cylinder's",
+      fmt::format("torques are the cylinder's: the record's divided by {:.3f} to {:.3f}, what four thin "
+                  "blades take of it",
                   vane.least_factor, vane.most_factor));
   return vane.fit;
 }
