@@ -10,7 +10,7 @@ root_doc = "docs/index"
 include_patterns = ["docs/**.md", "tests/verification/*.md", "tests/verification/full/*.md", "CONTRIBUTING.md", "CHANGELOG.md", "README.md"]
 exclude_patterns = ["build", ".git"]
 html_theme = "alabaster"
-html_theme_options = {"description": "Virtual test apparatus for fresh, thixotropic concrete", "fixed_sidebar": True, "page_width": "1080px"}
+html_theme_options = {"description": "Virtual test apparatus for fresh, thixotropic concrete", "fixed_sidebar": True, "page_width": "min(1080px, 100%)"}
 html_sidebars = {"**": ["about.html", "navigation.html", "searchbox.html"]}
 html_show_sphinx = False
 html_show_copyright = False
@@ -19,9 +19,10 @@ html_copy_source = False
 # Formulas by KaTeX from Debian's libjs-katex, copied into the site, which then reads without a network; else by MathJax from
 # Sphinx's own default address.
 katex = "/usr/share/javascript/katex"
+html_static_path, html_css_files = ["site"], ["narrow.css"]
 if os.path.isdir(katex):
-    html_static_path = [katex]
-    html_css_files = ["katex.css"]
+    html_static_path.append(katex)
+    html_css_files.append("katex.css")
     mathjax_path, mathjax_options = "katex.js", {"defer": "defer"}
 
 
