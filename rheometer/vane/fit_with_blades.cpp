@@ -30,6 +30,7 @@ VaneFit fit_with_blades(const TorqueRecord& record, const FitInput& input, const
       result.least_factor = std::min(result.least_factor, factor);
       result.most_factor = std::max(result.most_factor, factor);
     }
+    if (result.most_factor == 0.0) result.least_factor = result.most_factor = 1.0;  // nothing turns
     result.fit = fit(cylinder, input);
     if (input.mu) return result;
     const double before = mu;

@@ -139,16 +139,17 @@ auto as_bad_input(const std::string& file, Read read) {
   }
 }
 
-/// The first table of reference_data/`folder`, as its text and its file's name.
-std::pair<std::string, std::string> vane_table(const std::string& folder) {
+/// The first table of reference_data/`folder`, which `option` reads, as its text and its file's name.
+std::pair<std::string, std::string> vane_table(const std::string& folder, const std::string& option) {
   for (const auto& data : scene::data_folders()) {
     std::error_code error;
     for (const auto& entry : std::filesystem::directory_iterator(data / folder, error))
       if (entry.path().extension() == ".csv")
         return {read_text_file(entry.path().string()), entry.path().filename().string()};
   }
-  throw scene::InputError(
-      fmt::format("reference_data/{}/*.csv, the table that is asked for, is not there", folder));
+  throw scene::InputError(fmt::format(
+      "{} computed: its table, reference_data/{}/*.csv, is not there; allowed without it: {} none", option,
+      folder, option));
 }
 
 /// The fit of a vane: of the torques that its cylinder would have taken, where the blades are corrected for.
@@ -162,7 +163,7 @@ FitResult fit_vane(const Options& o, const TorqueRecord& record, const FitInput&
           "--blades computed corrects");
     return result;
   }
-  const auto [text, name] = vane_table("vane_blades");
+  const auto [text, name] = vane_table("vane_blades", "--blades");
   VaneFit vane = fit_with_blades(record, in, blade_table(text, name));
   vane.fit.notes.push_back(
       fmt::format("torques are the cylinder's: the record's divided by {:.3f} to {:.3f}, what four thin "
@@ -209,7 +210,7 @@ double end_factor(const Options& o, const FitInput& in) {
   if (o.ends == "textbook") return textbook_end_factor(in.instrument);
   if (o.ends == "none") return 1.0;
   return as_bad_input("--ends computed", [&] {
-    const auto [text, name] = vane_table("vane_ends");
+    const auto [text, name] = vane_table("vane_ends", "--ends");
     return end_factor_from_table(text, name, in.instrument, bingham_number(o, in));
   });
 }
