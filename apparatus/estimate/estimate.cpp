@@ -108,7 +108,9 @@ Interval interval_of(const std::vector<double>& weights, const Axis& axis, std::
           axis.at(quantile(weights, 0.975))};
 }
 
-bool beyond(const std::vector<double>& weights) {
+/// `best`: share of the best point.
+bool beyond(const std::vector<double>& weights, double best) {
+  if (best < 1e-3 || best > 1.0 - 1e-3) return true;
   const std::size_t outermost = std::max<std::size_t>(1, side / 100);
   double low = 0.0, high = 0.0;
   for (std::size_t i = 0; i < outermost; ++i) {
@@ -116,6 +118,18 @@ bool beyond(const std::vector<double>& weights) {
     high += weights[side - 1 - i];
   }
   return std::max(low, high) > edge_weight;
+}
+
+/// Whether yield stresses that the spread allows lie where the table has no t500: next to its entries that do not reach
+/// 500 mm. The interval would end there, whatever the concrete.
+bool cut_off(const SlumpTable& table, const Measured& m, const Grid& grid, const Marginals& at) {
+  const double mu = grid.mu.at(at.best_mu), error = std::hypot(m.spread_error, table_spread_error);
+  for (std::size_t i = 0; i < side; ++i) {
+    const double tau_0 = grid.tau_0.at((static_cast<double>(i) + 0.5) / side);
+    const TableReading reading = interpolate(table, tau_0, mu, m.density);
+    if (!reading.t500 && std::abs(reading.spread - m.spread) < error) return true;
+  }
+  return false;
 }
 
 void check(const SlumpTable& table, const Measured& m, const Grid& grid, const Marginals& at, Estimate& e) {
@@ -128,12 +142,18 @@ void check(const SlumpTable& table, const Measured& m, const Grid& grid, const M
         "no mix of the table, {:.3g} to {:.3g} Pa and {:.3g} to {:.3g} Pa.s, has this spread and this t500: "
         "the nearest is {:.1f} standard errors off",
         grid.tau_0.low, grid.tau_0.high, grid.mu.low, grid.mu.high, std::sqrt(at.least)));
-  else if (beyond(at.tau_0))
+  else if (beyond(at.tau_0, at.best_tau_0))
     e.reasons.push_back(fmt::format("the yield stress may lie outside of the table, {:.3g} to {:.3g} Pa",
                                     grid.tau_0.low, grid.tau_0.high));
-  else if (m.t500 && beyond(at.mu))
+  else if (m.t500 && beyond(at.mu, at.best_mu))
     e.reasons.push_back(fmt::format("the viscosity may lie outside of the table, {:.3g} to {:.3g} Pa.s",
                                     grid.mu.low, grid.mu.high));
+  else if (m.t500 && cut_off(table, m, grid, at))
+    e.reasons.push_back(
+        fmt::format("t500 of a spread of {:.0f} mm hangs on its last millimetres, and the table ends there: "
+                    "the intervals are "
+                    "too narrow. Leave t500 out",
+                    1e3 * m.spread));
   if (m.density < least_density || m.density > most_density)
     e.reasons.push_back(
         fmt::format("a density of {:.0f} kg/m3 lies outside of what the table serves, {:.0f} to "

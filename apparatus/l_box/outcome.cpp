@@ -118,6 +118,8 @@ Stage stage_of(const l_box::Scene& scene) {
       scene.model.space == SpaceKind::plane || scene.model.space == SpaceKind::plane_with_side_walls;
   Stage stage;
   stage.up = plane ? 1 : 2, stage.depth = plane ? 2 : 1;
+  // Without the films on the side walls, which would fill the picture of the column.
+  if (scene.model.space == SpaceKind::half) stage.slice = 0.25 * box.width;
   stage.walls = {{{0.0, box.column_height}, {0.0, 0.0}, {end, 0.0}, {end, box.channel_height}},
                  {{box.column_length, box.column_height}, {box.column_length, box.channel_height}}};
   if (scene.gate_speed) {

@@ -143,7 +143,8 @@ std::string unit_for_people(const std::string& name) {
 std::string person_number(double value, const std::string& name) {
   if (!std::isfinite(value)) return "–";
   if (unit_of(name) == "mm") return fmt::format("{:.{}f}", value, std::abs(value) < 10.0 ? 1 : 0);
-  return fmt::format("{:.4g}", value);
+  // Runs are good to about a per cent: three digits.
+  return std::abs(value) < 100.0 ? fmt::format("{:.3g}", value) : fmt::format("{:.0f}", value);
 }
 
 }  // namespace tremie::report
