@@ -17,8 +17,16 @@ int hand_over(char** argv) {
   // What Ceres logs is for its programmers; what went wrong is told by us.
   setenv("GLOG_minloglevel", "3", 0);
   execv(program.c_str(), argv);
-  fmt::print(stderr, "tremie: {}: {}\n", program.string(), std::strerror(errno));
-  return fault;
+  if (errno != ENOENT) {
+    fmt::print(stderr, "tremie: {}: {}\n", program.string(), std::strerror(errno));
+    return fault;
+  }
+  fmt::print(
+      stderr,
+      "tremie: {} is not there: fit, study, verify and calibrate are in that program, beside tremie. It is "
+      "built where libsundials-dev and libceres-dev are installed (README.md, the test line)\n",
+      program.string());
+  return bad_input;
 }
 
 }  // namespace tremie::cli

@@ -86,8 +86,10 @@ std::vector<std::string> vane_lines(const icar_vane::Scene& scene, const icar_va
                                              r.torque_peak, r.torque_end)};
   add_agreement(outcome, lines);
   if (r.torque_couette_reference)
-    lines.push_back(fmt::format("cylinder        {:.4g} N.m by Reiner-Riwlin: the torque is {:.3f} of it",
-                                *r.torque_couette_reference, r.torque_end / *r.torque_couette_reference));
+    lines.push_back(
+        fmt::format("cylinder        {:.4g} N.m for a solid cylinder by the law's Couette flow: the torque "
+                    "is {:.3f} of it",
+                    *r.torque_couette_reference, r.torque_end / *r.torque_couette_reference));
   else if (scene.with_reference && scene.speed != 0.0 && scene.speeds.empty() && !has_integrated_references())
     lines.push_back("cylinder        not known: built without SUNDIALS; apt-get install libsundials-dev");
   if (r.end_factor)

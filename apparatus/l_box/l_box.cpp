@@ -44,7 +44,7 @@ Estimate estimate_in(const Scene& scene) {
                                                        : share * collapse + time / dt);
   };
   e.time_expected = expected_time(scene);
-  e.point_step = in_space(scene) ? 4.0e-6 : 0.75e-6;
+  e.point_step = in_space(scene) ? 1.6e-6 : 0.75e-6;
   e.steps = steps(1.0, scene.duration, settings.dt_max);
   e.steps_expected = std::min(e.steps, steps(0.8, e.time_expected, 2.3 * settings.dt_max));
   return e;

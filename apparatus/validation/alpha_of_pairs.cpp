@@ -197,7 +197,8 @@ Section alpha_of_pairs(const Settings& settings) {
   }
   const auto all = told_of(pairs[0].lab, product(product(likelihood[0], likelihood[1]), likelihood[2]));
   section.findings.push_back(fmt::format(
-      "α by all three: **above {:.2g}** (95 %); median and interval, {}, hang on the range's upper "
+      "α by all three: **above {:.2g}** (95 %, for an α even on a log scale over the range); median and "
+      "interval, {}, hang on the range's upper "
       "end. By one alone: {}. \"Rest changes nothing\" would forecast all three as well. A_thix is taken "
       "as exact, the critical shear rate as 0.1 1/s. Coefficients of the floor: {}; the paper calibrated "
       "0.35, 0.45, 0.43.",

@@ -48,7 +48,8 @@ std::string head(const std::vector<Section>& sections, double wall_seconds) {
       (miss ? missed : c.note.empty() ? met : open) += 1;
     }
   return fmt::format(
-      "# Validation\n\nWhat was measured, beside what Tremie predicts. `tremie verify --validation` remakes "
+      "# Validation\n\nWhat was measured, and in the last table two published correlations, beside what "
+      "Tremie predicts. `tremie verify --validation` remakes "
       "this page "
       "({:.0f} s here), `validation.csv` and the input of its calibrations.\n\n**{} of {} met, {} missed, {} "
       "without a "

@@ -40,13 +40,14 @@ struct ContactPoint {
   }
 };
 
-/// A node on a wall with Coulomb friction, or one that the side walls of a width-averaged section hold.
+/// A node that a yield force holds (friction.hpp): on a wall with Coulomb friction, or between the side walls of a
+/// width-averaged section, whose yield stress takes the place of the friction.
 template <int D>
 struct FrictionNode {
   int node = 0;
-  int normal_axis = 0;            ///< -1: held against any motion in the section
-  double reach = 0.0;             ///< of side walls: W / sqrt(12), as their viscous drag has it [m]
-  double limit = 0.0;             ///< coefficient * normal force, or the side walls' yield force [N]
+  int normal_axis = 0;  ///< of the wall; -1: side walls, which hold against any motion in the section
+  double reach = 0.0;   ///< of side walls: W / sqrt(12), as their viscous drag has it [m]
+  double limit = 0.0;   ///< coefficient * normal force, or the side walls' yield force [N]
   Vec<D> force = Vec<D>::Zero();  ///< along the wall, its dual [N]
   Vec<D> slip = Vec<D>::Zero();   ///< split sliding velocity, for ADMM [m/s]
   double stiffness = 0.0;         ///< ADMM's penalty [kg/s]

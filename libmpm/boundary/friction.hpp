@@ -16,8 +16,8 @@ namespace tremie {
 /// Newton's rounding of |u| at u = 0 [m/s].
 inline constexpr double friction_rounding = 1e-5;
 
-/// ADMM's penalties: half the shear stiffness of the concrete next to each node, `viscosity` V_i / h^2, as
-/// the yield part's is `viscosity`. V: volume of the concrete around each node [m^3]; `system`: what has
+/// ADMM's penalties: half the shear stiffness of the concrete next to each node, `viscosity` V_i / h^2, where `viscosity` is
+/// the linear systems', mu + r. V: volume of the concrete around each node [m^3]; `system`: what has
 /// add_diagonal(node, component, value).
 template <int D, class System>
 void add_friction_stiffness_admm(const ActiveGrid<D>& grid, const std::vector<double>& V, double viscosity,

@@ -16,7 +16,7 @@
 //   secant(gamma_dot, tau_y)    s                                   [Pa s]
 //   slope(gamma_dot, tau_y)     (ds/dgamma_dot) / gamma_dot         [Pa s^3]
 //   potential(gamma_dot, tau_y) int_0^gamma_dot f                   [Pa/s], convex
-//   prox(a, tau_y, r)           the d >= 0 with f(d) + r d = a; r may be 0 [1/s]
+//   prox(a, tau_y, r)           the d >= 0 with f(d) + r d = a; r > 0, or r = 0 where f grows without bound [1/s]
 //   stress(gamma_dot, tau_y)    f, and at gamma_dot = 0 its limit from the side of flow [Pa]
 //   dual_limit(gamma_dot, tau_y) the stress |s| that Newton's dual may carry, at most what keeps its tangent positive:
 //                               secant^2 / (|slope| gamma_dot); tau_y for exact Bingham, f will do elsewhere [Pa]
@@ -64,6 +64,9 @@ inline constexpr double fastest_rate = 100.0;
 
 /// What a flow of concrete under its own weight is about to stand at [1/s]: for the times that are expected of a run.
 inline constexpr double typical_rate = 1.0;
+
+/// Rates between which the viscosity of a law that is not Newtonian may be taken for the scale of its stresses [1/s].
+inline constexpr double viscosity_scale_rates[2] = {0.01, fastest_rate};
 
 /// Below it nothing is told from rest [1/s].
 inline constexpr double slowest_rate = 1e-6;

@@ -7,9 +7,6 @@
 
 namespace tremie::detail {
 
-/// Rates at which the viscosity of a law that is not Newtonian may be taken for the scale of its stresses [1/s].
-inline constexpr double typical_rates[2] = {0.01, 100.0};
-
 /// A point of a bar in cell c, with the drag of its piece: as much of it as the cell is full of concrete. In a law that
 /// is not Newtonian the viscosity is that at the rate |u|/D.
 template <class Geometry>
@@ -33,7 +30,9 @@ void add_bar_point(const ImplicitBody<Geometry>& body, const YieldLaw& law, int 
   drag.reach = length / bar.mobility;
   const double rate = bar_velocity<D>(point, drag, grid.cell_nodes, body.v).norm() / bar.diameter;
   drag.viscous =
-      (problem.mu + viscosity(law, std::clamp(rate, typical_rates[0], typical_rates[1]), tau_y)) * drag.reach;
+      (problem.mu +
+       viscosity(law, std::clamp(rate, viscosity_scale_rates[0], viscosity_scale_rates[1]), tau_y)) *
+      drag.reach;
   problem.bars.points.push_back(point);
   problem.bars.drag.push_back(drag);
 }

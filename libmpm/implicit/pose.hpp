@@ -70,8 +70,8 @@ void pose(ImplicitBody<Geometry>& body, const YieldLaw& law, const StepSettings&
   add_gravity(body, v_old, dt);
   posed.emplace(YieldProblem<Geometry>{
       body.grid, body.quadrature, body.nodes, dt, body.mix.mu, body.mix.K, {}, {}, {}, {}, {}, {}});
-  posed->eta +=
-      viscosity(law, std::clamp(body.shear_rate, typical_rates[0], typical_rates[1]), body.mix.tau_0);
+  posed->eta += viscosity(
+      law, std::clamp(body.shear_rate, viscosity_scale_rates[0], viscosity_scale_rates[1]), body.mix.tau_0);
   posed->zeta = settings.alternating_viscosity * posed->eta;
   apply_flat_walls<D>(body.grid, body.walls, posed->fixed, posed->friction, body.v);
   apply_blocks<D>(body.grid, posed->fixed, body.v);

@@ -74,17 +74,24 @@ double update_normal_forces(YieldProblem<Geometry>& problem, const YieldLaw& law
   return sum > 0.0 ? change / sum : 0.0;
 }
 
+/// The normal forces have settled when the sum of their changes is less than this share of theirs.
+inline constexpr double settled_share = 0.02;
+/// So often they are renewed; a step that needs more has not converged.
+inline constexpr int most_renewals = 20;
+
 /// Solves, with the normal forces of Coulomb friction frozen inside and renewed until they settle.
 template <class Geometry>
 SolveReport solve_step(YieldProblem<Geometry>& problem, const YieldLaw& law, const StepSettings& settings,
                        ImplicitBody<Geometry>& body) {
   SolveReport solve = solve_yield(problem, law, settings, body);
-  for (int i = 0; i < 20 && !problem.friction.empty(); ++i) {
-    if (update_normal_forces(problem, law, settings.friction_coefficient, body) < 0.02) break;
+  if (problem.friction.empty()) return solve;
+  for (int i = 0; i < most_renewals; ++i) {
+    if (update_normal_forces(problem, law, settings.friction_coefficient, body) < settled_share) return solve;
     const int before = solve.iterations;
     solve = solve_yield(problem, law, settings, body);
     solve.iterations += before;
   }
+  solve.converged = false;
   return solve;
 }
 

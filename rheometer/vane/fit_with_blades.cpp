@@ -16,6 +16,10 @@ double viscosity_of(const FitResult& fit) {
 }  // namespace
 
 VaneFit fit_with_blades(const TorqueRecord& record, const FitInput& input, const BladeTable& table) {
+  if (!input.mu && record.kind != RecordKind::flow_curve)
+    throw std::invalid_argument(
+        "the blades' part hangs on the plastic viscosity, which a record at one speed hardly tells; give "
+        "--plastic-viscosity, of a flow curve");
   double mu = input.mu ? *input.mu : viscosity_of(fit(record, input));
   for (int turn = 0; turn < 30; ++turn) {
     TorqueRecord cylinder = record;

@@ -44,25 +44,29 @@ double textbook_end_factor(const Instrument& in) {
   return 1.0 + 2.0 * in.vane_radius / (3.0 * in.vane_height);
 }
 
+double largest_bingham_number(const std::string& csv, const std::string& name) {
+  const auto table = table_of(csv, name);
+  return table.empty() ? 0.0 : std::expm1(table.begin()->second.begin()->second.rbegin()->first);
+}
+
 double end_factor_from_table(const std::string& csv, const std::string& name, const Instrument& in,
                              double bingham_number) {
   const auto table = table_of(csv, name);
   if (table.empty()) throw std::invalid_argument(name + ": holds no row");
   const double h = in.vane_height / in.vane_radius, c = rounded(in.container_radius / in.vane_radius);
   const auto at_bingham = [&](const Curve& curve) {
-    return between(curve, std::log1p(bingham_number), [](double f) { return std::optional(f); });
+    const double at = std::min(std::log1p(std::max(0.0, bingham_number)), curve.rbegin()->first);
+    return between(curve, at, [](double f) { return std::optional(f); });
   };
   const auto factor =
       between(table, rounded(1.0 / h), [&](const Row& row) { return between(row, c, at_bingham); });
   if (factor) return *factor;
   const Row& row = table.begin()->second;
-  const Curve& curve = row.begin()->second;
   std::ostringstream what;
   what << name << ": no end factor for a vane of " << h << " radii in a container of " << c
-       << " radii at a Bingham number of " << bingham_number << "; it holds heights from "
-       << 1.0 / table.rbegin()->first << " to " << 1.0 / table.begin()->first << " radii, containers from "
-       << row.begin()->first << " to " << row.rbegin()->first << " radii, Bingham numbers from 0 to "
-       << std::expm1(curve.rbegin()->first);
+       << " radii; it holds heights from " << 1.0 / table.rbegin()->first << " to "
+       << 1.0 / table.begin()->first << " radii, containers from " << row.begin()->first << " to "
+       << row.rbegin()->first << " radii";
   throw std::invalid_argument(what.str());
 }
 

@@ -15,9 +15,13 @@ double textbook_end_factor(const Instrument& instrument);
 
 /// f of a table with the columns height_over_radius, container_over_radius, bingham_number and end_factor on a full grid,
 /// between whose points it is linear: in radius over height, in the container, and in ln(1 + Bi), Bi = tau_0/(mu Omega).
-/// Throws std::invalid_argument for a table that is none (with its line) and for an instrument or a Bingham number
-/// outside of it (with its range).
+/// Beyond its largest Bingham number the last factor holds: over the decade before it changes by 1 to 4 %.
+/// Throws std::invalid_argument for a table that is none (with its line) and for an instrument outside of it (with its
+/// range).
 double end_factor_from_table(const std::string& csv, const std::string& name, const Instrument& instrument,
                              double bingham_number);
+
+/// Where such a table ends.
+double largest_bingham_number(const std::string& csv, const std::string& name);
 
 }  // namespace tremie

@@ -216,7 +216,8 @@ TEST(VaneEnds, TheTextbookAndATable) {
               1e-9);  // 1/2 between 1 and 1/3
   EXPECT_NEAR(end_factor_from_table(table, "t.csv", {1.0, 2.0, 2.5}, 1.0), 1.35, 1e-9);  // ln 2 of ln 4
   EXPECT_THROW(end_factor_from_table(table, "t.csv", {1.0, 4.0, 2.5}, 1.0), std::invalid_argument);
-  EXPECT_THROW(end_factor_from_table(table, "t.csv", {1.0, 2.0, 2.5}, 4.0), std::invalid_argument);
+  EXPECT_EQ(end_factor_from_table(table, "t.csv", {1.0, 2.0, 2.5}, 4.0),
+            end_factor_from_table(table, "t.csv", {1.0, 2.0, 2.5}, 3.0));  // where the table ends
   EXPECT_THROW(end_factor_from_table("1;2;3;4\n", "t.csv", {1.0, 2.0, 2.5}, 0.0), std::invalid_argument);
 }
 

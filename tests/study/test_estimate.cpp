@@ -101,6 +101,18 @@ TEST(Estimate, OutsideOfTheTableSaysSo) {
   EXPECT_FALSE(estimate(table(), {.spread = 0.45, .t500 = 2.0}).reasons.empty());   // 500 mm was not reached
   EXPECT_FALSE(estimate(table(), {.spread = 0.60, .t500 = 60.0}).reasons.empty());  // too slow for any mix
   EXPECT_FALSE(estimate(table(), {.spread = 0.55, .density = 1000.0}).reasons.empty());
+  EXPECT_FALSE(
+      estimate(table(), {.spread = 0.60, .t500 = 8.0}).reasons.empty());  // its best fit is the table's first
+}
+
+// The table's entries that do not reach 500 mm have no t500, so that next to them an interval ends where the table does:
+// the mix of 80 Pa and 30 Pa.s that spreads 501 mm is not in it.
+TEST(Estimate, ASpreadNextTo500MillimetresSaysThatItsT500IsNoUse) {
+  for (const double t500 : {5.0, 9.73})
+    EXPECT_FALSE(estimate(table(), {.spread = 0.501, .t500 = t500}).reasons.empty());
+  EXPECT_FALSE(estimate(table(), {.spread = 0.51, .t500 = 6.0}).reasons.empty());
+  EXPECT_TRUE(estimate(table(), {.spread = 0.501}).reasons.empty());
+  EXPECT_TRUE(estimate(table(), {.spread = 0.54, .t500 = 3.0}).reasons.empty());
 }
 
 }  // namespace

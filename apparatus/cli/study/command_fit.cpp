@@ -152,6 +152,17 @@ std::pair<std::string, std::string> vane_table(const std::string& folder, const 
       folder, option));
 }
 
+/// A note where the ends' factor is that of the table's last Bingham number.
+void note_beyond_ends(const Options& o, const FitInput& in, FitResult& result) {
+  if (o.ends != "computed" || !in.omega || !result.tau_0 || !result.mu) return;
+  const auto [text, name] = vane_table("vane_ends", "--ends");
+  const double last = largest_bingham_number(text, name),
+               Bi = result.tau_0->value / (result.mu->value * *in.omega);
+  if (Bi > last)
+    result.notes.push_back(fmt::format(
+        "ends: the Bingham number, {:.3g}, lies beyond the table's {:.3g}, whose factor is taken", Bi, last));
+}
+
 /// The fit of a vane: of the torques that its cylinder would have taken, where the blades are corrected for.
 FitResult fit_vane(const Options& o, const TorqueRecord& record, const FitInput& in) {
   if (o.blades == "none") {
@@ -177,6 +188,7 @@ FitResult read_and_fit(const Options& o, const std::string& file, FitInput in) {
     const TorqueRecord record = read_torque_record(file, torque_offset(o));
     if (!in.omega && record.speed > 0.0) in.omega = record.speed;
     FitResult result = fit_vane(o, record, in);
+    note_beyond_ends(o, in, result);
     result.notes.insert(result.notes.begin(), record.understood.begin(), record.understood.end());
     return result;
   });

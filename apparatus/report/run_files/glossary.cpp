@@ -57,7 +57,7 @@ const std::map<std::string, std::string>& glossary() {
       {"torque_end_N_m", "torque on the blades at the end"},
       {"torque_wall_end_N_m", "torque on the container at the end"},
       {"torque_power_end_N_m", "dissipated power over speed at the end"},
-      {"torque_couette_reference_N_m", "torque of a solid cylinder (Reiner-Riwlin)"},
+      {"torque_couette_reference_N_m", "torque of a solid cylinder in the same container (Couette flow)"},
       {"torque_plane_N_m", "torque of the plane section times the height"},
       {"static_yield_stress_apparent_Pa", "T/(2πr²h) at the peak: apparent static yield stress"},
       {"dynamic_yield_stress_apparent_Pa",

@@ -58,7 +58,8 @@ struct YieldProblem {
   std::vector<double> p_offset = {};      ///< of the cells' pressures [Pa]; empty: those before the step
   double K_share = 1.0;                   ///< K over the mix's
   SlenderBars<D> bars = {};               ///< thinner than the grid resolves; ADMM alone
-  double eta = mu;  ///< viscosity that scales stresses: mu, and the law's at a typical rate
+  double eta =
+      mu;  ///< viscosity that scales stresses: mu, and the law's at the rate of the last step, within viscosity_scale_rates
 
   /// Pressure of cell c without divergence.
   double offset(int c) const { return p_offset.empty() ? quadrature.p[c] : p_offset[c]; }

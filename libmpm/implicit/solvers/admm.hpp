@@ -25,15 +25,16 @@ struct AdmmSettings {
   double tolerance = 1e-3;  ///< of the stress residuals, relative to the stresses
   int max_iterations = 1000;
   double over_relaxation = 1.6;  ///< rho
-  double penalty = 3.0;          ///< r / mu
+  double penalty = 3.0;          ///< r over the problem's eta, at least
   // Where the linear systems are solved by iteration, in 3D:
-  double penalty_by_iteration = 1.5;  ///< r / mu: softer, for the systems are then better conditioned
+  double penalty_by_iteration =
+      1.5;  ///< r over eta, at least: softer, for the systems are then better conditioned
   double solve_reduction = 0.5;       ///< of the residual in one solve, in the energy norm
   double solve_share = 1.0;           ///< of the tolerated residuals (squared) that a solve may leave
   int direct_below = 2000;            ///< unknowns; smaller systems are factorised
   double most_band_operations = 1e9;  ///< of a factor of the pressures' matrix; beyond, by iteration
   double most_bulk_stiffness = 1e4;   ///< K dt over mu + r in a system; the rest by multipliers
-  double inertia_from = 10.0;         ///< mu: a cell's inertia beyond this is in the scale of the stresses,
+  double inertia_from = 10.0;         ///< eta: a cell's inertia beyond this is in the scale of the stresses,
   double inertia_over = 0.3;          ///< over the time of a move by so many cells, or the step if longer
 };
 

@@ -34,11 +34,11 @@ AdmmState<ThreeD> unpack(const YieldLaw& law, const PackedAdmmState& packed) {
 }
 
 /// Single precision forgets the viscosity beside a modulus that is millions of times stiffer over a step. The
-/// systems then have no more of it than `most` of K dt over the viscosity eta, and the rest is made up as in
+/// systems then have no more of it than `most` of K dt over the viscosity eta_system, and the rest is made up as in
 /// an augmented Lagrangian (Fortin, Glowinski 1983): p = p_offset - K dt div v, and p_offset moves to where p
 /// is what the mix's modulus makes of div v (update_multiplier()).
-void lower_modulus(double most, double eta, YieldProblem<ThreeD>& problem) {
-  const double ratio = problem.K * problem.dt / eta;
+void lower_modulus(double most, double eta_system, YieldProblem<ThreeD>& problem) {
+  const double ratio = problem.K * problem.dt / eta_system;
   if (ratio <= most) return;
   if (problem.p_offset.empty()) problem.p_offset = problem.quadrature.p;
   problem.K_share *= most / ratio, problem.K *= most / ratio;
@@ -177,10 +177,10 @@ void residual_3d(const YieldProblem<ThreeD>& problem, const std::vector<Vec<3>>&
 }  // namespace detail
 
 bool MatrixFreeAdmm::prepare() {
-  detail::lower_modulus(settings.most_bulk_stiffness, eta, problem);
-  set_bar_stiffness(eta, problem.bars);
+  detail::lower_modulus(settings.most_bulk_stiffness, eta_system, problem);
+  set_bar_stiffness(eta_system, problem.bars);
   system.set_up(problem, settings.most_band_operations);
-  return system.prepare(problem, eta);
+  return system.prepare(problem, eta_system);
 }
 
 double MatrixFreeAdmm::solve(double tolerated, std::vector<Vec<3>>& v) {

@@ -35,7 +35,7 @@ struct MatrixFreeAdmm {
   MatrixFreeSystem& system;
   PackedAdmmState& state;
   detail::IterationViscosities viscosities = detail::viscosities_of(problem, settings);
-  double eta = problem.mu + viscosities.r;
+  double eta_system = problem.mu + viscosities.r;  ///< viscosity of the linear systems
   Eigen::VectorXd R = {};  ///< forces of stress, pressure and closed contacts at the last velocities [N]
 
   bool prepare();
@@ -43,10 +43,11 @@ struct MatrixFreeAdmm {
   double solve(double tolerated, std::vector<Vec<3>>& v);
 
   /// An error e of v that a solve leaves has rates q(e), whose square over the volume is at most its energy
-  /// (r, A^-1 r), here (r, P^-1 r), over eta, and is worth a stress of eta |q(e)|: no more of either than the iteration
+  /// (r, A^-1 r), here (r, P^-1 r), over eta_system, and is worth a stress of eta_system |q(e)|: no more of either than the iteration
   /// tolerates.
   double tolerated_energy(const detail::AdmmResiduals& m) const {
-    return std::min(std::pow(settings.tolerance, 2) * m.scale / eta, eta * std::pow(m.tolerated_miss(), 2));
+    return std::min(std::pow(settings.tolerance, 2) * m.scale / eta_system,
+                    eta_system * std::pow(m.tolerated_miss(), 2));
   }
   detail::AdmmResiduals start(const std::vector<Vec<3>>& v) { return pass(v, false); }
   detail::AdmmResiduals update(const std::vector<Vec<3>>& v) { return pass(v, true); }

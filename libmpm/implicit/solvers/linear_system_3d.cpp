@@ -38,8 +38,8 @@ void MatrixFreeSystem::set_up(YieldProblem<ThreeD>& problem, double most_band_op
   }
 }
 
-bool MatrixFreeSystem::prepare(YieldProblem<ThreeD>& problem, double eta) {
-  eta_ = eta;
+bool MatrixFreeSystem::prepare(YieldProblem<ThreeD>& problem, double eta_system) {
+  eta_system_ = eta_system;
   const int n = problem.grid.n_nodes();
   double trace = 0.0;
   for (double m : problem.nodes.mass) trace = std::max(trace, 1e-12 * m);
@@ -54,7 +54,7 @@ bool MatrixFreeSystem::prepare(YieldProblem<ThreeD>& problem, double eta) {
       for (int i : problem.grid.cell_nodes[c]) V[i] += problem.quadrature.V_cell[c] / 27;
     fold_mirrors<3>(problem.grid, V);
     Diagonal to{diagonal};
-    add_friction_stiffness_admm<3>(problem.grid, V, eta, problem.friction, to);
+    add_friction_stiffness_admm<3>(problem.grid, V, eta_system, problem.friction, to);
   }
   free_.resize(4 * n), free_diagonal_.resize(4 * n);
 #pragma omp parallel for schedule(static)
@@ -72,7 +72,7 @@ bool MatrixFreeSystem::prepare(YieldProblem<ThreeD>& problem, double eta) {
   for (int c = 0; c < problem.grid.n_cells(); ++c)
     stiffness[c] = problem.quadrature.V_cell[c] * problem.K * problem.dt;
   return preconditioner.build(problem.grid, batches, problem.quadrature, node_blocks(problem, diagonal),
-                              stiffness, problem.K * problem.dt / eta);
+                              stiffness, problem.K * problem.dt / eta_system);
 }
 
 /// Inverse blocks of D at the nodes. A node's own viscous block is V eta (|g|^2 I + g g'/3) with its gradient
@@ -91,8 +91,8 @@ std::vector<Mat<3, 3>> MatrixFreeSystem::node_blocks(const YieldProblem<ThreeD>&
     for (int k = 0; k < 8; ++k) {
       const Stencil<3> st = stencil<3>(grid.axes, grid.cell_index[c], quadrature_point<3>(k));
       for (int i = 0; i < 27; ++i) {
-        const Mat<3, 3> own =
-            eta_ * (st.g[i].squaredNorm() * Mat<3, 3>::Identity() + st.g[i] * st.g[i].transpose() / 3.0);
+        const Mat<3, 3> own = eta_system_ * (st.g[i].squaredNorm() * Mat<3, 3>::Identity() +
+                                             st.g[i] * st.g[i].transpose() / 3.0);
         viscous[kind[c]][k][i] << own.diagonal(), own(1, 0), own(2, 1), own(2, 0), 0.0, 0.0;
       }
     }
@@ -123,7 +123,7 @@ std::vector<Mat<3, 3>> MatrixFreeSystem::node_blocks(const YieldProblem<ThreeD>&
 
 void MatrixFreeSystem::multiply(const YieldProblem<ThreeD>& problem, const Eigen::VectorXf& x,
                                 Eigen::VectorXf& out) {
-  const auto bulk = static_cast<float>(problem.K * problem.dt), eta = static_cast<float>(eta_);
+  const auto bulk = static_cast<float>(problem.K * problem.dt), eta_system = static_cast<float>(eta_system_);
   ++products;
   out.resize(x.size());
   const auto give_batch = [&](int b, float* to) {
@@ -136,7 +136,7 @@ void MatrixFreeSystem::multiply(const YieldProblem<ThreeD>& problem, const Eigen
     for (int k = 0; k < 8; ++k) {
       Lanes<float> q[5], div;
       strain_at(G, k, q, div);
-      const Lanes<float> w = eta * v.V[k];
+      const Lanes<float> w = eta_system * v.V[k];
       for (Lanes<float>& s : q) s *= w;
       stress_at<float>(q, v.V[k] * mean, k, G);
     }

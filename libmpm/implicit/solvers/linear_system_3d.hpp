@@ -119,9 +119,9 @@ class MatrixFreeSystem {
  public:
   /// Lays out the cells.
   void set_up(YieldProblem<ThreeD>& problem, double most_band_operations);
-  /// Everything that does not change within a step, and the preconditioner; `eta` is the viscosity of the
+  /// Everything that does not change within a step, and the preconditioner; `eta_system` is the viscosity of the
   /// system's deviatoric part [Pa s]. False where it is not definite.
-  bool prepare(YieldProblem<ThreeD>& problem, double eta);
+  bool prepare(YieldProblem<ThreeD>& problem, double eta_system);
 
   /// A x in single precision, four numbers a node. Prescribed components of x are zero, and those of the
   /// result too.
@@ -157,7 +157,7 @@ class MatrixFreeSystem {
   std::vector<Mat<3, 3>> node_blocks(const YieldProblem<ThreeD>& problem,
                                      const Eigen::VectorXd& diagonal) const;
 
-  double eta_ = 0.0;
+  double eta_system_ = 0.0;
   Eigen::VectorXf free_,
       free_diagonal_;  ///< 1 and the diagonal where nothing is prescribed, else 0; by fours
   std::vector<BatchVolumes<float>> weights_;
