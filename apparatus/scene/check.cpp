@@ -272,8 +272,14 @@ class Checker {
       if (!key.fallback.empty())
         values_.entries[full] = default_of(key);
       else if (is_needed(key, place))
-        missing(key, full, origin);
+        missing(key, full, origin_of_need(key, place, origin));
     }
+  }
+
+  /// Where the key stands that asks for this one, else where its section does.
+  Origin origin_of_need(const Key& key, const std::string& place, const Origin& section) const {
+    const auto asks = values_.entries.find(dotted(place, key.needed_with));
+    return key.needed_with.empty() || asks == values_.entries.end() ? section : asks->second.origin;
   }
 
   /// Whether a scene that leaves the key out is incomplete. What another key of the section decides was read before.
@@ -300,7 +306,9 @@ class Checker {
     const std::string example =
         key.example.empty() ? "" : fmt::format(", like {} = {}{}{}", key.name, quote, key.example, quote);
     const std::string when =
-        key.only_with ? fmt::format(" with {} = {}", key.only_with->key, join(key.only_with->words)) : "";
+        !key.needed_with.empty() ? fmt::format(" beside {}", key.needed_with)
+        : key.only_with ? fmt::format(" with {} = {}", key.only_with->key, join(key.only_with->words))
+                        : "";
     report(origin, full, fmt::format("missing key{}; allowed: {}{}", when, allowed_text(key), example));
   }
 
