@@ -41,15 +41,17 @@ ImplicitBody<Geometry> block(double h) {
   return body;
 }
 
-/// `direct_below`: unknowns up to which a step is solved by a factor.
+/// `direct_below`: unknowns up to which a step is solved by a factor; `band`: by iteration the pressures are solved by a
+/// factor, else by two-level conjugate gradients.
 template <class Geometry>
-void implicit_steps(double h, int direct_below, bool bar) {
+void implicit_steps(double h, int direct_below, bool bar, bool band = true) {
   auto body = block<Geometry>(h);
   if constexpr (Geometry::dim == 3)
     if (bar) add_bar(body.grid.axes, Vec<3>(0.09, 0.02, 0.0), 2, 0.1, 0.012, body.bars);
   StepSettings settings;
   settings.admm.direct_below = direct_below;
   settings.admm.max_iterations = 40;
+  if (!band) settings.admm.most_band_operations = 0.0;
   settings.fixed_dt = 0.01;
   settings.wall_gap = 0.3 * h, settings.friction_coefficient = 0.3;
   for (int i = 0; i < 4; ++i) implicit_step(body, ExactBingham{}, settings, wall_at<Geometry::dim>(0.085));
@@ -73,6 +75,7 @@ int main() {
   implicit_steps<Axisymmetric>(0.01, 1'000'000, false);
   implicit_steps<ThreeD>(0.02, 1'000'000, false);
   implicit_steps<ThreeD>(0.01, 0, true);
+  implicit_steps<ThreeD>(0.01, 0, true, false);
   explicit_steps(false);
   explicit_steps(true);
   std::puts("every loop ran");
