@@ -148,12 +148,6 @@ void check(const SlumpTable& table, const Measured& m, const Grid& grid, const M
   else if (m.t500 && beyond(at.mu, at.best_mu))
     e.reasons.push_back(fmt::format("the viscosity may lie outside of the table, {:.3g} to {:.3g} Pa.s",
                                     grid.mu.low, grid.mu.high));
-  else if (m.t500 && cut_off(table, m, grid, at))
-    e.reasons.push_back(
-        fmt::format("t500 of a spread of {:.0f} mm hangs on its last millimetres, and the table ends there: "
-                    "the intervals are "
-                    "too narrow. Leave t500 out",
-                    1e3 * m.spread));
   if (m.density < least_density || m.density > most_density)
     e.reasons.push_back(
         fmt::format("a density of {:.0f} kg/m3 lies outside of what the table serves, {:.0f} to "
@@ -163,6 +157,17 @@ void check(const SlumpTable& table, const Measured& m, const Grid& grid, const M
 
 }  // namespace
 
+/// Where t500 is of no use the spread alone tells, and it is said.
+static Estimate without_t500(const SlumpTable& table, Measured m) {
+  m.t500.reset();
+  Estimate e = estimate(table, m);
+  e.reasons.push_back(
+      fmt::format("t500 of a spread of {:.0f} mm hangs on its last millimetres, and the table ends there: it "
+                  "was left out",
+                  1e3 * m.spread));
+  return e;
+}
+
 Estimate estimate(const SlumpTable& table, const Measured& m) {
   Estimate e;
   e.tau_0_thin_layer = thin_layer_yield_stress(m.spread, m.density);
@@ -170,6 +175,7 @@ Estimate estimate(const SlumpTable& table, const Measured& m) {
   const Grid grid = grid_of(table, m.density);
   Marginals at = marginals_of(table, m, grid);
   if (m.t500 && std::isfinite(at.least)) refine(table, m, grid, at);
+  if (m.t500 && at.least < far_off * far_off && cut_off(table, m, grid, at)) return without_t500(table, m);
   check(table, m, grid, at, e);
   const auto [low, high] = std::minmax_element(table.spread.begin(), table.spread.end());
   if (m.spread < *low || m.spread > *high) return e;

@@ -72,7 +72,17 @@ class Result:
     def __repr__(self) -> str:
         head = f"<tremie.Result of {self.summary.get('apparatus', '?')}: {self.summary.get('status', '?')}>"
         reasons = [f"not to be trusted: {reason}" for reason in self.reasons]
-        return "\n".join([head, *reasons, *self.lines])
+        return "\n".join([head, *reasons, *(self.lines or _told(self.results)), *self.notes])
+
+
+def _told(results: dict[str, Any]) -> list[str]:
+    """The values of a fit or an estimate, a line each, with their 95 % intervals."""
+    lines = []
+    for name, told in results.items():
+        if isinstance(told, dict) and isinstance(told.get("value"), (int, float)):
+            interval = told.get("ci95")
+            lines.append(f"{name} {told['value']:.4g}" + (f" [{interval[0]:.4g}, {interval[1]:.4g}]" if interval else ""))
+    return lines
 
 
 def checked(result: Result, stacklevel: int = 3) -> Result:

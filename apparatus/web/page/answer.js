@@ -87,7 +87,7 @@ function verdicts(run) {
   else {
     lines.push([
       `${results.within_tremie_range ? "Within" : "Outside"} the range of tremie concrete (450 to 650 mm)`,
-      results.within_tremie_range ? "good" : "note"
+      results.within_tremie_range ? "good" : "bad"
     ]);
     lines.push([classText(results), ""]);
   }

@@ -37,11 +37,17 @@ function buildFields(place, change) {
   }
 }
 
+/// The first field whose text is no value; undefined where all are.
+function firstWrong() {
+  return fields.map((f) => byId(`field-${f.key}`)).find((text) => text.hasAttribute("aria-invalid"));
+}
+
 function showConcrete(concrete) {
   for (const f of fields) {
     byId(`field-${f.key}`).value = concrete[f.key];
     byId(`slider-${f.key}`).value = slider.from(f, concrete[f.key]);
     byId(`wrong-${f.key}`).textContent = "";
+    byId(`field-${f.key}`).removeAttribute("aria-invalid");
   }
   byId("mix").value = mixOf(concrete);
 }

@@ -33,7 +33,7 @@ function showEstimate({results, checks}, hasT500) {
       hasT500 ? [intervalText("Plastic viscosity", results.plastic_viscosity_Pa_s, "Pa·s"), ""] :
                 ["Plastic viscosity: takes t500", "note"]);
   checks.reasons.forEach((reason) => lines.push([`Not to be trusted: ${reason}`, "bad"]));
-  lines.push(["For a lift of 15 cm/s, of concrete as it was when the cone was lifted: its rest is in the yield stress.", "note"]);
+  lines.push(["For a lift of 15 cm/s, of concrete that builds up nothing while it flows: what its rest built up is in the yield stress.", "note"]);
   byId("estimate-answer").replaceChildren(...lines.map(([text, kind]) => element("li", {class: kind}, text)));
 }
 
@@ -57,6 +57,7 @@ function buildEstimate(place, density, take) {
       for (const {key} of measuredFields) measured[key] = read(key);
       const answer = await estimateFor(measured), {yield_stress_Pa: tau, plastic_viscosity_Pa_s: mu} = answer.results;
       found = {...(tau && {yield_stress: Number(tau.value.toPrecision(3))}), ...(mu && {plastic_viscosity: Number(mu.value.toPrecision(3))})};
+      if (answer.checks.reasons.length) found = {};
       showEstimate(answer, measured.t500_s !== undefined);
     } catch (error) {
       found = {};

@@ -183,7 +183,12 @@ function chooseSecond(on) {
 }
 
 function listen() {
-  byId("run").addEventListener("click", runAll);
+  byId("run").addEventListener("click", () => {
+    const field = firstWrong();
+    if (!field) return runAll();
+    complain("A field cannot be read; nothing was run.");
+    field.focus();
+  });
   byId("cancel").addEventListener("click", cancel);
   byId("second").addEventListener("change", (event) => chooseSecond(event.target.checked));
   document.querySelectorAll('input[name="which"]')
@@ -219,7 +224,7 @@ buildMixes(
 buildFields(byId("fields"), (key, value) => change({...state.concretes[state.active], [key]: value}));
 buildEstimate(
     byId("estimate-fields"), () => state.concretes[state.active].density,
-    (values) => change({...state.concretes[state.active], ...values, rest: 0}));
+    (values) => change({...state.concretes[state.active], ...values, rest: 0, structuration_rate: 0}));
 buildPlayer();
 player.draw = draw;
 byId("scale").style.background = `linear-gradient(to right, ${shades.join(", ")})`;

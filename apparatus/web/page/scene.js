@@ -43,7 +43,7 @@ function concreteOf(name) {
 
 /// Why a value cannot be run; "" where it can.
 function wrong(field, value) {
-  if (!Number.isFinite(value)) return `${field.word}: write a number, like ${written(field.low)}`;
+  if (!Number.isFinite(value)) return `${field.word}: write a number${field.unit && ` in ${unitShown[field.unit] ?? field.unit}`}, like ${written(field.low)}`;
   if (field.above !== undefined && value <= field.above) return `${field.word}: must be above ${field.above}`;
   if (field.least !== undefined && value < field.least) return `${field.word}: must be at least ${field.least}`;
   return "";
