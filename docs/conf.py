@@ -19,7 +19,7 @@ html_copy_source = False
 # Formulas by KaTeX from Debian's libjs-katex, copied into the site, which then reads without a network; else by MathJax from
 # Sphinx's own default address.
 katex = "/usr/share/javascript/katex"
-html_static_path, html_css_files = ["site"], ["narrow.css"]
+html_static_path, html_css_files, templates_path = ["site"], ["narrow.css"], ["templates"]
 if os.path.isdir(katex):
     html_static_path.append(katex)
     html_css_files.append("katex.css")

@@ -84,6 +84,7 @@ struct Measurement {
   std::string name, word, unit;
   double value = 0.0, tolerance = 0.0;
   double difference = 0.0;  ///< computed minus measured
+  std::string on = {};      ///< the concrete that was measured, where it is another; empty: the same
 };
 
 using Outline = std::vector<std::array<double, 2>>;  ///< a line of walls [m]

@@ -77,6 +77,9 @@ Section material_section(const std::string& bulk_modulus) {
            .dimension = Dimension::length,
            .range = not_negative,
            .help = "of the measured slump flows"},
+          {.name = "measured_on",
+           .kind = Kind::text,
+           .help = "the concrete that slump_flow_0 and slump_flow_240 are of, where it is not this one"},
           {.name = "friction_coefficient",
            .kind = Kind::number,
            .range = between(0.0, 10.0),
@@ -206,7 +209,8 @@ Measured read_measured(const Values& values) {
           length("mix.slump_flow_tolerance").value_or(0.0),
           length("measured.spread"),
           length("measured.tolerance"),
-          length("measured.t500")};
+          length("measured.t500"),
+          text("mix.measured_on")};
 }
 
 Section measured_section() {

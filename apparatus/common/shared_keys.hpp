@@ -28,6 +28,8 @@ struct Measured {
   // [measured], which wins over the mix's:
   std::optional<double> spread = {}, spread_tolerance = {};  ///< [m]
   std::optional<double> t500 = {};                           ///< [s]
+  /// The concrete that slump_flow_0 and slump_flow_240 are of, where it is not this one; empty: they are of this one.
+  std::string on = {};
 };
 Measured read_measured(const Values& values);
 

@@ -47,15 +47,39 @@ void inline_mix(Node& document, const fs::path& scene_folder) {
   *mix = *table;
 }
 
-void apply_overrides(Node& document, const Request& request) {
+/// A key of the concrete itself, not of its name or of what was measured on it.
+bool is_of_the_concrete(const Override& o) {
+  if (o.path.size() < 2 || o.path.front() != "mix") return false;
+  const std::string& key = o.path[1];
+  return key != "name" && key != "source" && key != "measured_on" && !key.starts_with("slump_flow");
+}
+
+/// Lays the command line's values over the scene's. Returns the keys of the concrete among them, "yield_stress,
+/// density".
+std::string apply_overrides(Node& document, const Request& request) {
   std::vector<Override> overrides;
+  std::string of_the_concrete;
   for (const auto& argument : request.overrides) overrides.push_back(parse_override(argument));
   const auto names_the_mix = [](const Override& o) { return o.path.size() == 1 && o.path.front() == "mix"; };
   for (const auto& change : overrides)
     if (names_the_mix(change)) put(document, change.path, change.value);
   inline_mix(document, request.path.parent_path());
-  for (const auto& change : overrides)
-    if (!names_the_mix(change)) put(document, change.path, change.value);
+  for (const auto& change : overrides) {
+    if (names_the_mix(change)) continue;
+    put(document, change.path, change.value);
+    if (is_of_the_concrete(change))
+      of_the_concrete += (of_the_concrete.empty() ? "" : ", ") + change.path.back();
+  }
+  return of_the_concrete;
+}
+
+/// A mix whose values the command line changed is no longer the one that bears the name and was measured.
+void rename_changed_mix(Values& values, const std::string& changed) {
+  const auto name = values.entries.find("mix.name");
+  if (changed.empty() || name == values.entries.end() || values.layer("mix.name") == Layer::command_line)
+    return;
+  auto [measured_on, first] = values.entries.try_emplace("mix.measured_on", name->second);
+  name->second.words = {measured_on->second.words.front() + " with changed " + (first ? changed : "values")};
 }
 
 const ApparatusKeys& apparatus_of(const Node& document, const std::string& file,
@@ -177,7 +201,7 @@ std::vector<std::string> mix_names() {
 Loaded load(const Request& request, std::span<const ApparatusKeys> known, const std::string& command) {
   Node document = request.text ? parse_text(*request.text, request.path.string(), Layer::scene)
                                : parse_file(request.path);
-  apply_overrides(document, request);
+  const std::string changed = apply_overrides(document, request);
   const ApparatusKeys& apparatus = apparatus_of(document, request.path.string(), known, command);
   if (!find(document, "mix")) {
     throw InputError(fmt::format("{}: mix: missing key; allowed: a table [mix] or one of {}",
@@ -187,6 +211,7 @@ Loaded load(const Request& request, std::span<const ApparatusKeys> known, const 
   Loaded loaded{
       request.path.stem().string(), request.path.string(), apparatus.name, whole_schema(apparatus), {}};
   loaded.values = check(document, loaded.schema);
+  rename_changed_mix(loaded.values, changed);
   loaded.values.drop("preset");  // its values stand in the resolved scene by themselves
   if (apparatus.settle) apparatus.settle(loaded.values);
   return loaded;

@@ -71,12 +71,19 @@ std::optional<Measurement> measurement_for(double rest, const Measured& measured
     tolerance = measured.tolerance;
   }
   if (!value) return std::nullopt;
-  return Measurement{"spread_mm", "spread", "mm", *value * mm, tolerance * mm, (spread - *value) * mm};
+  return Measurement{"spread_mm",
+                     "spread",
+                     "mm",
+                     *value * mm,
+                     tolerance * mm,
+                     (spread - *value) * mm,
+                     measured.spread ? std::string{} : measured.on};
 }
 
 std::vector<Reference> references_for(const std::optional<Measurement>& measured) {
   if (!measured) return {};
-  return {{"measured", measured->value, measured->tolerance}};
+  const std::string label = measured->on.empty() ? "measured" : "measured on " + measured->on;
+  return {{label, measured->value, measured->tolerance}};
 }
 
 /// results.measured; null without a measurement.
@@ -94,9 +101,16 @@ ResultValue measured_result(const std::optional<Measurement>& m, const Measured&
   return results;
 }
 
+/// Concrete that hardly left the cone's own foot and height.
+bool kept_its_shape(const slump_flow::Results& r, const slump_flow::Cone& cone) {
+  return r.spread < 2.1 * cone.bottom_radius && r.height > 0.9 * cone.height;
+}
+
 /// Class and accepted range; only of concrete at rest.
-std::string judged(const slump_flow::Results& r) {
+std::string judged(const slump_flow::Results& r, const slump_flow::Cone& cone) {
   if (!stopped(r)) return {};
+  if (kept_its_shape(r, cone))
+    return "It kept the cone's shape: too stiff for a slump flow, which has nothing to read from it.";
   const std::string cls = class_of(r);
   std::string text = !cls.empty() ? fmt::format("Class {} of EN 206", cls)
                      : r.spread < 0.545
@@ -205,8 +219,8 @@ Outcome run_slump_flow(const slump_flow::Scene& scene, const Measured& measured,
   outcome.asked = asked_text(measured.name, "slump flow", scene.rest);
   outcome.answers = {{"spread_mm", "", "mm", 0}};
   outcome.moving_at_end = !raw.results.stopped_at;
-  outcome.judged = judged(raw.results);
-  if (outcome.measured) outcome.remarks.push_back(why_it_may_differ);
+  outcome.judged = judged(raw.results, scene.cone);
+  if (outcome.measured && outcome.measured->on.empty()) outcome.remarks.push_back(why_it_may_differ);
   outcome.stage = stage_of(scene);
   outcome.checks = std::move(raw.checks);
   outcome.cost = raw.cost;

@@ -251,6 +251,9 @@ TEST(Measured, ADifferenceBeyondTheToleranceIsSaid) {
   outcome.moving_at_end = true;  // it may still reach it
   EXPECT_EQ(measured_line(outcome),
             "Still moving at the end, so no verdict; so far 20 mm below the measured 590 ± 30 mm.");
+  outcome.measured->on = "Mix A";
+  EXPECT_EQ(measured_line(outcome),
+            "Not measured on this concrete; 20 mm below the measured 590 ± 30 mm of Mix A.");
 }
 
 TEST(ResultFiles, WritesTables) {

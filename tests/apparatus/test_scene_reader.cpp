@@ -228,6 +228,29 @@ TEST(SceneReader, EngineLimitsAreInputErrors) {
   }
 }
 
+/// What was measured on a mix is not held against another one that bears its name.
+TEST(SceneReader, AChangedMixSaysSo) {
+  const std::string text = "apparatus = \"slump_flow\"\nmix = \"mix_a\"\n";
+  const auto of = [&](const std::vector<std::string>& overrides) {
+    return read_text(text, "a.toml", overrides);
+  };
+  const Scene changed = of({"mix.yield_stress=61 Pa", "mix.density=2300 kg/m3"});
+  EXPECT_EQ(changed.measured.name, "Mix A with changed yield_stress, density");
+  EXPECT_EQ(changed.measured.on, "Mix A");
+  const Scene again = read_text(changed.resolved, "a.toml");
+  EXPECT_EQ(again.measured.name, changed.measured.name);
+  EXPECT_EQ(again.measured.on, "Mix A");
+  const Scene twice = read_text(changed.resolved, "a.toml", {"mix.yield_stress=54 Pa"});
+  EXPECT_EQ(twice.measured.name, "Mix A with changed values");
+  EXPECT_EQ(of({"mix.thixotropy=false"}).measured.on, "Mix A");
+  for (const char* not_of_the_concrete : {"mix.slump_flow_0=580 mm", "mix.source=ours", "test.rest=240 s"}) {
+    EXPECT_EQ(of({not_of_the_concrete}).measured.name, "Mix A");
+    EXPECT_EQ(of({not_of_the_concrete}).measured.on, "");
+  }
+  const Scene own = of({"mix.yield_stress=61 Pa", "mix.name=ours"});
+  EXPECT_EQ(own.measured.name, "ours");
+}
+
 /// The resolved text of a resolved scene is the same but for its comments, and so are all values.
 void expect_round_trip(const std::string& text, const std::vector<std::string>& overrides) {
   const Scene first = read_text(text, "a.toml", overrides);

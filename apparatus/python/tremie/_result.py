@@ -76,12 +76,17 @@ class Result:
 
 
 def _told(results: dict[str, Any]) -> list[str]:
-    """The values of a fit or an estimate, a line each, with their 95 % intervals."""
+    """The values of a fit, an estimate or a calibration, a line each, with their 95 % intervals."""
     lines = []
     for name, told in results.items():
-        if isinstance(told, dict) and isinstance(told.get("value"), (int, float)):
+        if not isinstance(told, dict):
+            continue
+        if isinstance(told.get("value"), (int, float)):
             interval = told.get("ci95")
-            lines.append(f"{name} {told['value']:.4g}" + (f" [{interval[0]:.4g}, {interval[1]:.4g}]" if interval else ""))
+            line = f"{name} {told['value']:.4g}" + (f" [{interval[0]:.4g}, {interval[1]:.4g}]" if interval else "")
+            lines.append(f"{line} {told['unit']}" if told.get("unit") else line)
+        else:
+            lines += _told(told)
     return lines
 
 

@@ -47,7 +47,7 @@ Verdict verdict_of(const scene::Outcome& o) {
   const bool beyond = std::abs(m.difference) > m.tolerance;
   // What still spreads can only grow: beyond the measured value it differs already.
   const bool final = !o.moving_at_end || m.difference > m.tolerance;
-  if (final) verdict.kind = beyond ? VerdictKind::differs : VerdictKind::agrees;
+  if (final && m.on.empty()) verdict.kind = beyond ? VerdictKind::differs : VerdictKind::agrees;
   verdict.text = line + (o.judged.empty() ? "" : " " + o.judged);
   return verdict;
 }
@@ -175,6 +175,7 @@ std::string measured_line(const scene::Outcome& o) {
   const std::string measured = fmt::format("the measured {:.4g} ± {:.3g} {}", m.value, m.tolerance, m.unit);
   const std::string off =
       fmt::format("{:.3g} {} {}", std::abs(m.difference), m.unit, m.difference < 0.0 ? "below" : "above");
+  if (!m.on.empty()) return fmt::format("Not measured on this concrete; {} {} of {}.", off, measured, m.on);
   if (o.moving_at_end && m.difference <= m.tolerance)
     return fmt::format("Still moving at the end, so no verdict; so far {} {}.", off, measured);
   if (std::abs(m.difference) <= m.tolerance) return fmt::format("Agrees with {}: {}.", measured, off);

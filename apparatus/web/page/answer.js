@@ -66,6 +66,9 @@ function classText({class_en12350_8: name, spread_mm: spread}) {
   return spread < 600 ? "Below class SF1 of EN 206 (550 to 650 mm)" : "Above class SF3 of EN 206 (760 to 850 mm)";
 }
 
+/// Concrete that hardly went beyond the cone's own foot: 200 mm wide, 300 mm high.
+const keptItsShape = ({spread_mm: spread, height_mm: height}) => spread < 210 && height > 270;
+
 function measuredText(spread, {value, tolerance}) {
   const by = spread - value, sign = by < 0 ? "less" : "more";
   const stands = `Measured on this mix: ${value} ± ${tolerance} mm`;
@@ -92,8 +95,9 @@ function verdicts(run) {
     lines.push([classText(results), ""]);
   }
   lines.push([t500 == null ? "t500: never reached" : `t500 ${seconds(t500)}, from the start of the lift`, ""]);
+  const height = `${millimetres(results.height_mm)} high in the middle`;
   if (stopped != null)
-    lines.push([`At rest after ${seconds(stopped)}; ${millimetres(results.height_mm)} high in the middle`, ""]);
+    lines.push([keptItsShape(results) ? `It kept the cone's shape: ${height}` : `At rest after ${seconds(stopped)}; ${height}`, ""]);
   const measured = measuredOn(run.concrete);
   if (measured) lines.push(measuredText(spread, measured));
   if (!checks.reasons.length) lines.push([trustText(run.summary), "note"]);

@@ -4,7 +4,8 @@ const tremieRange = [450, 650];
 
 function drawChart(canvas, runs, time, measured) {
   const {context, width, height} = prepare(canvas, canvas.clientWidth < 500 ? 0.75 : 0.5);
-  const box = {left: 46, right: width - 12, top: 12, bottom: height - 40};
+  const legendHeight = runs.length === 2 ? 36 : 0;  // above the curves, so that it never covers one
+  const box = {left: 46, right: width - 12, top: 12 + legendHeight, bottom: height - 40};
   const last = Math.max(1, ...runs.map((run) => run.time.at(-1) ?? 0));
   const most = 100 * Math.ceil((Math.max(680, ...runs.map((run) => run.spread.at(-1) ?? 0)) + 20) / 100);
   const x = (t) => box.left + ((box.right - box.left) * t) / last;
@@ -20,7 +21,7 @@ function drawChart(canvas, runs, time, measured) {
     if (run.time.length && time <= last)
       dot(context, x(Math.min(time, run.time.at(-1))), y(spreadAt(run, time)), run.colour, true);
   }
-  if (runs.length === 2) legend(context, runs, box);
+  if (legendHeight) legend(context, runs, box.left);
 }
 
 function band(context, box, low, high, colour, text) {
@@ -81,10 +82,10 @@ function drawMeasured(context, box, y, {value, tolerance}) {
   context.fillText("measured", x - 10, y(value) + 4);
 }
 
-function legend(context, runs, box) {
+function legend(context, runs, x) {
   context.textAlign = "left";
   runs.forEach((run, i) => {
-    const y = box.bottom - 28 + 16 * i, x = box.right - 190;
+    const y = 16 + 16 * i;
     line(context, [[x, y - 4], [x + 26, y - 4]], run.colour, 2.5, run.dash);
     context.fillStyle = theme("--text");
     context.fillText(run.label, x + 32, y);
