@@ -141,6 +141,9 @@ std::string write_template(const ApparatusKeys& apparatus) {
       "file).\n\n",
       apparatus.help, apparatus.name == "cell" ? "cell" : "run");
   text += fmt::format("apparatus = \"{}\"\n", apparatus.name);
+  for (const Preset& preset : apparatus.presets)
+    text +=
+        with_comment(fmt::format("# preset = \"{}\"", preset.name), "values in place of the defaults below");
   for (const Section& section : apparatus.schema) {
     if (!section.name.empty())
       text += fmt::format("\n# {}\n{}{}{}\n", section.help, section.repeated ? "[[" : "[", section.name,

@@ -58,6 +58,7 @@ Outcome run_implicit_in(const Scene& scene, const Observer& observer) {
       .frame = [&] { return test_run::frame_of(body); },
       .speed = [](const StepReport& step) { return step.max_speed; },
       .free_to_flow = [&] { return clear_of_the_cone(scene, outcome.series.back()); },
+      .stands_since = [&] { return stands_since(scene, outcome.series); },
       .gains_energy =
           [&] {
             // What is elastic in it a body may turn into motion later: it counts for what it may have, not

@@ -3,6 +3,7 @@
 // What is read off the slump flow after every step and at its end.
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "apparatus/run/body_readings.hpp"
@@ -77,6 +78,22 @@ void record(const Scene& scene, const Body<Geometry>& body, const StepReport& st
 /// Whether the rim has risen clear of the concrete, so that the cone no longer holds it.
 inline bool clear_of_the_cone(const Scene& scene, const Sample& now) {
   return !scene.lift_speed || rim_height(scene, now.time) > now.height + scene.model.cell[1];
+}
+
+/// Concrete stands where spread and height have kept within this for so long. Beside a yield stress of some kPa a step's
+/// solution leaves 0.1 mm/s here and there, so that the speed alone would never be that of rest.
+inline constexpr double standing_within = 1e-4, standing_lasts = 10.0;  // [m], [s]
+
+/// Since when the concrete, free of the cone, stands [s]; empty while it does not.
+inline std::optional<double> stands_since(const Scene& scene, const std::vector<Sample>& series) {
+  const Sample& now = series.back();
+  for (auto s = series.rbegin(); s != series.rend(); ++s) {
+    if (std::abs(s->spread - now.spread) > standing_within ||
+        std::abs(s->height - now.height) > standing_within || !clear_of_the_cone(scene, *s))
+      return std::nullopt;
+    if (s->time <= now.time - standing_lasts) return s->time;
+  }
+  return std::nullopt;
 }
 
 /// Whether the cone is so far above the concrete that its wall need not be computed.

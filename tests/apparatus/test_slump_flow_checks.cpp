@@ -154,6 +154,17 @@ TEST(SlumpFlowChecks, TwiceTheEnergyRanAway) {
   EXPECT_TRUE(watch.ran_away());
 }
 
+// A cone of 300 mm bears its own weight where the yield stress is above rho g H / sqrt(3) = 4.1 kPa. It comes to rest,
+// although what a step leaves there quivers by 0.1 mm/s, and has no class.
+TEST(SlumpFlowChecks, AConeThatBearsItselfStands) {
+  const auto outcome = scene::run(scene::read_text(thin, "stiff.toml",
+                                                   {"mix.yield_stress=5000 Pa", "test.duration=30 s",
+                                                    "test.lift_speed=15 cm/s", "model.cell=[20 mm, 10 mm]"}));
+  EXPECT_TRUE(outcome.checks.reasons.empty());
+  EXPECT_FALSE(outcome.moving_at_end);
+  EXPECT_NE(outcome.judged.find("kept the cone's shape"), std::string::npos) << outcome.judged;
+}
+
 // Explicit steps at 2 GPa run away on the paper's cells: single precision survives until 0.06 s, with a body
 // that has risen above the cone. It must not pass as a result.
 TEST(SlumpFlowChecks, StiffExplicitStepsThatMakeEnergyAreMarked) {

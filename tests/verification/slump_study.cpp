@@ -126,10 +126,22 @@ void mixes_over_grids(std::ofstream& md, std::ofstream& csv) {
 
 }  // namespace
 
+constexpr const char* question_and_answer =
+    R"(**Question.** How far is a section from finite elements, and do cells, points or the solver matter?
+
+**Answer.** The default, 10×5 mm with 4×4 points a cell that are evened out, stays within 1 % of the finite elements from 1 s on. Cells from 10×10 to 5×2.5 mm,
+other points, and Newton's method in place of ADMM move the spreads of Mixes A to C by at most 1.5 %.
+
+**Limits.** Exact Bingham, no slip, no thixotropy. Where "moving" stands, the concrete had not stopped after 20 s.
+
+)";
+
 int main(int argc, char** argv) {
   const std::string folder = argc > 1 ? argv[1] : ".";
   std::ofstream md(folder + "/slump_study.md"), csv(folder + "/slump_study.csv");
-  md << "# The slump flow: error against run time\n\n" << study::made_by("study_slump") << "\n\n";
+  md << "# The slump flow: error against run time\n\n"
+     << study::made_by("study_slump") << "\n\n"
+     << question_and_answer;
   csv << "case,grid,points,method,cpu_s,worst_error_or_spread_mm,steps\n";
   against_finite_elements(md, csv);
   mixes_over_grids(md, csv);

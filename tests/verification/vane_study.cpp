@@ -273,12 +273,23 @@ void write_chart(const std::string& folder) {
 
 }  // namespace
 
+constexpr const char* question_and_answer =
+    R"(**Question.** Is the torque of the vane's plane section right, and do cells, the blades' place on them, or the shaft matter?
+
+**Answer.** It is within 0.4 % of finite elements, which share nothing with the points. Turning the blades against the points or another shaft moves it by 0.003 %; the
+decay on 5 mm cells is within 1.3 % of that on 2.5 mm.
+
+**Limits.** No ends ([vane_ends.md](vane_ends.md)); blades are at least one cell thick.
+
+)";
+
 int main(int argc, char** argv) {
   const std::string folder = argc > 1 ? argv[1] : ".";
   std::ofstream md(folder + "/vane_study.md"), csv(folder + "/vane_study.csv"),
       curves(folder + "/vane_decay.csv");
   md << "# The vane's plane section: error against run time\n\n"
-     << study::made_by("study_vane") << "\nThe decays are drawn in vane_study.svg.\n\n";
+     << study::made_by("study_vane") << "\nThe decays are drawn in vane_study.svg.\n\n"
+     << question_and_answer;
   csv << "case,cell_mm,torque_N_m,error,cpu_s\n";
   newtonian_blades(md, csv);
   steady(md, csv);
