@@ -353,7 +353,10 @@ FitResult fit_flow_curve(const TorqueRecord& record, const FitInput& input) {
         "the torque falls as the speed rises, which neither a Bingham nor a Herschel-Bulkley "
         "material does: structure still broke down, or a layer slips at the vane");
   if (const std::string why = misfit(r, f.fit); !why.empty()) result.reasons.push_back(why);
-  if (const std::string better = better_law(r, input, f); !better.empty()) result.notes.push_back(better);
+  if (const std::string better = better_law(r, input, f); !better.empty()) {
+    result.law_in_doubt = true;
+    result.notes.push_back(better);
+  }
   if (!result.reasons.empty()) forget(input, result);
   if (slip > 0.0)
     result.reasons.push_back("wall slip is likely: the slowest third of the readings lies " +

@@ -139,9 +139,11 @@ TEST(FitFlowCurve, ABinghamYieldStressThatHangsOnTheLawIsTold) {
   record.line.clear();
   finish(record, 0.004, 4);
   const auto hangs_on_law = [](const FitResult& f) {
-    return std::any_of(f.notes.begin(), f.notes.end(), [](const std::string& note) {
+    const bool told = std::any_of(f.notes.begin(), f.notes.end(), [](const std::string& note) {
       return note.find("--law herschel_bulkley") != std::string::npos;
     });
+    EXPECT_EQ(f.law_in_doubt, told);
+    return told;
   };
   EXPECT_TRUE(hangs_on_law(fit(record, {})));
   EXPECT_FALSE(hangs_on_law(fit(flow_curve(12, 0.004, 4), {})));

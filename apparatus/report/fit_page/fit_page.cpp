@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
 
 #include "apparatus/report/page/charts.hpp"
 #include "apparatus/report/page/page.hpp"
@@ -96,8 +97,18 @@ std::string headline(const FitReport& fit) {
     text += fmt::format("{}{} {:.3g}{}{}", text.empty() ? "" : ", ", p.words, *p.value,
                         p.unit.empty() ? "" : " ", p.unit);
   }
-  return fmt::format("{}, {}: {}", fit.record, fit.decay ? "a torque decay" : "a flow curve",
+  const std::string file = std::filesystem::path(fit.record).filename().string();
+  return fmt::format("{}, {}: {}", file, fit.decay ? "a torque decay" : "a flow curve",
                      text.empty() ? "tells no parameter" : text);
+}
+
+Verdict verdict_of(const FitReport& fit) {
+  if (!fit.reasons.empty())
+    return {VerdictKind::differs, "The model does not fit the record, or its parameters cannot be trusted."};
+  if (fit.law_in_doubt)
+    return {VerdictKind::none,
+            "Another law describes the record far better and has another yield stress: see the note below."};
+  return {VerdictKind::agrees, "The model fits the record."};
 }
 
 }  // namespace
@@ -106,10 +117,7 @@ std::string fit_html(const FitReport& fit) {
   Page page;
   page.headline = headline(fit);
   page.title = "Tremie: " + page.headline;
-  page.verdict = {fit.reasons.empty() ? VerdictKind::agrees : VerdictKind::differs,
-                  fit.reasons.empty()
-                      ? "The model fits the record."
-                      : "The model does not fit the record, or its parameters cannot be trusted."};
+  page.verdict = verdict_of(fit);
   page.trust = {fit.reasons.empty(), trust_text(fit), fit.reasons};
   add_torque(fit, page);
   add_flow_curve(fit, page);

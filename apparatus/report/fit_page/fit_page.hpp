@@ -28,6 +28,7 @@ struct FitReport {
   double scatter = 0.0;                                      ///< relative standard deviation about the fit
   double correlation = 0.0;                                  ///< of successive residuals
   long readings = 0, dropped = 0;
+  bool law_in_doubt = false;  ///< another law describes the readings far better; a note tells which
   std::vector<std::string> notes, reasons;
   std::string command;  ///< repeats the fit
 };

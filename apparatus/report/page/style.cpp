@@ -48,7 +48,7 @@ canvas{background:var(--panel);border-radius:.3rem}
 @page{size:A4;margin:13mm 14mm}
 @media print{:root{color-scheme:light;--ink:#000;--soft:#444;--line:#bbb;--paper:#fff;--panel:#f4f6f7;--c0:#0067a5;--c1:#c25400;
 --c2:#00785a;--c3:#9a4f8a;--band:#e6e9ec}
-body{font-size:8.6pt;line-height:1.35;padding:0;max-width:none}h1{font-size:14pt}h2{font-size:10pt;margin:.5rem 0 .15rem}
+body{font-size:8.6pt;line-height:1.35;padding:0;max-width:none}figcaption{font-size:7.5pt}.verdict{font-size:10.5pt}h1{font-size:14pt}h2{font-size:10pt;margin:.5rem 0 .15rem}
 .controls,.screen{display:none}.figures{grid-template-columns:1fr 1fr;gap:0 6mm}figure{margin:.2rem 0}figure svg{max-height:52mm}
 canvas{max-height:48mm;width:auto;max-width:100%}
 .tables{columns:2;column-gap:8mm}td,th{padding:.06rem .4rem .06rem 0}.key{display:inline;font-size:.85em;margin-left:.5em}

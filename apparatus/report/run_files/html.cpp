@@ -70,9 +70,12 @@ Trust trust_of(const scene::Outcome& o) {
   else if (has_cells)
     trust.text = "The error of cells and steps was not estimated; --with-error does. ";
   if (has_cells)
-    trust.text += fmt::format(
-        "The concrete's volume changed by {:+.2g} %, {} of {} steps did not converge, {} points were lost.",
-        100.0 * c.volume_change, c.unconverged_steps, o.cost.steps, c.points_lost);
+    trust.text += fmt::format("The concrete's volume changed by {:+.2g} %; {}; {}.", 100.0 * c.volume_change,
+                              c.unconverged_steps == 0 ? fmt::format("all {} steps converged", o.cost.steps)
+                                                       : fmt::format("{} of {} steps did not converge",
+                                                                     c.unconverged_steps, o.cost.steps),
+                              c.points_lost == 0 ? std::string("no point was lost")
+                                                 : fmt::format("{} points were lost", c.points_lost));
   if (o.moving_at_end)
     trust.text += " The concrete still moved when the time of the test was over (test.duration).";
   return trust;
