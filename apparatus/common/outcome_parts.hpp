@@ -35,6 +35,12 @@ void add_flocculation_line(std::optional<double> start, std::optional<double> en
 std::string flocculation_use(const Mix& mix);
 void add_model_uses(const Model& model, std::vector<std::string>& lines);
 
+/// The rest before a test that there is a word to say of [s]: without thixotropy none changes anything.
+template <class Scene>
+double rest_told(const Scene& scene) {
+  return scene.mix.thixotropy ? scene.rest : 0.0;
+}
+
 /// "slump flow at once", "… after 240 s of rest": what was asked of which mix.
 std::string asked_text(const std::string& mix_name, const std::string& test, double rest);
 

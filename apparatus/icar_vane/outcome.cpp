@@ -286,7 +286,7 @@ Outcome run_icar_vane(const icar_vane::Scene& scene, const Measured& measured, b
   outcome.checks = std::move(raw.checks);
   outcome.cost = raw.cost;
   outcome.series = series_of(raw.series, scene.mix.thixotropy.has_value());
-  outcome.asked = asked_text(measured.name, test_text(scene), scene.rest);
+  outcome.asked = asked_text(measured.name, test_text(scene), rest_told(scene));
   outcome.answers = answers_of(raw.results);
   outcome.remarks = remarks_on(scene, raw.results);
   outcome.stage = stage_of(scene, raw.series);

@@ -53,7 +53,8 @@ std::string head(const std::vector<Section>& sections, double wall_seconds) {
       "this page "
       "({:.0f} s here), `validation.csv` and the input of its calibrations.\n\n**{} of {} met, {} missed, {} "
       "without a "
-      "verdict.** ± is half of a 95 % interval; met: the difference is within both (root of the sum of "
+      "verdict.** ± is half of a 95 % interval; met: the unrounded difference is within both (root of the "
+      "sum of "
       "squares). A wide interval is met easily, and shows no more than that.\n\n",
       wall_seconds, met, met + missed + open, missed, open);
 }

@@ -110,6 +110,11 @@ struct FitResult {
   std::vector<double> lambda_apparent;  ///< of curve.observed, torque decay alone
 };
 
+/// The note of a fit without corrections for the vane's ends and blades.
+inline constexpr const char* taken_for_a_cylinder =
+    "the vane is taken for a cylinder without ends: a real one reads some 17 % too much yield stress so; "
+    "tremie fit --ends computed --blades computed corrects both";
+
 /// Fits the record by its kind. Throws std::invalid_argument, with what is needed, for a record or an input
 /// that cannot be fitted: too few rows, one speed only, a decay without a speed.
 FitResult fit(const TorqueRecord& record, const FitInput& input);

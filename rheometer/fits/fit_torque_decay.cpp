@@ -267,6 +267,12 @@ std::size_t choose(const Readings& r, const std::vector<DecayFit>& fits, FitResu
                   std::to_string(fits.size()) + " kinetics, on " + std::to_string(std::lround(independent)) +
                   " independent readings of " + std::to_string(std::lround(n)) +
                   " (the correlation of the noise taken off)";
+  if (!std::isfinite(aicc[best])) {
+    result.choice = std::string("kinetics ") + name_of(fits[best].kinetics) + ": the simplest; " +
+                    std::to_string(std::lround(independent)) + " independent readings of " +
+                    std::to_string(std::lround(n)) + " are too few to choose by AICc";
+    return best;
+  }
   double second = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < fits.size(); ++i)
     if (i != best) second = std::min(second, aicc[i] - aicc[best]);

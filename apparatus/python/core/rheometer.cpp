@@ -89,6 +89,7 @@ TorqueRecord record_of(bool is_decay, const Numbers& x, const Numbers& torque) {
 py::dict fit_record(const TorqueRecord& record, FitInput input) {
   if (!input.omega && record.speed > 0.0) input.omega = record.speed;
   FitResult result = unlocked([&] { return fit(record, input); });
+  result.notes.push_back(taken_for_a_cylinder);
   result.notes.insert(result.notes.begin(), record.understood.begin(), record.understood.end());
   py::dict curve, d;
   const bool decay = result.kind == RecordKind::torque_decay;

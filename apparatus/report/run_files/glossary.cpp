@@ -100,7 +100,7 @@ const std::map<std::string, std::string>& glossary() {
       {"input.destructuration", "α that went in"},
       {"alpha_window_s", "time over which α is read"},
       {"shear_rate_nominal_per_s", "nominal shear rate 2Ω/(1 − r²/R²), by which α is read"},
-      {"bars", "bars behind the gate"},
+      {"bars", "bars in front of the gate"},
       {"end_factor", "torque over that of the plane section"},
       {"time_step_s", "time step"},
       {"iterations", "iterations of the yield method in the step"},

@@ -186,7 +186,7 @@ std::vector<std::string> ResultFiles::finish(const scene::Outcome& outcome) {
   std::vector<std::string> notes;
   if (stride_ > 1)
     notes.push_back(
-        fmt::format("the frames have every {}th point; all of them: output.frame_interval", stride_));
+        fmt::format("the frames have one point of {}; all of them: output.frame_interval", stride_));
   if (last_) write_frame(*last_);
   write_results_h5(outcome);
   io::write_text(folder_ / "timeseries.csv", columns_csv(outcome.series));

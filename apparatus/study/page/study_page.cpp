@@ -128,12 +128,23 @@ report::GridTable range_table(const Definition& study, const Design& design, con
 
 std::string rows_sentence(const Design& design, const Collected& collected) {
   std::size_t good = 0, doubtful = 0;
-  for (const Row& row : collected.rows) good += row.exit_code == 0, doubtful += row.exit_code == 3;
+  std::size_t moving = 0;
+  for (const Row& row : collected.rows)
+    good += row.exit_code == 0, doubtful += row.exit_code == 3, moving += row.moving;
+  const std::string unfinished =
+      moving == 0 ? ""
+                  : fmt::format(
+                        " In {} runs the concrete still moved when the time of the test was over "
+                        "(test.duration): their results are of that moment, not of rest.",
+                        moving);
   return fmt::format(
-      "{} of {} runs can be trusted; {} are not to be trusted, {} failed, {} are missing (study.csv names "
-      "them and "
-      "says why). The error of cells and steps of a run is in none of the numbers.",
-      good, design.size(), doubtful, collected.rows.size() - good - doubtful, collected.missing.size());
+             "{} of {} runs can be trusted; {} are not to be trusted, {} failed, {} are missing (study.csv "
+             "names "
+             "them and "
+             "says why). The error of cells and steps of a run is in none of the numbers.",
+             good, design.size(), doubtful, collected.rows.size() - good - doubtful,
+             collected.missing.size()) +
+         unfinished;
 }
 
 }  // namespace

@@ -43,6 +43,7 @@ void fill_from(const scene::Outcome& outcome, const std::vector<std::string>& re
   row.reasons = outcome.checks.reasons;
   row.exit_code = row.reasons.empty() && outcome.status == Status::completed ? 0 : 3;
   row.cpu = outcome.cost.cpu;
+  row.moving = outcome.moving_at_end;
   for (std::size_t i = 0; i < results.size(); ++i) {
     const auto reading = reading_of(outcome, results[i]);
     if (!reading) {
@@ -56,14 +57,14 @@ void fill_from(const scene::Outcome& outcome, const std::vector<std::string>& re
 }
 
 Row empty_row(std::size_t results, std::size_t row) {
-  return {row, std::vector<Reading>(results), "failed", 1, {}, 0.0};
+  return {row, std::vector<Reading>(results), "failed", 1, {}};
 }
 
 }  // namespace
 
 bool same_result(const Row& a, const Row& b) {
   return a.row == b.row && a.readings == b.readings && a.status == b.status && a.exit_code == b.exit_code &&
-         a.reasons == b.reasons;
+         a.reasons == b.reasons && a.moving == b.moving;
 }
 
 std::optional<Reading> reading_of(const scene::Outcome& outcome, const std::string& name) {
@@ -133,6 +134,7 @@ std::string row_json(const Row& row) {
   json["exit_code"] = row.exit_code;
   json["reasons"] = row.reasons;
   json["cpu_s"] = row.cpu;
+  if (row.moving) json["moving_at_end"] = true;
   return json.dump() + "\n";
 }
 
@@ -148,6 +150,7 @@ std::optional<Row> row_from_json(const std::string& text, std::size_t results) {
     row.exit_code = json.at("exit_code");
     row.reasons = json.at("reasons").get<std::vector<std::string>>();
     row.cpu = json.at("cpu_s");
+    row.moving = json.value("moving_at_end", false);
     if (row.readings.size() != results) return std::nullopt;
     return row;
   } catch (const nlohmann::json::exception&) {

@@ -23,7 +23,8 @@ struct Row {
   std::string status;             ///< "completed", "interrupted" or "failed"
   int exit_code = 0;              ///< as `tremie run` would end: 0, 1, 2 or 3
   std::vector<std::string> reasons;
-  double cpu = 0.0;  ///< of the run [s]
+  double cpu = 0.0;     ///< of the run [s]
+  bool moving = false;  ///< its concrete still moved when its time was over: the results are of then
 };
 
 /// The same in all but the time that it took.
