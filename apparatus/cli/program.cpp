@@ -97,11 +97,12 @@ void check_options(const CLI::App& app) {
   }
   for (const std::string& word : app.remaining(true))
     if (!word.starts_with('-') && at.get_name() != "tremie")
-      throw scene::InputError(
-          fmt::format("{}: \"{}\" is one argument too many; for several scenes call it for each and set the "
-                      "results side by "
-                      "side by tremie compare, or have tremie study run one scene over ranges",
-                      command, word));
+      throw scene::InputError(fmt::format(
+          "{}: \"{}\" is one argument too many; {}", command, word,
+          word.find('=') != std::string::npos
+              ? "each value has its own --set: --set KEY=VALUE --set KEY=VALUE"
+              : "for several scenes call it for each and set the results side by side by tremie compare, or "
+                "have tremie study run one scene over ranges"));
 }
 
 /// What was printed has arrived.

@@ -29,7 +29,7 @@ const std::map<std::string, std::string>& glossary() {
   static const std::map<std::string, std::string> words{
       {"time_s", "time since the start of the test"},
       {"spread_mm", "slump flow, mean diameter"},
-      {"spread_max_point_mm", "twice the outermost point's radius"},
+      {"spread_max_point_mm", "twice the radius of the outermost point's centre"},
       {"height_mm", "height at the centre"},
       {"t500_s", "t500, time to a diameter of 500 mm"},
       {"stopped_at_s", "came to rest at"},

@@ -95,6 +95,7 @@ void add_rows(const scene::Outcome& o, const std::vector<scene::Result>& results
       add_rows(o, *below, prefix + name + ".", table);
       continue;
     }
+    if (name == "measured" && std::holds_alternative<std::monostate>(value)) continue;  // nothing was
     std::string text = value_text(value, name);
     if (const auto error = error_of(o, name); error && prefix.empty())
       text += fmt::format(" ± {:.2g}", *error);
