@@ -47,12 +47,16 @@ void print_interval(const char* name, const std::optional<estimate::Interval>& i
     fmt::print("{:<24} {}\n", name, none);
 }
 
-void print_text(const Options& o, const estimate::Estimate& e) {
+void print_text(const Options& o, const estimate::Measured& m, const estimate::Estimate& e) {
   print_interval("yield stress", e.tau_0, "Pa", "not in the table");
   print_interval("plastic viscosity", e.mu, "Pa.s", o.t500.empty() ? "takes --t500" : "not in the table");
   fmt::print("{:<24} {:.3g} Pa (thin layer at rest, Roussel and Coussot)\n", "by the closed forms",
              e.tau_0_thin_layer);
   fmt::print("{:<24} {:.3g} Pa (with the plug's normal stress)\n", "", e.tau_0_plug);
+  fmt::print(
+      "{:<24} 95 %; {:.0f} kg/m3, spread read to {:.3g} mm{} (one standard error), a floor that holds\n",
+      "intervals", m.density, 1e3 * m.spread_error,
+      m.t500 ? fmt::format(" and t500 to {:.3g} s", m.t500_error) : "");
 }
 
 /// The published mixes of reference_data that have a yield stress and a viscosity.
@@ -104,7 +108,7 @@ int run(const Options& options) {
   const auto measured = measured_of(options);
   const auto result = estimate::estimate(table, measured);
   if (!options.chart.empty()) draw_chart(options, estimate::at_density(table, measured.density), result);
-  options.json ? fmt::print("{}\n", estimate::estimate_json(result)) : print_text(options, result);
+  options.json ? fmt::print("{}\n", estimate::estimate_json(result)) : print_text(options, measured, result);
   for (const auto& reason : result.reasons) fmt::print(stderr, "not to be trusted: {}\n", reason);
   return result.reasons.empty() ? done : not_to_be_trusted;
 }
