@@ -132,7 +132,7 @@ constexpr const char* why_it_may_differ =
     "(floor.contact). tremie calibrate looks for the values that meet the measurements.";
 
 /// Whether t500, or that there is none, hangs on the last millimetres: below 514 mm estimates from a t500 end too.
-bool near_500(const slump_flow::Results& r) { return std::abs(r.spread - 0.5) < 0.014; }
+bool near_500(const slump_flow::Results& r) { return stopped(r) && std::abs(r.spread - 0.5) < 0.014; }
 
 /// What a reader must know who has no measurement to compare with, or a spread that is hard to read.
 std::vector<std::string> remarks_on(const slump_flow::Scene& scene,

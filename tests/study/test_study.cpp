@@ -108,6 +108,14 @@ TEST(Pool, AProcessThatDiesIsNamed) {
   EXPECT_NE(came[2].find("signal 11"), std::string::npos);
 }
 
+// A run that was cut while it moved says so through the journal, and a journal without the word is read.
+TEST(Row, KeepsThatItsConcreteStillMoved) {
+  study::Row row{1, {500.0}, "completed", 0, {}, 1.0};
+  EXPECT_FALSE(study::row_from_json(study::row_json(row), 1)->moving);
+  row.moving = true;
+  EXPECT_TRUE(study::row_from_json(study::row_json(row), 1)->moving);
+}
+
 TEST(Collect, ARowThatCameTwiceWithOtherResultsIsNamed) {
   study::Row row{1, {500.0}, "completed", 0, {}, 1.0};
   study::Row again = row;

@@ -94,7 +94,7 @@ function verdicts(run) {
     ]);
     lines.push([classText(results), ""]);
   }
-  const near = Math.abs(spread - 500) < 14 ? "; not to be relied on: the spread ends too near to 500 mm" : "";
+  const near = stopped != null && Math.abs(spread - 500) < 14 ? "; not to be relied on: the spread ends too near to 500 mm" : "";
   lines.push([(t500 == null ? "t500: never reached" : `t500 ${seconds(t500)}, from the start of the lift`) + near, ""]);
   const height = `${millimetres(results.height_mm)} high in the middle`;
   if (stopped != null)
