@@ -8,20 +8,31 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "libmpm/grid/axis.hpp"
 #include "libmpm/particles/particles.hpp"
 
 namespace tremie {
 
-/// Takes back what points moved beyond a cell in any direction over dt, and slows them down to it.
+/// Cells that a displacement crosses, in the direction in which it crosses most.
 template <int D>
-void hold_detached_particles(const std::array<Axis, D>& axes, double dt, Points<D>& points) {
+double cells_crossed(const std::array<Axis, D>& axes, const Vec<D>& displacement) {
+  double cells = 0.0;
+  for (int d = 0; d < D; ++d) cells = std::max(cells, std::abs(displacement[d]) / axes[d].h);
+  return cells;
+}
+
+/// Takes back what points moved from `from` beyond a cell in any direction over dt, and slows them down to a cell a step.
+/// One that the floor stopped has moved less than its speed times dt, and only what it moved is taken back.
+template <int D>
+void hold_detached_particles(const std::array<Axis, D>& axes, double dt, const std::vector<Vec<D>>& from,
+                             Points<D>& points) {
   for (std::size_t p = 0; p < points.size(); ++p) {
-    double cells = 0.0;
-    for (int d = 0; d < D; ++d) cells = std::max(cells, std::abs(points.v[p][d]) * dt / axes[d].h);
+    const double cells = cells_crossed<D>(axes, dt * points.v[p]);
     if (cells <= 1.0) continue;
-    points.x[p] -= (1.0 - 1.0 / cells) * dt * points.v[p];
+    const Vec<D> moved = points.x[p] - from[p];
+    points.x[p] = from[p] + moved / std::max(1.0, cells_crossed<D>(axes, moved));
     points.v[p] /= cells;
     points.C[p] /= cells;
   }

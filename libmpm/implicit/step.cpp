@@ -78,9 +78,10 @@ StepReport implicit_step(ImplicitBody<Geometry>& body, const YieldLaw& law, cons
       release_free_heap();
     }
   const std::vector<Vec<D>> v_before = measured ? body.points.v : std::vector<Vec<D>>{};
+  const std::vector<Vec<D>> from = settings.detached > 0.0 ? body.points.x : std::vector<Vec<D>>{};
   grid_to_point(body.grid, body.v, v_old, settings.transfer, Geometry::advects ? dt : 0.0, body.points,
                 body.motion);
-  if (settings.detached > 0.0) hold_detached_particles<D>(body.grid.axes, dt, body.points);
+  if (settings.detached > 0.0) hold_detached_particles<D>(body.grid.axes, dt, from, body.points);
   if (even) shift_points<D>(body.grid, u, body.points, body.motion);
   body.time += dt;
   body.dt = dt;
