@@ -45,8 +45,8 @@ TEST(ThinFilm, HoldsAndSlidesInPartOfACell) {
   EXPECT_GT(surface_speed(0.0015, false), 1e-3);
 }
 
-/// A tilted pool of a viscous fluid in a box 0.4 m long, after 40 steps of a second: how much deeper the left
-/// quarter is than the right one, over the mean depth.
+/// A tilted pool of a viscous fluid in a box 0.4 m long, in 40 steps of a second: by how much the left quarter is deeper than
+/// the right one or the other way round, over the mean depth, at most over the last ten.
 double tilt_after_long_steps(bool moving_surface) {
   ImplicitBody<PlaneStrain> body;
   body.mix = test::concrete(0.0, mu);
@@ -64,23 +64,27 @@ double tilt_after_long_steps(bool moving_surface) {
   settings.detached = 0.005;
   settings.alternating_viscosity = 100.0;
   settings.moving_surface = moving_surface;
-  for (int i = 0; i < 40; ++i) implicit_step(body, ExactBingham{}, settings);
-  double difference = 0.0;
-  for (std::size_t p = 0; p < body.points.size(); ++p) {
-    const double x = body.points.x[p][0];
-    if (x < 0.1) difference += body.points.volume(p);
-    if (x > 0.3) difference -= body.points.volume(p);
+  double largest = 0.0;
+  for (int i = 0; i < 40; ++i) {
+    implicit_step(body, ExactBingham{}, settings);
+    double difference = 0.0;
+    for (std::size_t p = 0; p < body.points.size(); ++p) {
+      const double x = body.points.x[p][0];
+      if (x < 0.1) difference += body.points.volume(p);
+      if (x > 0.3) difference -= body.points.volume(p);
+    }
+    if (i >= 30) largest = std::max(largest, std::abs(difference) / (0.1 * 0.075));
   }
-  return difference / (0.1 * 0.075);
+  return largest;
 }
 
 // The pool levels in a fraction of a second. With its motion in the step it is level to half a row of points,
-// 5 mm of 75; steps of a second that leave it out keep the surface going.
+// 5 mm of 75; steps of a second that leave it out keep the surface going to and fro.
 TEST(MovingSurface, LevelsInLongSteps) {
   const double with = tilt_after_long_steps(true), without = tilt_after_long_steps(false);
   std::printf("left over right %.2f %%, without its motion %.2f %%\n", 100 * with, 100 * without);
-  EXPECT_LE(std::abs(with), 0.035);
-  EXPECT_GE(std::abs(without), 0.1);
+  EXPECT_LE(with, 0.035);
+  EXPECT_GE(without, 0.1);
 }
 
 }  // namespace
