@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "apparatus/verification/references/bodies.hpp"
 #include "libmpm/implicit/step_size.hpp"
 

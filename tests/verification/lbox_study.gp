@@ -7,7 +7,7 @@ set xlabel "distance from the gate / mm"
 set ylabel "depth / mm"
 set yrange [40:100]
 set key top right
-pick(mode, tau) = sprintf("< awk -F, '$1==\"%s\" && $2==%g && $3==10' lbox_profiles.csv | head -35", mode, tau)
+pick(mode, tau) = sprintf("< awk -F, '$1==\"%s\" && $2==%g && $3==10 && !seen[$4]++' lbox_profiles.csv", mode, tau)
 plot pick("plane", 15) using 4:5 with points pt 6 ps 0.6 lc 1 title "15 Pa, plane", \
      pick("plane", 15) using 4:6 with lines lc 1 title "", \
      pick("plane", 50) using 4:5 with points pt 6 ps 0.6 lc 2 title "50 Pa, plane", \
