@@ -161,9 +161,7 @@ int finish(const Job& job, const Options& options, const study::RowFiles& files,
   for (const auto& reason : reasons) fmt::print(stderr, "not to be trusted: {}\n", reason);
   if (options.json) print_result_as_json(job.folder);
   if (!options.quiet) {
-    const auto moving = std::count_if(collected.rows.begin(), collected.rows.end(),
-                                      [](const Row& row) { return row.moving; });
-    if (moving > 0)
+    if (const std::size_t moving = study::moving_rows(collected); moving > 0)
       fmt::print("note            in {} of {} runs the concrete still moved at the end (test.duration)\n",
                  moving, collected.rows.size());
     fmt::print("written to      {}\n", job.folder.string());

@@ -128,9 +128,8 @@ report::GridTable range_table(const Definition& study, const Design& design, con
 
 std::string rows_sentence(const Design& design, const Collected& collected) {
   std::size_t good = 0, doubtful = 0;
-  std::size_t moving = 0;
-  for (const Row& row : collected.rows)
-    good += row.exit_code == 0, doubtful += row.exit_code == 3, moving += row.moving;
+  const std::size_t moving = moving_rows(collected);
+  for (const Row& row : collected.rows) good += row.exit_code == 0, doubtful += row.exit_code == 3;
   const std::string unfinished =
       moving == 0 ? ""
                   : fmt::format(

@@ -141,4 +141,9 @@ Collected collect(std::size_t design_rows, std::vector<Row> rows) {
   return all;
 }
 
+std::size_t moving_rows(const Collected& collected) {
+  return static_cast<std::size_t>(
+      std::count_if(collected.rows.begin(), collected.rows.end(), [](const Row& row) { return row.moving; }));
+}
+
 }  // namespace tremie::study

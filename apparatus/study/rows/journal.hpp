@@ -55,4 +55,7 @@ struct Collected {
 /// Sorts the rows; of equal ones the first stays.
 Collected collect(std::size_t design_rows, std::vector<Row> rows);
 
+/// How many rows have results of concrete that still moved.
+std::size_t moving_rows(const Collected& collected);
+
 }  // namespace tremie::study

@@ -23,11 +23,6 @@ std::size_t count(const Collected& collected, int exit_code) {
                                                 [&](const Row& row) { return row.exit_code == exit_code; }));
 }
 
-std::size_t count_moving(const Collected& collected) {
-  return static_cast<std::size_t>(
-      std::count_if(collected.rows.begin(), collected.rows.end(), [](const Row& row) { return row.moving; }));
-}
-
 std::string list_of(const std::vector<std::size_t>& rows) {
   constexpr std::size_t most = 10;
   const auto end = rows.begin() + static_cast<std::ptrdiff_t>(std::min(most, rows.size()));
@@ -54,7 +49,7 @@ Json results_json(const Design& design, const Collected& collected) {
   json["rows_not_to_be_trusted"] = count(collected, 3);
   json["rows_failed"] = collected.rows.size() - count(collected, 0) - count(collected, 3);
   json["rows_missing"] = collected.missing.size();
-  json["rows_moving_at_end"] = count_moving(collected);
+  json["rows_moving_at_end"] = moving_rows(collected);
   double cpu = 0.0;
   for (const Row& row : collected.rows) cpu += row.cpu;
   json["rows_cpu_s"] = cpu;
