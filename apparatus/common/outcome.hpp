@@ -8,6 +8,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -126,6 +127,8 @@ struct Outcome {
   std::string judged = {};                ///< class and accepted range, in a sentence; empty: none
   std::vector<std::string> remarks = {};  ///< what a reader must know to read the result rightly
   std::optional<Stage> stage = {};        ///< empty: no shape to be seen
+  std::vector<std::pair<std::string, std::string>> none =
+      {};  ///< what to say in place of a result that is null
 };
 
 /// The value of a result by its name; nullptr where there is none.

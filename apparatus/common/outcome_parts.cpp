@@ -14,6 +14,17 @@ std::string seconds_or(std::optional<double> value, const char* otherwise) {
   return value ? fmt::format("{:.2f} s", *value) : otherwise;
 }
 
+std::string stopped_line(std::optional<double> stopped_at, Status status) {
+  if (stopped_at) return fmt::format("stopped at      {:.2f} s", *stopped_at);
+  return fmt::format("stopped         {}", still_moving(status));
+}
+
+const char* still_moving(Status status) {
+  if (status == Status::interrupted) return "not yet when the run was interrupted";
+  if (status == Status::failed) return "not yet when the run failed";
+  return "not within the time of the test (test.duration)";
+}
+
 void add_flocculation_line(std::optional<double> start, std::optional<double> end,
                            std::vector<std::string>& lines) {
   if (start && end)

@@ -27,6 +27,15 @@ Column column(const char* name, const std::vector<Row>& rows, Read read) {
 /// "4.20 s", or what to say without a value.
 std::string seconds_or(std::optional<double> value, const char* otherwise);
 
+/// A run that ended before its test did: what it read is so far.
+inline bool ended_early(Status status) { return status != Status::completed; }
+
+/// What stands in place of the time at which it came to rest.
+const char* still_moving(Status status);
+
+/// "stopped at      4.20 s", or why it is not known.
+std::string stopped_line(std::optional<double> stopped_at, Status status);
+
 /// "flocculation    5.78 at the start, 5.4 at the end"; nothing without both.
 void add_flocculation_line(std::optional<double> start, std::optional<double> end,
                            std::vector<std::string>& lines);

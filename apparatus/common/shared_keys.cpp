@@ -93,7 +93,9 @@ Section material_section(const std::string& bulk_modulus) {
 Section thixotropy_section() {
   return {
       .name = "mix.thixotropy",
-      .help = "Leave the table out, and no flocculation is stored or computed.",
+      .help =
+          "Thixotropy; these are Mix A's numbers. Leave the table out, and no flocculation is stored or "
+          "computed.",
       .keys =
           {
               {.name = "structuration_rate",
@@ -295,13 +297,15 @@ Section model_section(const std::vector<std::string>& spaces, const ModelDefault
            .shape = Shape::one_or_two,
            .fallback = defaults.cell,
            .example = "5 mm",
+           .varies = true,
            .help = defaults.cell_help},
           {.name = "points_per_cell",
            .kind = Kind::integer,
            .range = between(1, 64),
            .shape = Shape::one_or_two,
            .fallback = defaults.points_per_cell,
-           .help = "[across, up], or one number for each direction"},
+           .varies = true,
+           .help = defaults.points_help},
       }};
   const std::vector<Key> law = law_model_keys();
   section.keys.insert(section.keys.begin() + 1, law.begin(), law.end());

@@ -46,7 +46,8 @@ Floor read_floor(const Values& values);
 struct ModelDefaults {
   std::string cell = "[\"10 mm\", \"5 mm\"]";  ///< empty: settled by the apparatus
   std::string points_per_cell = "[4, 4]";
-  std::string cell_help = "[across, up], or one length";
+  std::string cell_help = "[across, up], or one length; [\"14 mm\", \"7 mm\"] in three dimensions";
+  std::string points_help = "[across, up], or one number for each direction; [4, 2] in three dimensions";
 };
 
 /// [model], with the spaces that an apparatus has; the first is its default.

@@ -282,7 +282,8 @@ ApparatusKeys icar_vane_keys() {
                      .points_per_cell = "3",
                      .cell_help = "1 mm for \"couette\", 5 mm for \"plane\", 9 mm for "
                                   "\"cylindrical\", if left out; in the last two [along the radius (and the "
-                                  "height), around at the tips]"}));
+                                  "height), around at the tips]",
+                     .points_help = "[across, up], or one number for each direction"}));
   keys.schema.push_back(output_section());
   return keys;
 }

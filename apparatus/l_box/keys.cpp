@@ -111,7 +111,11 @@ ApparatusKeys l_box_keys() {
   keys.schema.push_back(box_section());
   keys.schema.push_back(test_section());
   keys.schema.push_back(model_section({"plane", "plane_with_side_walls", "half", "full"},
-                                      {.cell = "10 mm", .points_per_cell = "[16, 4]"}));
+                                      {.cell = "10 mm",
+                                       .points_per_cell = "[16, 4]",
+                                       .cell_help = "[across, up], or one length; 15 mm in three dimensions",
+                                       .points_help = "[across, up], or one number for each direction; "
+                                                      "[8, 4] in three dimensions"}));
   keys.schema.push_back(output_section());
   return keys;
 }

@@ -85,7 +85,10 @@ std::vector<Chart> charts_of(bool thixotropic) {
   return charts;
 }
 
-std::string ratio_text(const l_box::Scene& scene, const l_box::Results& r) {
+std::string ratio_text(const l_box::Scene& scene, const l_box::Results& r, Status status) {
+  if (ended_early(status))
+    return r.passing_ratio ? fmt::format("passing ratio   {:.2f} so far: no result", *r.passing_ratio)
+                           : "passing ratio   none yet";
   if (!r.passing_ratio) return "passing ratio   none";
   const std::string cls = class_of(scene, r);
   const char* without = scene.bars == 0 ? "without bars the test has none"
@@ -94,21 +97,41 @@ std::string ratio_text(const l_box::Scene& scene, const l_box::Results& r) {
   return fmt::format("passing ratio   {:.2f}   class {}", *r.passing_ratio, cls.empty() ? without : cls);
 }
 
-std::vector<std::string> lines_for(const l_box::Scene& scene, const l_box::Results& r) {
+/// What to say of a place that the concrete has not come to.
+const char* not_reached(Status status) { return ended_early(status) ? "not reached yet" : "never reached"; }
+
+std::vector<std::string> lines_for(const l_box::Scene& scene, const l_box::Results& r, Status status) {
   const std::string h2 = r.h2 ? fmt::format("{:.0f} mm   at the channel's end", *r.h2 * mm)
-                              : "none: the channel's end was never reached";
+                              : fmt::format("none: the channel's end was {}", not_reached(status));
   std::vector<std::string> lines{
       fmt::format("H1              {:.0f} mm   behind the gate", r.h1 * mm),
       "H2              " + h2,
-      ratio_text(scene, r) +
-          (scene.model.space == SpaceKind::plane ? "; too large without side walls (model.space)" : ""),
-      fmt::format("t200            {}", seconds_or(r.t200, "never reached")),
-      fmt::format("t400            {}", seconds_or(r.t400, "never reached")),
-      r.stopped_at ? fmt::format("stopped at      {:.2f} s", *r.stopped_at)
-                   : "stopped         not within the time of the test (test.duration)",
+      ratio_text(scene, r, status) + (r.passing_ratio && scene.model.space == SpaceKind::plane
+                                          ? "; too large without side walls (model.space)"
+                                          : ""),
+      fmt::format("t200            {}", seconds_or(r.t200, not_reached(status))),
+      fmt::format("t400            {}", seconds_or(r.t400, not_reached(status))),
+      stopped_line(r.stopped_at, status),
       fmt::format("in the channel  {:.2f} l", r.volume_in_channel * 1e3)};
   add_flocculation_line(r.flocculation_mean_start, r.flocculation_mean_end, lines);
   return lines;
+}
+
+std::string no_class(const l_box::Scene& scene, const l_box::Results& r) {
+  if (scene.bars == 0) return "none: without bars the test has no class";
+  if (!r.stopped_at) return "none yet: it still moved";
+  return r.passing_ratio ? "none: the passing ratio is below 0.80" : "none: there is no passing ratio";
+}
+
+std::vector<std::pair<std::string, std::string>> words_for_none(const l_box::Scene& scene,
+                                                                const l_box::Results& r, Status status) {
+  const std::string end = fmt::format("none: the channel's end was {}", not_reached(status));
+  return {{"h2_mm", end},
+          {"passing_ratio", end},
+          {"t200_s", not_reached(status)},
+          {"t400_s", not_reached(status)},
+          {"class_en12350_10", no_class(scene, r)},
+          {"stopped_at_s", still_moving(status)}};
 }
 
 /// The box seen from the side: column, channel, and the gate that rises.
@@ -173,7 +196,8 @@ Outcome run_l_box(const l_box::Scene& scene, const Measured& measured, bool all_
   outcome.answers.push_back({"h1_mm", "H1", "mm", 0});
   outcome.moving_at_end = !raw.results.stopped_at;
   outcome.judged = judged(scene, raw.results);
-  if (!raw.results.passing_ratio)
+  outcome.none = words_for_none(scene, raw.results, raw.status);
+  if (!raw.results.passing_ratio && !ended_early(raw.status))
     outcome.remarks.push_back("The concrete did not reach the channel's end: there is no passing ratio.");
   if (scene.model.space == SpaceKind::plane)
     outcome.remarks.push_back(
@@ -182,7 +206,7 @@ Outcome run_l_box(const l_box::Scene& scene, const Measured& measured, bool all_
   outcome.stage = stage_of(scene);
   outcome.tables = {profile_of(raw.results)};
   outcome.charts = charts_of(thixotropic);
-  outcome.lines = lines_for(scene, raw.results);
+  outcome.lines = lines_for(scene, raw.results, raw.status);
   outcome.pictured = false;
   if (!std::isfinite(raw.results.h1)) outcome.checks.reasons.push_back("H1 is not a finite number");
   return outcome;

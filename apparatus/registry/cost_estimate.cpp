@@ -74,7 +74,7 @@ void check_cost(const Scene& scene, int threads) {
 }
 
 std::string duration_text(double s) {
-  if (s < 300.0) return s < 100.0 ? fmt::format("{:.2g} s", s) : fmt::format("{:.0f} s", s);
+  if (s < 300.0) return rounded(s, 2) + " s";
   if (s < 7200.0) return fmt::format("{:.0f} min", s / 60.0);
   if (s < 2e5) return fmt::format("{:.0f} h", s / 3600.0);
   if (s < 3.2e7) return fmt::format("{:.0f} days", s / 86400.0);
@@ -82,7 +82,7 @@ std::string duration_text(double s) {
 }
 
 std::string megabytes_text(double bytes) {
-  return bytes < 1e10 ? fmt::format("{:.2g} MB", bytes / 1e6) : fmt::format("{:.3g} GB", bytes / 1e9);
+  return bytes < 1e10 ? rounded(bytes / 1e6, 2) + " MB" : fmt::format("{:.3g} GB", bytes / 1e9);
 }
 
 }  // namespace tremie::scene

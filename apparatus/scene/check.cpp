@@ -89,6 +89,13 @@ void check_range(const Key& key, double value, const std::string& written) {
   check_size(key, value, written);
 }
 
+/// Whether a value could stand under the key.
+std::function<bool(double)> sensible(const Key& key) {
+  return [&key](double value) {
+    return contains(key.range, value) && (value == 0.0 || contains(sizes_of(key.dimension), std::abs(value)));
+  };
+}
+
 /// A range where one value is asked for: what runs over ranges.
 std::string range_hint(const Key& key, const std::string& text) {
   for (const char* mark : {"..", "±", "+-", "+/-", " to ", "…"})
@@ -115,7 +122,7 @@ void read_text(const Key& key, const std::string& text, Value& into) {
     std::string words = key.words.empty() ? "" : " or " + join(key.words);
     double value = 0.0;
     try {
-      value = parse_quantity(text, key.dimension);
+      value = parse_quantity(text, key.dimension, sensible(key));
     } catch (const std::invalid_argument& error) {
       throw Problem(error.what() + words + range_hint(key, text));
     }
@@ -130,10 +137,9 @@ void read_bare_number(const Key& key, double value, bool whole, Value& into) {
   const std::string written = write_number(value);
   if (!std::isfinite(value)) check_range(key, value, written);
   if (key.kind == Kind::quantity) {
-    const auto si = units(key.dimension).front().name;
-    throw Problem(
-        fmt::format("{0} is a bare number; write it with a unit, as a string: {1} = \"{0} {2}\" (units: {3})",
-                    written, key.name, si, units_text(key.dimension)));
+    throw Problem(fmt::format(
+        "{0} is a bare number; write it with a unit, as a string: {1} = \"{0} {2}\" (units: {3})", written,
+        key.name, unit_meant(value, key.dimension, sensible(key)), units_text(key.dimension)));
   }
   const bool fits = key.kind == Kind::number || (key.kind == Kind::integer && whole);
   if (!fits) throw Problem(fmt::format("{} is not allowed; allowed: {}", written, allowed_text(key)));
@@ -173,10 +179,11 @@ Value read_value(const Key& key, const Node& node) {
 /// Walks a document and gathers values and problems.
 class Checker {
  public:
-  explicit Checker(const Schema& schema) : schema_(schema) {}
+  Checker(const Schema& schema, const MissingSections& missing) : schema_(schema), missing_(missing) {}
 
   Values run(const Node& document) {
     visit(document, "", "");
+    for (const auto& [name, problem] : missing_) report(document.origin, name, problem);
     add_sections_that_are_always_there(document.origin);
     for (const auto& [name, origin] : std::map(values_.sections)) complete(name, origin);
     drop_what_does_not_apply();
@@ -204,7 +211,8 @@ class Checker {
 
   void add_sections_that_are_always_there(const Origin& origin) {
     for (const Section& section : schema_)
-      if (!section.optional && !section.repeated && values_.has_section(parent_of(section)))
+      if (!section.optional && !section.repeated && values_.has_section(parent_of(section)) &&
+          !missing_.contains(section.name))
         values_.sections.try_emplace(section.name, origin);
   }
 
@@ -351,6 +359,7 @@ class Checker {
   }
 
   const Schema& schema_;
+  const MissingSections& missing_;
   std::set<std::string> refused_;  ///< keys whose value is told to be wrong, and so not missing
   Values values_;
   std::vector<std::string> problems_, reported_;
@@ -358,6 +367,8 @@ class Checker {
 
 }  // namespace
 
-Values check(const Node& document, const Schema& schema) { return Checker(schema).run(document); }
+Values check(const Node& document, const Schema& schema, const MissingSections& missing) {
+  return Checker(schema, missing).run(document);
+}
 
 }  // namespace tremie::scene

@@ -80,6 +80,7 @@ struct Key {
       {};  ///< `required`, but not beside one of these keys of the section
   std::optional<Condition> only_with = {};
   std::string example = {};  ///< for `tremie new`, where there is no default
+  bool varies = false;       ///< another key decides on the default: `tremie new` leaves it off
   std::string help = {};
 };
 

@@ -82,6 +82,23 @@ void rename_changed_mix(Values& values, const std::string& changed) {
   name->second.words = {measured_on->second.words.front() + " with changed " + (first ? changed : "values")};
 }
 
+/// A line for each key at the top of a file that no apparatus has, with the nearest one.
+std::string unknown_at_top(const Node& document, std::span<const ApparatusKeys> known) {
+  std::vector<std::string> allowed{"apparatus", "schema", "preset"};
+  for (const auto& apparatus : known)
+    for (const Section& section : apparatus.schema) {
+      if (!section.name.empty()) allowed.push_back(section.name.substr(0, section.name.find('.')));
+      for (const Key& key : section.name.empty() ? section.keys : std::vector<Key>{})
+        allowed.push_back(key.name);
+    }
+  std::string lines;
+  for (const Member& member : std::get<Table>(document.value))
+    if (std::find(allowed.begin(), allowed.end(), member.key) == allowed.end())
+      lines += fmt::format("{}: {}: unknown key; did you mean \"{}\"?\n", describe(member.node.origin),
+                           member.key, nearest(member.key, allowed));
+  return lines;
+}
+
 const ApparatusKeys& apparatus_of(const Node& document, const std::string& file,
                                   std::span<const ApparatusKeys> known, const std::string& command) {
   const auto runs = [&](const ApparatusKeys& a) { return command.empty() || a.command == command; };
@@ -89,10 +106,9 @@ const ApparatusKeys& apparatus_of(const Node& document, const std::string& file,
   for (const auto& apparatus : known)
     if (runs(apparatus)) allowed.push_back(apparatus.name);
   const Node* node = find(document, "apparatus");
-  if (!node) {
-    throw InputError(fmt::format("{}: apparatus: missing key; allowed: {}", describe(document.origin),
-                                 quoted_list(allowed)));
-  }
+  if (!node)
+    throw InputError(fmt::format("{}{}: apparatus: missing key; allowed: {}", unknown_at_top(document, known),
+                                 describe(document.origin), quoted_list(allowed)));
   const auto* name = std::get_if<std::string>(&node->value);
   const auto found = std::find_if(known.begin(), known.end(),
                                   [&](const ApparatusKeys& a) { return name && a.name == *name; });
@@ -103,6 +119,12 @@ const ApparatusKeys& apparatus_of(const Node& document, const std::string& file,
                                  describe(node->origin), given, found->command, file));
   throw InputError(fmt::format("{}: apparatus: \"{}\" is not allowed; allowed: {} (nearest: \"{}\")",
                                describe(node->origin), given, quoted_list(allowed), nearest(given, allowed)));
+}
+
+/// What to say of a scene without a mix; nothing where it has one.
+MissingSections missing_mix(const Node& document) {
+  if (find(document, "mix")) return {};
+  return {{"mix", "missing key; allowed: a table [mix] or one of " + quoted_list(mix_names())}};
 }
 
 /// The preset's values under the scene's; nothing where the scene names none. An unknown name is left for
@@ -203,14 +225,11 @@ Loaded load(const Request& request, std::span<const ApparatusKeys> known, const 
                                : parse_file(request.path);
   const std::string changed = apply_overrides(document, request);
   const ApparatusKeys& apparatus = apparatus_of(document, request.path.string(), known, command);
-  if (!find(document, "mix")) {
-    throw InputError(fmt::format("{}: mix: missing key; allowed: a table [mix] or one of {}",
-                                 describe(document.origin), quoted_list(mix_names())));
-  }
+  const MissingSections missing = missing_mix(document);
   lay_on_preset(document, apparatus);
   Loaded loaded{
       request.path.stem().string(), request.path.string(), apparatus.name, whole_schema(apparatus), {}};
-  loaded.values = check(document, loaded.schema);
+  loaded.values = check(document, loaded.schema, missing);
   rename_changed_mix(loaded.values, changed);
   loaded.values.drop("preset");  // its values stand in the resolved scene by themselves
   if (apparatus.settle) apparatus.settle(loaded.values);

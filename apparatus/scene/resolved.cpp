@@ -154,7 +154,8 @@ std::string write_template(const ApparatusKeys& apparatus) {
         text += with_comment(fmt::format("# {} = ...", key.name), allowed_comment(key));
         continue;
       }
-      const bool active = applies_by_default(section, key) && (!key.fallback.empty() || key.required);
+      const bool active =
+          applies_by_default(section, key) && !key.varies && (!key.fallback.empty() || key.required);
       text +=
           with_comment(fmt::format("{}{} = {}", active ? "" : "# ", key.name, value), allowed_comment(key));
     }

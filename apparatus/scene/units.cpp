@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <charconv>
@@ -10,6 +11,7 @@
 #include <numbers>
 #include <optional>
 #include <stdexcept>
+#include <vector>
 
 namespace tremie::scene {
 namespace {
@@ -56,6 +58,34 @@ std::size_t read_number(std::string_view text, double& number) {
   return errno == ERANGE ? 0 : static_cast<std::size_t>(end - copy.c_str());
 #endif
 }
+
+/// A unit and the numbers that are usual in it at a site or in a laboratory, up to the next.
+struct Usual {
+  std::string_view unit;
+  double from = 0.0;
+};
+
+/// By ascending numbers.
+std::vector<Usual> usual_units(Dimension dimension) {
+  switch (dimension) {
+    case Dimension::length:
+      return {{"m"}, {"mm", 1.0}};
+    case Dimension::speed:
+      return {{"m/s"}, {"cm/s", 1.0}, {"mm/s", 100.0}};
+    case Dimension::density:
+      return {{"g/cm3"}, {"kg/m3", 100.0}};
+    case Dimension::rotation:
+      return {{"rev/s"}, {"rpm", 3.0}};
+    case Dimension::angle:
+      return {{"deg"}};
+    case Dimension::torque:
+      return {{"N.m"}, {"mN.m", 20.0}};
+    default:
+      return {{units(dimension).front().name}};
+  }
+}
+
+double si_value(double number, const Unit& unit) { return number * unit.numerator / unit.denominator; }
 
 struct Split {
   double number;
@@ -118,7 +148,20 @@ std::string units_text(Dimension dimension) {
   return text;
 }
 
-double parse_quantity(std::string_view text, Dimension dimension) {
+std::string_view unit_meant(double number, Dimension dimension, const std::function<bool(double)>& allowed) {
+  std::string_view usual;
+  for (const Usual& u : usual_units(dimension))
+    if (std::abs(number) >= u.from) usual = u.unit;
+  const auto all = units(dimension);
+  const auto fits = [&](const Unit& unit) { return !allowed || allowed(si_value(number, unit)); };
+  const auto named = std::find_if(all.begin(), all.end(), [&](const Unit& u) { return u.name == usual; });
+  if (fits(*named)) return usual;
+  const auto other = std::find_if(all.begin(), all.end(), fits);
+  return other == all.end() ? usual : other->name;
+}
+
+double parse_quantity(std::string_view text, Dimension dimension,
+                      const std::function<bool(double)>& allowed_value) {
   const auto parts = split(text);
   const auto allowed = units_text(dimension);
   const auto si = units(dimension).front().name;
@@ -131,12 +174,13 @@ double parse_quantity(std::string_view text, Dimension dimension) {
   if (!std::isfinite(parts->number))
     throw std::invalid_argument(fmt::format("\"{}\" is not a finite number (units: {})", text, allowed));
   if (parts->unit.empty()) {
-    throw std::invalid_argument(
-        fmt::format("\"{0}\" has no unit; write \"{0} {1}\" (units: {2})", trimmed(text), si, allowed));
+    throw std::invalid_argument(fmt::format("\"{0}\" has no unit; write \"{0} {1}\" (units: {2})",
+                                            trimmed(text),
+                                            unit_meant(parts->number, dimension, allowed_value), allowed));
   }
   for (const Unit& unit : units(dimension)) {
     if (parts->unit != unit.name) continue;
-    const double value = parts->number * unit.numerator / unit.denominator;
+    const double value = si_value(parts->number, unit);
     if (!std::isfinite(value))
       throw std::invalid_argument(fmt::format("\"{}\" is too large to be held", text));
     return value;
@@ -156,6 +200,13 @@ std::string write_number(double value) {
                                           plain ? std::chars_format::fixed : std::chars_format::scientific);
   return error == std::errc{} ? std::string(buffer.data(), end) : fmt::format("{}", value);
 #endif
+}
+
+std::string rounded(double value, int digits) {
+  const double size = std::abs(value);
+  return size >= 1.0 && size < 1e7 && size >= std::pow(10.0, digits) - 0.5
+             ? fmt::format("{:.0f}", value)
+             : fmt::format("{:.{}g}", value, digits);
 }
 
 std::string write_quantity(double value, Dimension dimension) {

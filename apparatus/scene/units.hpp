@@ -2,6 +2,7 @@
 
 // Quantities as a person writes them ("54 Pa", "15 cm/s") and as the program holds them (SI).
 
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -41,13 +42,24 @@ Dimension dimension_of(std::string_view si_unit);
 /// "Pa, kPa, MPa": for messages.
 std::string units_text(Dimension dimension);
 
-/// The SI value of "54 Pa". Throws std::invalid_argument that says what is wrong and which units are allowed.
-double parse_quantity(std::string_view text, Dimension dimension);
+/// The unit that a person who wrote no unit most likely means: mm of 590, m of 0.59, cm/s of 15. Only one whose SI value
+/// is `allowed`, where any is.
+std::string_view unit_meant(double number, Dimension dimension,
+                            const std::function<bool(double)>& allowed = {});
+
+/// The SI value of "54 Pa". Throws std::invalid_argument that says what is wrong and which units are allowed; where
+/// the unit is missing, which is meant (as unit_meant()).
+double parse_quantity(std::string_view text, Dimension dimension,
+                      const std::function<bool(double)>& allowed = {});
 
 /// "54 Pa": the SI value in the SI unit, with the fewest digits that read back to the same double.
 std::string write_quantity(double value, Dimension dimension);
 
 /// The fewest digits that read back to the same double.
 std::string write_number(double value);
+
+/// "1042" and "0.0358": so many significant digits for a person, and all those before the point; an exponent only
+/// from ten million on and below 0.0001.
+std::string rounded(double value, int digits);
 
 }  // namespace tremie::scene

@@ -65,8 +65,11 @@ class Values {
   std::vector<std::string> notes;  ///< what the reader left out, and why: for `tremie check`
 };
 
+/// What to say of sections that the scene lacks as a whole, by their name.
+using MissingSections = std::map<std::string, std::string>;
+
 /// Checks a whole document against a schema: unknown keys, types, units, ranges, missing keys, keys that do
-/// not apply; fills in the defaults. Throws one InputError with every problem found, a line each.
-Values check(const Node& document, const Schema& schema);
+/// not apply; fills in the defaults. A section that is `missing` is told so, and not key by key. Throws one InputError with every problem found, a line each.
+Values check(const Node& document, const Schema& schema, const MissingSections& missing = {});
 
 }  // namespace tremie::scene

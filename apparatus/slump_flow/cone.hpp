@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "apparatus/slump_flow/slump_flow.hpp"
 #include "libmpm/boundary/rigid_wall.hpp"
@@ -88,20 +89,30 @@ inline RigidWall<2> lifted_wall(const Scene& scene, double reach) {
   };
 }
 
-/// Longest step [s] while the wall of a slow cone stands beside the concrete, infinite else: what a wall gives way in a step
+/// A lift beside which steps are short: the longest [s], and the rise of the rim until which they are [m].
+struct SlowLift {
+  double step, rise;
+};
+
+/// How short the steps are beside a slow cone; empty for a fast one. What a wall gives way in a step
 /// grows with the step's square. Up to 20 mm/s the wall is as stiff as it may be (slow_wall_factor()); in steps of 20 to 30
 /// ms 2 to 3 % of the concrete went through it before the rim had risen by a cell, and t500 scattered by 5 %. From there to
 /// 8 cm/s t500 was up to 11 % too early (lift.md).
-inline double longest_step_beside_the_cone(const Scene& scene, double time) {
+inline std::optional<SlowLift> slow_lift(const Scene& scene) {
   struct Lift {
     double fastest, step, cells;  // [m/s], [s], rise of the rim that it lasts for [cells]
   };
   for (const Lift lift : {Lift{0.0203, 0.003, 1.0}, Lift{0.08, 0.006, 8.0}})
-    if (scene.lift_speed && *scene.lift_speed <= lift.fastest) {
-      const bool beside = rim_height(scene, time) < lift.cells * scene.model.cell[1];
-      return beside ? lift.step * scene.model.step_scale : std::numeric_limits<double>::infinity();
-    }
-  return std::numeric_limits<double>::infinity();
+    if (scene.lift_speed && *scene.lift_speed <= lift.fastest)
+      return SlowLift{lift.step, lift.cells * scene.model.cell[1]};
+  return std::nullopt;
+}
+
+/// Longest step [s] while the wall of a slow cone stands beside the concrete, infinite else.
+inline double longest_step_beside_the_cone(const Scene& scene, double time) {
+  const auto slow = slow_lift(scene);
+  return slow && rim_height(scene, time) < slow->rise ? slow->step * scene.model.step_scale
+                                                      : std::numeric_limits<double>::infinity();
 }
 
 /// Share of the volume that stands above the lifted cone's rim, but not within its wall.

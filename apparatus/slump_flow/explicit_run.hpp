@@ -206,6 +206,7 @@ Outcome run_explicit_in(const Scene& scene, const Law& law, const Observer& obse
   judge_depth(scene, outcome);
   judge_cells(scene, outcome);
   judge_lift(outcome);
+  judge_lift_speed(scene, outcome);
   judge_opening(scene, outcome);
   judge_height(scene, outcome);
   outcome.cost.bytes_per_point = explicit_bytes_per_point<D>(body.points.thixotropic());

@@ -21,6 +21,9 @@ std::string class_of(const slump_flow::Results& r) {
   return stopped(r) ? slump_flow::spread_class(r.spread) : std::string{};
 }
 
+/// Read to 10 mm, as the standard has it, so that SF1 begins at 545 mm.
+bool is_below(const slump_flow::Results& r) { return r.spread < 0.545; }
+
 ResultValue range_of(const slump_flow::Results& r) {
   if (!stopped(r)) return std::monostate{};
   return in_tremie_range(r.spread);
@@ -112,10 +115,9 @@ std::string judged(const slump_flow::Results& r, const slump_flow::Cone& cone) {
   if (kept_its_shape(r, cone))
     return "It kept the cone's shape: too stiff for a slump flow, which has nothing to read from it.";
   const std::string cls = class_of(r);
-  std::string text = !cls.empty() ? fmt::format("Class {} of EN 206", cls)
-                     : r.spread < 0.545
-                         ? "Below the classes of self-compacting concrete (SF1 begins at 550 mm)"
-                         : "Above the classes of self-compacting concrete (SF3 ends at 850 mm)";
+  std::string text = !cls.empty()  ? fmt::format("Class {} of EN 206 (the spread read to 10 mm)", cls)
+                     : is_below(r) ? "Below the classes of self-compacting concrete (SF1 begins at 550 mm)"
+                                   : "Above the classes of self-compacting concrete (SF3 ends at 850 mm)";
   return text + (in_tremie_range(r.spread)
                      ? "; within the 450 to 650 mm that are accepted for tremie concrete."
                      : "; outside of the 450 to 650 mm that are accepted for tremie concrete.");
@@ -195,22 +197,32 @@ std::vector<Chart> charts_of(const slump_flow::Scene& scene, const std::optional
   return charts;
 }
 
-std::string class_text(const slump_flow::Results& r) {
-  if (!stopped(r)) return "no class yet: it still moves";
-  const std::string cls = class_of(r);
-  return !cls.empty()       ? "class " + cls
-         : r.spread < 0.545 ? "below class SF1 (550 mm)"
-                            : "above class SF3 (850 mm)";
+std::string no_class(const slump_flow::Results& r, Status status) {
+  if (stopped(r)) return is_below(r) ? "below class SF1 (550 mm)" : "above class SF3 (850 mm)";
+  return ended_early(status) ? "so far: no class" : "no class yet: it still moves";
 }
 
-std::vector<std::string> lines_for(const slump_flow::Results& r) {
+std::string class_text(const slump_flow::Results& r, Status status) {
+  const std::string cls = class_of(r);
+  return cls.empty() ? no_class(r, status) : "class " + cls + " (read to 10 mm)";
+}
+
+const char* not_reached(Status status) { return ended_early(status) ? "not reached yet" : "never reached"; }
+
+std::vector<std::pair<std::string, std::string>> words_for_none(const slump_flow::Results& r, Status status) {
+  return {{"class_en12350_8", no_class(r, status)},
+          {"t500_s", not_reached(status)},
+          {"stopped_at_s", still_moving(status)},
+          {"within_tremie_range", "not yet known: it still moved"}};
+}
+
+std::vector<std::string> lines_for(const slump_flow::Results& r, Status status) {
   std::vector<std::string> lines{
-      fmt::format("spread          {:.0f} mm   {}", r.spread * mm, class_text(r)),
+      fmt::format("spread          {:.0f} mm   {}", r.spread * mm, class_text(r, status)),
       fmt::format("height          {:.0f} mm", r.height * mm),
-      fmt::format("t500            {}{}", seconds_or(r.t500, "never reached"),
+      fmt::format("t500            {}{}", seconds_or(r.t500, not_reached(status)),
                   near_500(r) ? "   not to be relied on: the spread ends too near to 500 mm" : ""),
-      r.stopped_at ? fmt::format("stopped at      {:.2f} s", *r.stopped_at)
-                   : "stopped         not within the time of the test (test.duration)"};
+      stopped_line(r.stopped_at, status)};
   if (stopped(r))
     lines.push_back(fmt::format("tremie concrete {} the accepted 450 to 650 mm",
                                 in_tremie_range(r.spread) ? "within" : "outside of"));
@@ -254,7 +266,8 @@ Outcome run_slump_flow(const slump_flow::Scene& scene, const Measured& measured,
   outcome.cost = raw.cost;
   outcome.series = columns_of(raw.series, scene.mix.thixotropy.has_value());
   outcome.charts = charts_of(scene, outcome.measured);
-  outcome.lines = lines_for(raw.results);
+  outcome.lines = lines_for(raw.results, raw.status);
+  outcome.none = words_for_none(raw.results, raw.status);
   outcome.axisymmetric = scene.model.space == SpaceKind::axisymmetric;
   if (!std::isfinite(raw.results.spread))
     outcome.checks.reasons.push_back("the spread is not a finite number");

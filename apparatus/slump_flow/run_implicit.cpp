@@ -87,6 +87,7 @@ Outcome run_implicit_in(const Scene& scene, const Observer& observer) {
   judge_cells(scene, outcome);
   judge_points_across(scene, outcome);
   judge_lift(outcome);
+  judge_lift_speed(scene, outcome);
   judge_opening(scene, outcome);
   judge_height(scene, outcome);
   outcome.final_frame = test_run::frame_of(body);

@@ -3,7 +3,7 @@
 
 Writes scenes.md (what `tremie new` prints), commands.md (every command's --help) and results.md (what brief runs leave in summary.json, with the
 words and units that the report uses) beside this file. With --check nothing is
-written: exit 1 where a stored page differs from what the program says. A command that is not in this build has no help and is left out of the check."""
+written: exit 1 where a stored page differs from what the program says. A command that is not in this build has no help: its stored section is kept, unchecked."""
 import json, pathlib, re, subprocess, sys, tempfile
 
 program, check = sys.argv[1], "--check" in sys.argv[2:]
@@ -24,6 +24,20 @@ def help_of(command):
 def section(title, language, text):
     lines = [line.rstrip() for line in text.splitlines()]
     return f"## {title}\n\n```{language}\n" + "\n".join(lines) + "\n```\n"
+
+
+def stored_section(name):
+    """What commands.md has of a command that is not in this build."""
+    found = re.search(rf"^## `tremie {re.escape(name)}`\n.*?^```\n(?=\n|\Z)", (here / "commands.md").read_text(), re.M | re.S)
+    if not found:
+        return []
+    print(f"tremie {name} is not in this build: its section of commands.md is kept as it is")
+    return [found[0]]
+
+
+def command_section(name):
+    text = help_of(name)
+    return [section(f"`tremie {name}`", "text", text)] if text else stored_section(name)
 
 
 def words():
@@ -75,7 +89,17 @@ A run fills a folder ([which files](../guide/slump_flow.md#what-a-run-leaves)); 
 | `error` | with `--with-error` or `--accuracy`: half-widths by reading, `basis` (how they were found), `cpu_s` |
 
 `checks.reasons` is a list of sentences; where it is not empty the result is not to be trusted, and the exit code is 3. The same series as in
-`timeseries.csv` are in `results.h5`, with the points over time and where the numbers come from.
+`timeseries.csv` are in `results.h5`, with the points over time and where the numbers come from. Every data set there has `unit` and `description`; the root has `scene`, `schema`,
+`apparatus`, `status`, `tremie_version`, `tremie_commit` and `compiler`:
+
+| in `results.h5` | shape | what |
+|---|---|---|
+| `results/KEY` | one number or word | the readings below |
+| `series/NAME` | samples | the columns of `timeseries.csv`; `series/time_s` is their scale |
+| `frames/00000/position`, `velocity` | points, 3 | [m], [m/s] |
+| `frames/00000/volume`, `pressure`, `shear_rate`, `flocculation` | points | [m³], [Pa], [1/s], [1] |
+
+`fit`, `estimate`, `study` and `calibrate` leave files of their own: what is in them is on their pages of the guide. A run that was cut short keeps its state in `.NAME.part/checkpoint` beside its folder, for the very build that wrote it.
 """
 listed = says("--commands")
 commands = [line.split("\t")[0] for line in listed.splitlines()] if listed else []
@@ -87,7 +111,7 @@ pages = {
     "commands.md": (
         "# Every command\n\nWhat `tremie COMMAND --help` prints.\n",
         [section("`tremie`", "text", says("--help") or "")]
-        + [section(f"`tremie {name}`", "text", text) for name in commands if (text := help_of(name))]),
+        + [text for name in commands for text in command_section(name)]),
     "results.md": (results_head, [table(name) for name in brief]),
 }
 

@@ -13,6 +13,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "libmpm/constitutive/flocculation.hpp"
@@ -100,6 +101,8 @@ struct FitResult {
   std::optional<double> sheared_radius;  ///< the smallest sheared radius over the record [m]
   std::vector<DroppedPoint> dropped;     ///< the first 100
   long dropped_count = 0;
+  std::vector<std::pair<std::string, long>>
+      dropped_reasons;               ///< each with its number, in order of appearance
   long readings = 0;                 ///< used
   double scatter = 0.0;              ///< relative standard deviation of a reading about the fit
   double correlation = 0.0;          ///< of successive residuals

@@ -87,9 +87,22 @@ void Readings::push(double x_value, double torque_value, double rows, long line_
   variance.push_back(rows_variance);
 }
 
-void drop(FitResult& result, long line, double x, double torque, const std::string& reason) {
+void drop(FitResult& result, long line, double x, double torque, const std::string& reason, long rows) {
   if (result.dropped.size() < 100) result.dropped.push_back({line, x, torque, reason});
-  ++result.dropped_count;
+  result.dropped_count += rows;
+  auto& reasons = result.dropped_reasons;
+  const auto known =
+      std::find_if(reasons.begin(), reasons.end(), [&](const auto& entry) { return entry.first == reason; });
+  if (known == reasons.end())
+    reasons.emplace_back(reason, rows);
+  else
+    known->second += rows;
+}
+
+long dropped_for(const FitResult& result, const std::string& reason) {
+  for (const auto& [name, rows] : result.dropped_reasons)
+    if (name == reason) return rows;
+  return 0;
 }
 
 Readings condense(const Readings& all, std::size_t most, FitResult& result) {
@@ -178,8 +191,8 @@ void report(const Readings& readings, const LeastSquaresFit& fit, FitResult& res
   double square = 0.0, left_out = 0.0;
   for (std::size_t i = 0; i < readings.size(); ++i) {
     if (fit.outlier[i]) {
-      drop(result, readings.line[i], readings.x[i], readings.torque[i], "outlier from the fitted curve");
-      result.dropped_count += std::lround(readings.count[i]) - 1;  // the mean of so many rows
+      drop(result, readings.line[i], readings.x[i], readings.torque[i], "outlier from the fitted curve",
+           std::lround(readings.count[i]));
       left_out += 1.0;
       continue;
     }

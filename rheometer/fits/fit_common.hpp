@@ -19,7 +19,11 @@ struct Readings {
   void push(double x_value, double torque_value, double rows, long line_number, double rows_variance = 0.0);
 };
 
-void drop(FitResult& result, long line, double x, double torque, const std::string& reason);
+/// Leaves out a row, or the mean of several from this line on.
+void drop(FitResult& result, long line, double x, double torque, const std::string& reason, long rows = 1);
+
+/// How many rows were left out for this reason.
+long dropped_for(const FitResult& result, const std::string& reason);
 
 /// At most `most` readings: means over runs of neighbours in x, with rows far from a run's median left out.
 Readings condense(const Readings& all, std::size_t most, FitResult& result);

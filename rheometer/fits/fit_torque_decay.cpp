@@ -15,6 +15,7 @@ namespace tremie::fitting {
 namespace {
 
 constexpr std::size_t most_readings = 2000;
+constexpr std::size_t least_left = 6;  ///< behind a rise; more than a decay has unknowns
 const std::string before_peak = "before the torque's peak";
 
 // --- the record
@@ -50,17 +51,37 @@ std::vector<char> spikes_of(const Readings& r) {
   return spike;
 }
 
-/// Number of leading rows in which the torque still rises: the vane starts, the material is strained
-/// elastically.
+/// The highest of some rows, each smoothed over `half` neighbours to both sides.
+std::size_t highest_of(const std::vector<double>& torque, std::size_t from, std::size_t to,
+                       std::size_t half) {
+  std::size_t best = from;
+  double most = 0.0;
+  for (std::size_t i = from; i < to; ++i) {
+    const std::size_t low = i < half ? 0 : i - half, high = std::min(torque.size(), i + half + 1);
+    double sum = 0.0;
+    for (std::size_t j = low; j < high; ++j) sum += torque[j];
+    const double mean = sum / static_cast<double>(high - low);
+    if (mean > most) most = mean, best = i;
+  }
+  return best;
+}
+
+/// Number of leading rows in which the torque still rises: the vane starts, the material is strained elastically. A
+/// record that begins within its noise of the peak has none. Behind a rise the peak is the highest of the first rows
+/// within the noise, as those just before it are too low for a decay by less than the noise of one. A record that rises
+/// to its end keeps the rows that a fit takes, which then says so.
 std::size_t rising_rows(const Readings& r) {
   if (r.size() < 8) return 0;
   const std::vector<double> smooth = running_median(r.torque);
   const auto peak = std::max_element(smooth.begin(), smooth.end());
-  const double low = *peak - std::max(6.0 * scatter_of(r.torque), 0.05 * *peak);
+  const double low = *peak - 2.0 * scatter_of(r.torque);
   const auto limit = static_cast<std::size_t>(peak - smooth.begin());
   std::size_t n = 0;
-  while (n < limit && smooth[n] < low) ++n;
-  return n;
+  while (n < limit && r.torque[n] < low) ++n;
+  if (n == 0) return 0;
+  const std::size_t half = r.size() / 400, behind = std::max<std::size_t>(5, 2 * half);
+  const std::size_t start = highest_of(r.torque, n, std::min(r.size(), n + behind), half);
+  return std::min(start, r.size() - least_left);
 }
 
 /// Rows with a torque from the start of the shear on; times counted from there.
@@ -306,9 +327,7 @@ std::vector<DecayFit> fit_candidates(const Readings& r, FitInput in) {
 void judge_fall(const Readings& r, std::size_t rows, const FitInput& in, FitResult& result) {
   const double first = mean_torque(r, 0.0, 0.05), last = mean_torque(r, 0.9, 1.0);
   const double noise = scatter_of(r.torque) / std::sqrt(std::max(1.0, 0.05 * static_cast<double>(r.size())));
-  const long before = std::count_if(result.dropped.begin(), result.dropped.end(),
-                                    [](const DroppedPoint& p) { return p.reason == before_peak; });
-  if (2 * static_cast<std::size_t>(std::max(before, result.dropped_count)) > rows && before > 0)
+  if (2 * static_cast<std::size_t>(dropped_for(result, before_peak)) > rows)
     result.reasons.push_back("the torque rises over most of the record: no decay");
   else if (last > 1.03 * first && last > first + 4.0 * noise)
     result.reasons.push_back(

@@ -52,6 +52,31 @@ TEST(CostEstimate, WithinAFactorOfTwoOverTheShippedScenes) {
   }
 }
 
+// Steps that runs took. A cone at 20 to 80 mm/s has steps of 6 ms beside it.
+TEST(CostEstimate, StepsAreNearThoseThatRunsTake) {
+  const struct {
+    const char* scene;
+    std::vector<std::string> overrides;
+    double steps;
+  } taken[] = {{"slump_flow_mix_a", {}, 203},
+               {"slump_flow_mix_b", {}, 178},
+               {"slump_flow_mix_c", {}, 121},
+               {"slump_flow_mix_a", {"test.lift_speed=5 cm/s"}, 275},
+               {"slump_flow_mix_a", {"test.lift_speed=2 cm/s"}, 292},
+               {"slump_flow_mix_a", {"test.lift_speed=instant"}, 203},
+               {"slump_flow_mix_a", {"model.cell=[\"5 mm\", \"2.5 mm\"]"}, 309},
+               {"slump_flow_mix_a", {"test.rest=60 s"}, 133},
+               {"slump_flow_mix_a_rest240", {}, 88},
+               {"slump_flow_mix_a_rest240", {"test.lift_speed=5 cm/s"}, 173},
+               {"slump_flow_mix_b_rest240", {}, 73},
+               {"slump_flow_mix_c_rest240", {}, 57}};
+  for (const auto& t : taken) {
+    const auto scene = scene::read(std::string(TREMIE_SCENES) + "/" + t.scene + ".toml", t.overrides);
+    EXPECT_NEAR(static_cast<double>(scene::estimate(scene)->steps_expected) / t.steps, 1.0, 0.25)
+        << t.scene << (t.overrides.empty() ? "" : ", " + t.overrides.front());
+  }
+}
+
 // 1e9 s of flow in steps of 1 ns: a number that is large, never a negative one.
 TEST(CostEstimate, ExtremesStayNumbers) {
   const auto scene = scene::read(std::string(TREMIE_SCENES) + "/slump_flow_mix_a.toml",

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+
 #include "apparatus/l_box/series.hpp"
 #include "apparatus/registry/registry.hpp"
 
@@ -35,6 +37,21 @@ TEST(LBoxChecks, CellsThatDoNotResolveTheDepthAreMarked) {
 
 // While the column is high nothing is thin.
 TEST(LBoxChecks, AHighColumnIsNotThin) { EXPECT_TRUE(reasons("25 mm", "0.3 s").empty()); }
+
+// A run that is stopped speaks neither of the test's end nor of a passing ratio as its result.
+TEST(LBoxChecks, AnInterruptedRunSpeaksOfSoFar) {
+  const std::atomic<bool> stop = true;
+  scene::Observer observer;
+  observer.interrupted = &stop;
+  const auto outcome = scene::run(scene::read_text(plane, "plane.toml", {"model.cell=20 mm"}), observer);
+  ASSERT_EQ(outcome.status, Status::interrupted);
+  std::string lines;
+  for (const auto& line : outcome.lines) lines += line + "\n";
+  EXPECT_EQ(lines.find("test.duration"), std::string::npos) << lines;
+  EXPECT_EQ(lines.find("never"), std::string::npos) << lines;
+  EXPECT_NE(lines.find("not yet when the run was interrupted"), std::string::npos) << lines;
+  EXPECT_NE(lines.find("passing ratio   none yet"), std::string::npos) << lines;
+}
 
 /// A line a second in which H1 falls by `fall` each [m] and H2 is half of it.
 std::vector<l_box::Sample> sinking(int seconds, double fall) {

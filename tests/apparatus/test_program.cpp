@@ -198,6 +198,10 @@ TEST_F(Program, AnInterruptKeepsWhatThereIs) {
             folder_.path());
   EXPECT_EQ(result.code, 130) << result.text;
   EXPECT_EQ(nlohmann::json::parse(test::read_file(folder_ / "a/summary.json"))["status"], "interrupted");
+  EXPECT_EQ(result.text.find("test.duration"), std::string::npos) << result.text;
+  const std::string report = test::read_file(folder_ / "a/report.html");
+  EXPECT_NE(report.find("so far, interrupted at"), std::string::npos);
+  EXPECT_EQ(report.find("when the time of the test was over"), std::string::npos);
 }
 
 }  // namespace

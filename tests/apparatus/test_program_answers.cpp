@@ -46,6 +46,31 @@ TEST_F(Answers, CompareSaysWhatDiffers) {
   EXPECT_NE(test::read_file(folder_ / "both/report.html").find("<svg"), std::string::npos);
 }
 
+// Of a run with an error and one without, the one that states it is named, and its ± stands beside its number.
+TEST_F(Answers, CompareNamesTheRunThatStatesItsError) {
+  ASSERT_EQ(tremie("run quick.toml --quiet --out plain").code, 0);
+  ASSERT_EQ(tremie("run quick.toml --quiet --out with --with-error --set test.rest='60 s'").code, 0);
+  const Result said = tremie("compare with plain --out both");
+  EXPECT_EQ(said.code, 0);
+  EXPECT_NE(said.text.find("with states the error by cells and steps"), std::string::npos) << said.text;
+  EXPECT_NE(said.text.find("plain does not (--with-error)"), std::string::npos) << said.text;
+  EXPECT_NE(said.text.find(" ± "), std::string::npos) << said.text;
+  const std::string page = test::read_file(folder_ / "both/report.html");
+  EXPECT_NE(page.find("plain does not (--with-error)"), std::string::npos);
+  EXPECT_NE(page.find(" ± "), std::string::npos);
+}
+
+TEST_F(Answers, ResumeSaysWhetherThereIsAFolder) {
+  EXPECT_NE(tremie("resume nothere").text.find("there is no such folder"), std::string::npos);
+  std::filesystem::create_directory(folder_ / "empty");
+  EXPECT_NE(tremie("resume empty").text.find("holds no unfinished run"), std::string::npos);
+}
+
+TEST_F(Answers, EstimateSuggestsTheUnitThatIsMeant) {
+  EXPECT_NE(tremie("estimate --spread 590").text.find("write \"590 mm\""), std::string::npos);
+  EXPECT_NE(tremie("estimate --spread 59").text.find("write \"59 cm\""), std::string::npos);
+}
+
 // What is no result, or of another apparatus, is named with what it lacks, and nothing is written.
 TEST_F(Answers, CompareRefusesWhatItCannotSetSideBySide) {
   ASSERT_EQ(tremie("run quick.toml --quiet --out fresh").code, 0);

@@ -256,6 +256,20 @@ TEST(Measured, ADifferenceBeyondTheToleranceIsSaid) {
             "Not measured on this concrete; 20 mm below the measured 590 ± 30 mm of Mix A.");
 }
 
+// A result that is null has its apparatus' words in the page; volumes are in litres; an interrupted run's are so far.
+TEST(Page, SaysWhyThereIsNoResult) {
+  scene::Outcome outcome = small_outcome();
+  outcome.results.push_back({"volume_in_channel_m3", 0.01});
+  outcome.none = {{"t500_s", "never reached"}};
+  outcome.answers = {{"spread_mm", "", "mm", 0}};
+  outcome.status = Status::interrupted, outcome.moving_at_end = true, outcome.cost.simulated = 1.2;
+  const std::string html = report_html(outcome, "", {}, "");
+  EXPECT_NE(html.find("never reached"), std::string::npos);
+  EXPECT_NE(html.find("10&nbsp;l"), std::string::npos);
+  EXPECT_NE(html.find("556 mm so far, interrupted at 1.20 s"), std::string::npos);
+  EXPECT_EQ(html.find("time of the test was over"), std::string::npos);
+}
+
 TEST(ResultFiles, WritesTables) {
   const test::TemporaryFolder folder;
   scene::Outcome outcome = small_outcome();

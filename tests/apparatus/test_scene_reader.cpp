@@ -72,6 +72,19 @@ TEST(SceneReader, UnknownKeyNamesTheNearest) {
   EXPECT_TRUE(says(complaint("duration = \"3 s\"\n" + mix_a), {"bad.toml:1: duration", "belongs in [test]"}));
 }
 
+// A table that is misspelt is named beside what is missing without it, and with every other fault.
+TEST(SceneReader, AMisspeltTableIsNamedBesideWhatIsMissing) {
+  const std::string what =
+      complaint("apparatus = \"slump_flow\"\n[mixx]\nyield_stress = \"54 Pa\"\n[test]\nduration = \"3\"\n");
+  EXPECT_TRUE(says(what, {"bad.toml:2: mixx: unknown key; did you mean \"mix\"?",
+                          "bad.toml:1: mix: missing key", "bad.toml:5: test.duration", "\"3 s\""}));
+  EXPECT_TRUE(
+      says(complaint("aparatus = \"slump_flow\"\nmix = \"mix_a\"\n"),
+           {"bad.toml:1: aparatus: unknown key; did you mean \"apparatus\"?", "apparatus: missing key"}));
+  EXPECT_TRUE(says(complaint(mix_a + "[test]\nrest = 240\nlift_speed = 15\n"),
+                   {"rest = \"240 s\"", "lift_speed = \"15 cm/s\""}));
+}
+
 TEST(SceneReader, MissingKey) {
   EXPECT_TRUE(says(complaint("apparatus = \"slump_flow\"\n[mix]\nyield_stress = \"54 Pa\"\n"),
                    {"bad.toml:2: mix.plastic_viscosity: missing key", "Pa.s"}));

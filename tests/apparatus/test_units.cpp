@@ -45,6 +45,33 @@ TEST(Units, WhatIsNoQuantitySaysWhatIsAllowed) {
   EXPECT_NE(message("54", Dimension::pressure).find("\"54 Pa\""), std::string::npos);
 }
 
+// What a person means who writes no unit: the one in which the number is usual, and whose value the key allows.
+TEST(Units, AMissingUnitIsTheOneThatIsMeant) {
+  EXPECT_NE(message("590", Dimension::length).find("write \"590 mm\""), std::string::npos);
+  EXPECT_EQ(unit_meant(0.59, Dimension::length), "m");
+  EXPECT_EQ(unit_meant(15.0, Dimension::speed), "cm/s");
+  EXPECT_EQ(unit_meant(0.15, Dimension::speed), "m/s");
+  EXPECT_EQ(unit_meant(150.0, Dimension::speed), "mm/s");
+  EXPECT_EQ(unit_meant(2400.0, Dimension::density), "kg/m3");
+  EXPECT_EQ(unit_meant(2.4, Dimension::density), "g/cm3");
+  EXPECT_EQ(unit_meant(0.25, Dimension::rotation), "rev/s");
+  EXPECT_EQ(unit_meant(15.0, Dimension::rotation), "rpm");
+  EXPECT_EQ(unit_meant(240.0, Dimension::time), "s");
+  const auto spread = [](double value) { return value > 0.2 && value < 2.0; };
+  EXPECT_EQ(unit_meant(59.0, Dimension::length, spread), "cm");
+  EXPECT_EQ(unit_meant(1e9, Dimension::length, spread), "mm");  // none fits
+}
+
+TEST(Units, RoundedForAPersonHasNoExponent) {
+  EXPECT_EQ(rounded(1042.3, 3), "1042");
+  EXPECT_EQ(rounded(999.7, 3), "1000");
+  EXPECT_EQ(rounded(54.04, 3), "54");
+  EXPECT_EQ(rounded(0.03583, 3), "0.0358");
+  EXPECT_EQ(rounded(-12345.6, 4), "-12346");
+  EXPECT_EQ(rounded(120.0, 2), "120");
+  EXPECT_EQ(rounded(0.0, 3), "0");
+}
+
 TEST(Units, AQuantityReadsBackBitForBit) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> exponent(-300.0, 300.0);

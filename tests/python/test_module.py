@@ -159,6 +159,24 @@ class Rheometer(Folder):
         self.assertEqual(from_arrays["yield_stress_Pa"], read["yield_stress_Pa"])
         np.testing.assert_array_equal(from_file.tables["fit.csv"]["torque_fit_N_m"], read.tables["fit.csv"]["torque_fit_N_m"])
 
+    def test_arrays_take_text_with_units(self):
+        torque = ["3 N.m", "2.55 N.m", "2200 mN.m", "1.7 N.m", "1.2 N.m"]
+        texts = tremie.fit(speeds=["0.5 rev/s", "0.4 rev/s", "0.3 rev/s", "12 rpm", "0.1 rev/s"], torque=torque)
+        revolutions = np.array([0.5, 0.4, 0.3, 0.2, 0.1])
+        plain = tremie.fit(speeds=2.0 * np.pi * revolutions, torque=[3.0, 2.55, 2.2, 1.7, 1.2])
+        self.assertAlmostEqual(texts["yield_stress_Pa"]["value"], plain["yield_stress_Pa"]["value"], places=6)
+        flow = tremie.reiner_riwlin(["0.25 rev/s"], yield_stress=54, plastic_viscosity=35.8)
+        self.assertEqual(flow.torque.shape, (1,))
+        with self.assertRaisesRegex(tremie.InputError, r"speeds\[1\]: .*wrong unit.*rev/s"):
+            tremie.fit(speeds=["0.5 rev/s", "0.4 Pa"], torque=[2, 1])
+        with self.assertRaisesRegex(tremie.InputError, r"torque\[0\]: .*no unit"):
+            tremie.fit(speeds=[0.5, 0.4], torque=["2", "1"])
+        for bad in ([None, None], object(), [[1], [1, 2]], "0.5 rev/s"):
+            with self.assertRaises(tremie.InputError):
+                tremie.fit(speeds=bad, torque=[2, 1])
+        with self.assertRaisesRegex(tremie.InputError, "rest"):
+            tremie.fit(t=[0, 1, 2], torque=[3, 2, 1], speed="0.25 rev/s", rest=[1])
+
     def test_reiner_riwlin(self):
         # fully sheared: T = 4 pi h [Omega mu + tau_0 ln(R_o/R_i)]/(R_i^-2 - R_o^-2)
         omega, tau_0, mu = np.array([2.0, 3.0]), 54.0, 35.8

@@ -146,6 +146,30 @@ TEST_F(Commands, FitNeverWritesOverAnEarlierResult) {
   EXPECT_EQ(tremie("fit curve.csv --out out --force").code, 0);
 }
 
+// Two records of one name go to the same folder unless --out says where: the second is refused.
+TEST_F(Commands, FitOfAnotherRecordOfTheSameNameIsRefused) {
+  std::filesystem::create_directories(folder_ / "a");
+  std::filesystem::create_directories(folder_ / "b");
+  write("a/torque.csv", curve_csv(6, 0.0));
+  write("b/torque.csv", curve_csv(7, 0.0));
+  EXPECT_EQ(tremie("fit a/torque.csv").code, 0);
+  EXPECT_EQ(tremie("fit b/torque.csv").code, 2);
+}
+
+// Each reason for which rows are left out is told with its number.
+TEST_F(Commands, TheFitsPageSaysWhyRowsAreLeftOut) {
+  std::string text = "time_s,torque_N_m\n0,1.0\n0.25,2.5\n0.5,3.7\n";
+  for (int i = 0; i < 80; ++i)
+    text += std::to_string(0.75 + 0.25 * i) + ',' +
+            std::to_string(2.2 + 1.9 * std::exp(-0.05 * i) + 0.002 * (i % 3)) + '\n';
+  write("decay.csv", text);
+  tremie("fit decay.csv --out out" + decay_options);
+  const std::string page = test::read_file(folder_ / "out/report.html");
+  EXPECT_NE(page.find("left out: 3 (before the torque&#39;s peak)"), std::string::npos)
+      << page.substr(0, 3000);
+  EXPECT_EQ(page.find("as outliers"), std::string::npos);
+}
+
 TEST_F(Commands, FitRefusesWhatIsNoRecord) {
   const auto refuse = [&](const std::string& text, const std::vector<std::string>& parts,
                           const std::string& options = "") {

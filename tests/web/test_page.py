@@ -138,6 +138,144 @@ def take_away(browser, program):
         check(abs(spread - shown) < 1e-9 * shown, f"the saved scene spreads to {spread:.2f} mm in the program")
 
 
+def text_of(browser, name):
+    return browser.run(f"return document.getElementById('{name}').textContent")
+
+
+def answered(browser):
+    browser.until("document.querySelector('.outcome .verdicts li')", 120)
+
+
+def open_link(browser, page, fragment):
+    """A link opened anew, and its result."""
+    browser.open("about:blank")
+    browser.open(f"{page}#{fragment}")
+    answered(browser)
+
+
+def write_into(browser, key, text):
+    browser.run(f"const field = document.getElementById('field-{key}'); field.value = '{text}'; field.dispatchEvent(new Event('change'))")
+
+
+def verdict_lines(browser):
+    return browser.run("return [...document.querySelectorAll('.outcome .verdicts li')].map((line) => line.textContent)")
+
+
+def read_links(browser, page):
+    """What of a link cannot be read is told, with what stands in its place; the rest is taken."""
+    cases = {"yield_stress=-5&plastic_viscosity=abc&lift=0": [("yield_stress=-5", "54 Pa"), ("plastic_viscosity=abc", "35.8 Pa·s"), ("lift=0", "15 cm/s")],
+             "yield_stress=80&rest=abc&colour=red": [("rest=abc", "0 s"), ("colour=red", "no field has this name")]}
+    for fragment, told in cases.items():
+        open_link(browser, page, fragment)
+        entries = text_of(browser, "unread").split("), ")
+        check(len(entries) == len(told) and all(any(entry in e and place in e for e in entries) for entry, place in told),
+              f"#{fragment}: {text_of(browser, 'unread')}")
+    check(browser.run("return document.getElementById('field-yield_stress').value") == "80", "what can be read of a link is taken")
+    check(browser.run("return document.getElementById('unread').role") == "status", "the line on a link is a status")
+    write_into(browser, "rest", "240")
+    check(text_of(browser, "unread") == "", "a change clears the line on the link")
+
+
+def doubt_t500(browser, page, program):
+    """The page doubts a t500 in the program's own words."""
+    with tempfile.TemporaryDirectory() as folder:
+        scene = pathlib.Path(folder) / "scene.toml"
+        scene.write_text(SCENES["Mix A"])
+        said = subprocess.run([program, "run", scene, "--out", f"{folder}/out", "--set", "mix.yield_stress=80 Pa"],
+                              check=True, capture_output=True, text=True).stdout
+    line = next(line for line in said.splitlines() if line.startswith("t500"))
+    doubt = line[line.index("not to be relied on"):]
+    open_link(browser, page, "yield_stress=80")
+    check(any("t500" in shown and doubt in shown for shown in verdict_lines(browser)), f"80 Pa: {doubt}")
+    open_link(browser, page, "yield_stress=54")
+    check(not any("relied on" in shown for shown in verdict_lines(browser)), "54 Pa: t500 is not doubted")
+
+
+def refuse_unreadable(browser, page, folder):
+    """Nothing is run or taken away while a field cannot be read."""
+    open_link(browser, page, "yield_stress=54")
+    address, before = browser.run("return location.href"), set(folder.iterdir())
+    write_into(browser, "yield_stress", "-5")
+    invalid = browser.run("return [...document.querySelectorAll('[aria-invalid]')].map((f) => [f.id, f.getAttribute('aria-invalid')])")
+    check(invalid == [["field-yield_stress", "true"]], f"aria-invalid: {invalid}")
+    told = set()
+    for button in ("run", "save-toml", "save-csv", "save-png", "copy-link"):
+        browser.run(f"document.getElementById('trouble').textContent = ''; document.getElementById('{button}').click()")
+        told.add(text_of(browser, "trouble"))
+    check(len(told) == 1 and "yield stress" in min(told), f"refused: {told}")
+    check(text_of(browser, "said") == "" and browser.run("return location.href") == address, "no link of an unreadable field")
+    write_into(browser, "density", "2300")
+    check("yield stress" in text_of(browser, "trouble") and browser.run("return document.getElementById('field-yield_stress').value") == "-5",
+          "another field's change keeps the unreadable one")
+    time.sleep(1)
+    check(set(folder.iterdir()) == before, "no file of an unreadable field")
+    write_into(browser, "yield_stress", "60")
+    check(browser.run("return document.querySelector('[aria-invalid]') === null") and "density=2300" in browser.run("return location.hash"), "a mended field is run")
+
+
+def save_mixes(browser, page, program, folder):
+    """A bundled mix keeps its name and what was measured on it; a changed one has its values."""
+    measured = {"mix_a": 590, "mix_b": 550, "mix_c": 500}
+    for mix, value in measured.items():
+        open_link(browser, page, "rest=0&duration=25")
+        browser.run(f"const mix = document.getElementById('mix'); mix.value = '{mix}'; mix.dispatchEvent(new Event('change'))")
+        answered(browser)
+        toml = saved_toml(browser, folder)
+        shown = float(browser.run("return document.getElementById('result-spread').dataset.value"))
+        results = native(program, toml)["results"]
+        check(f'mix = "{mix}"' in toml and "[mix]" not in toml and 'duration   = "25 s"' in toml, f"{mix}: saved by its name")
+        check(results["measured"]["spread_mm"] == value, f"{mix}: measured {value} mm in the program")
+        check(abs(results["spread_mm"] - shown) < 1e-9 * shown, f"{mix}: the saved scene spreads to {shown:.2f} mm in the program")
+    open_link(browser, page, "yield_stress=61.5")
+    check("[mix]" in saved_toml(browser, folder), "a changed mix is saved with its values")
+
+
+def saved_toml(browser, folder):
+    for file in folder.glob("*.toml"):
+        file.unlink()
+    browser.run("document.getElementById('save-toml').click()")
+    end = time.time() + 20
+    while not list(folder.glob("*.toml")) and time.time() < end:
+        time.sleep(0.1)
+    return next(folder.glob("*.toml")).read_text()
+
+
+def still_moving(browser, page):
+    """Without rest there is no class; more time helps a concrete, and no time a fluid."""
+    for fragment, advice in (("duration=1", "More time may be given"), ("yield_stress=0&structuration_rate=0&duration=1", "never comes to rest")):
+        open_link(browser, page, fragment)
+        shown = verdict_lines(browser)
+        check(any("Still moving" in line and advice in line for line in shown) and text_of(browser, "unread") == "", f"#{fragment}: {shown[0]}")
+    write_into(browser, "structuration_rate", "1.3")
+    check("structuration rate of 0" in text_of(browser, "trouble"), f"a fluid builds up nothing: {text_of(browser, 'trouble')}")
+
+
+def scroll_to_result(browser, page):
+    """On a telephone a run brings the result into view, and leaves the focus."""
+    open_link(browser, page, "yield_stress=54")
+    browser.run("const run = document.getElementById('run'); run.focus(); run.scrollIntoView()")
+    before = browser.run("return document.getElementById('result-spread').getBoundingClientRect().bottom")
+    browser.run("document.getElementById('run').click()")
+    top, bottom, focus = browser.run("const box = document.getElementById('result-spread').getBoundingClientRect();"
+                                     "return [box.top, box.bottom, document.activeElement.id]")
+    check(before < 0 <= top and bottom <= 844 and focus == "run", f"the result goes from {before:.0f} px to {top:.0f} px, the focus stays on {focus}")
+
+
+def use_the_fields(page, program):
+    browser = Browser(1280, 900)
+    try:
+        with tempfile.TemporaryDirectory() as folder:
+            browser.save_into(folder)
+            read_links(browser, page)
+            doubt_t500(browser, page, program)
+            refuse_unreadable(browser, page, pathlib.Path(folder))
+            save_mixes(browser, page, program, pathlib.Path(folder))
+            still_moving(browser, page)
+        check(browser.console_errors() == [], "links and fields: no console error")
+    finally:
+        browser.close()
+
+
 def use_the_page(page, program, out, width, dark):
     browser = Browser(width, 900 if width > 500 else 844, dark)
     try:
@@ -157,6 +295,8 @@ def use_the_page(page, program, out, width, dark):
             use_the_keyboard(browser)
             browser.screenshot(out / "estimate_1280_light.png")
             take_away(browser, program)
+        else:
+            scroll_to_result(browser, page)
         check(browser.console_errors() == [], f"{width} px, {'dark' if dark else 'light'}: no console error")
     finally:
         browser.close()
@@ -178,6 +318,7 @@ def main():
         check(browser.console_errors() == [], "no console error")
     finally:
         browser.close()
+    use_the_fields(page.as_uri(), program)
     use_the_page(page.as_uri(), program, out, 1280, False)
     use_the_page(page.as_uri(), program, out, 390, True)
     return 1 if failures else 0

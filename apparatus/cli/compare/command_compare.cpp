@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -11,6 +12,7 @@
 #include "apparatus/report/compare/comparison.hpp"
 #include "apparatus/report/rheometer_files.hpp"
 #include "apparatus/report/run_folder.hpp"
+#include "apparatus/scene/units.hpp"
 #include "libmpm/io/write_error.hpp"
 
 namespace tremie::cli {
@@ -41,16 +43,28 @@ void write(const report::Comparison& comparison, const Options& options, const S
   io::write_text(folder / "summary.json", summary.dump(2) + "\n");
 }
 
+/// "348.2 ± 8.1" where the run states its error.
+std::string value_text(const report::ComparedRow& row, std::size_t i) {
+  if (!row.numbers[i]) return row.texts[i];
+  const std::string text = fmt::format("{:.6g}", *row.numbers[i]);
+  return row.errors[i] ? text + " ± " + scene::rounded(*row.errors[i], 2) : text;
+}
+
+bool states_errors(const report::Comparison& comparison) {
+  return std::any_of(comparison.runs.begin(), comparison.runs.end(),
+                     [](const auto& run) { return !run.errors.empty(); });
+}
+
 void print_text(const report::Comparison& comparison) {
   fmt::print("{}\n", report::comparison_headline(comparison));
+  if (states_errors(comparison)) fmt::print("{}\n", report::error_sentence(comparison));
   if (const auto text = report::scene_sentence(comparison); !text.empty()) fmt::print("{}\n", text);
   std::size_t longest = 0;
   for (const auto& row : comparison.results) longest = std::max(longest, row.key.size());
   for (const auto& row : comparison.results) {
     if (!row.differs) continue;
     std::vector<std::string> values;
-    for (std::size_t i = 0; i < row.texts.size(); ++i)
-      values.push_back(row.numbers[i] ? fmt::format("{:.6g}", *row.numbers[i]) : row.texts[i]);
+    for (std::size_t i = 0; i < row.texts.size(); ++i) values.push_back(value_text(row, i));
     fmt::print("{:<{}}  {}\n", row.key, longest, fmt::join(values, " | "));
   }
 }

@@ -29,7 +29,8 @@ struct Options {
 
 estimate::Measured measured_of(const Options& o) {
   estimate::Measured m;
-  m.spread = *quantity("--spread", o.spread, Dimension::length);
+  const auto sensible = [](double spread) { return spread > 0.2 && spread < 2.0; };
+  m.spread = *quantity("--spread", o.spread, Dimension::length, sensible);
   if (m.spread <= 0.2) throw scene::InputError("--spread: must be more than the cone's 200 mm at its bottom");
   m.t500 = quantity("--t500", o.t500, Dimension::time);
   m.density = quantity("--density", o.density, Dimension::density).value_or(m.density);
@@ -42,7 +43,8 @@ estimate::Measured measured_of(const Options& o) {
 void print_interval(const char* name, const std::optional<estimate::Interval>& i, const char* unit,
                     const char* none) {
   if (i)
-    fmt::print("{:<24} {:.3g} {} [{:.3g}, {:.3g}]\n", name, i->value, unit, i->low, i->high);
+    fmt::print("{:<24} {} {} [{}, {}]\n", name, scene::rounded(i->value, 3), unit, scene::rounded(i->low, 3),
+               scene::rounded(i->high, 3));
   else
     fmt::print("{:<24} {}\n", name, none);
 }
@@ -50,9 +52,9 @@ void print_interval(const char* name, const std::optional<estimate::Interval>& i
 void print_text(const Options& o, const estimate::Measured& m, const estimate::Estimate& e) {
   print_interval("yield stress", e.tau_0, "Pa", "not in the table");
   print_interval("plastic viscosity", e.mu, "Pa.s", o.t500.empty() ? "takes --t500" : "not in the table");
-  fmt::print("{:<24} {:.3g} Pa (thin layer at rest, Roussel and Coussot)\n", "by the closed forms",
-             e.tau_0_thin_layer);
-  fmt::print("{:<24} {:.3g} Pa (with the plug's normal stress)\n", "", e.tau_0_plug);
+  fmt::print("{:<24} {} Pa (thin layer at rest, Roussel and Coussot)\n", "by the closed forms",
+             scene::rounded(e.tau_0_thin_layer, 3));
+  fmt::print("{:<24} {} Pa (with the plug's normal stress)\n", "", scene::rounded(e.tau_0_plug, 3));
   fmt::print(
       "{:<24} 95 %; {:.0f} kg/m3, spread read to {:.3g} mm{} (one standard error), a floor that holds\n",
       "intervals", m.density, 1e3 * m.spread_error,

@@ -5,17 +5,23 @@
 #include <algorithm>
 #include <numbers>
 
+#include "apparatus/scene/units.hpp"
+
 namespace tremie::cli {
+
+using scene::rounded;
 
 void print_estimate(const char* name, const std::optional<Estimate>& e, const char* unit) {
   if (!e)
     fmt::print("{:<22} not told by this record\n", name);
   else if (e->given)
-    fmt::print("{:<22} {:.4g} {} (given)\n", name, e->value, unit);
+    fmt::print("{:<22} {} {} (given)\n", name, rounded(e->value, 4), unit);
   else if (!e->ci95)
-    fmt::print("{:<22} {:.4g} {} (no interval: as many readings as parameters)\n", name, e->value, unit);
+    fmt::print("{:<22} {} {} (no interval: as many readings as parameters)\n", name, rounded(e->value, 4),
+               unit);
   else
-    fmt::print("{:<22} {:.4g} {} [{:.4g}, {:.4g}]\n", name, e->value, unit, e->ci95->low, e->ci95->high);
+    fmt::print("{:<22} {} {} [{}, {}]\n", name, rounded(e->value, 4), unit, rounded(e->ci95->low, 4),
+               rounded(e->ci95->high, 4));
 }
 
 namespace {

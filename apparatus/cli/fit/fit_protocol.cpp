@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "apparatus/cli/fit/fit_output.hpp"
+#include "apparatus/scene/units.hpp"
 
 namespace tremie::cli {
 
@@ -47,13 +48,15 @@ Json section_json(const SectionReading& s, std::size_t number) {
 }
 
 std::string number(const std::optional<double>& v, const char* unit) {
-  return v ? fmt::format("{:.4g} {}", *v, unit) : "not told";
+  return v ? fmt::format("{} {}", scene::rounded(*v, 4), unit) : "not told";
 }
 
 std::string told(const std::optional<Estimate>& e, const char* name, const char* unit) {
   if (!e || e->given) return {};
-  const std::string interval = e->ci95 ? fmt::format(" [{:.3g}, {:.3g}]", e->ci95->low, e->ci95->high) : "";
-  return fmt::format("{} {:.4g}{} {}; ", name, e->value, interval, unit);
+  const std::string interval =
+      e->ci95 ? fmt::format(" [{}, {}]", scene::rounded(e->ci95->low, 3), scene::rounded(e->ci95->high, 3))
+              : "";
+  return fmt::format("{} {}{} {}; ", name, scene::rounded(e->value, 4), interval, unit);
 }
 
 /// What a section says, in one line.

@@ -7,6 +7,7 @@
 
 #include "apparatus/report/page/charts.hpp"
 #include "apparatus/report/page/page.hpp"
+#include "apparatus/scene/units.hpp"
 
 namespace tremie::cli {
 namespace {
@@ -14,11 +15,12 @@ namespace {
 using report::Mark;
 constexpr double two_pi = 2.0 * std::numbers::pi;
 
-std::string text_of(const std::optional<double>& v) { return v ? fmt::format("{:.4g}", *v) : "–"; }
+std::string text_of(const std::optional<double>& v) { return v ? scene::rounded(*v, 4) : "–"; }
 
 std::string interval(const Estimate& e) {
-  return e.ci95 ? fmt::format("{:.3g} ({:.3g} to {:.3g})", e.value, e.ci95->low, e.ci95->high)
-                : fmt::format("{:.3g} (no interval)", e.value);
+  return e.ci95 ? fmt::format("{} ({} to {})", scene::rounded(e.value, 3), scene::rounded(e.ci95->low, 3),
+                              scene::rounded(e.ci95->high, 3))
+                : scene::rounded(e.value, 3) + " (no interval)";
 }
 
 bool is_curve(const SectionReading& s) {

@@ -39,6 +39,9 @@ void check_scene_beside(const report::Checkpoint& checkpoint) {
 /// Reads and checks all before anything is touched.
 report::Checkpoint checked(const std::string& folder) {
   const fs::path at = report::find_checkpoint(folder);
+  std::error_code error;
+  if (at.empty() && !fs::exists(folder, error))
+    throw scene::InputError(fmt::format("{}: there is no such folder", folder));
   if (at.empty())
     throw scene::InputError(fmt::format(
         "{}: holds no unfinished run (a run keeps its first checkpoint after output.checkpoint_interval)",

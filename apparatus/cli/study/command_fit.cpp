@@ -392,10 +392,11 @@ Answer replicates(const Options& o, const FitInput& in, double factor) {
     fmt::print("--- mean of {} records\n{:<22} {:>10} {:>24} {:>9} {:>9} {:>13}\n", fits.size(), "", "mean",
                "95 %", "between", "within", "laboratories");
     for (const ReplicateMean& m : means)
-      fmt::print(
-          "{:<22} {:>10.4g} {:>24} {:>9} {:>9} {:>13}\n", m.name, m.mean.value,
-          m.mean.ci95 ? fmt::format("[{:.4g}, {:.4g}] {}", m.mean.ci95->low, m.mean.ci95->high, m.unit) : "-",
-          percent(m.between), percent(m.within), percent(m.laboratories));
+      fmt::print("{:<22} {:>10} {:>24} {:>9} {:>9} {:>13}\n", m.name, scene::rounded(m.mean.value, 4),
+                 m.mean.ci95 ? fmt::format("[{}, {}] {}", scene::rounded(m.mean.ci95->low, 4),
+                                           scene::rounded(m.mean.ci95->high, 4), m.unit)
+                             : "-",
+                 percent(m.between), percent(m.within), percent(m.laboratories));
     fmt::print(
         "between laboratories one cement paste scattered by 27 % in yield stress and 24 % in viscosity "
         "(Haist et al. 2020)\n");

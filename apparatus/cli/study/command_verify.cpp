@@ -163,7 +163,7 @@ void add_command_verify(CLI::App& app, int& exit_code) {
   Command command(app, verify_command.name, verify_command.description);
   command.option("rungs", options->groups, "Rungs by name or number (default: all): " + known_groups());
   command.flag("--quick", options->quick, "Coarser cells, under five minutes (the default)");
-  command.flag_without("--full", {"--quick"}, options->full, "All cells, under an hour");
+  command.flag_without("--full", {"--quick"}, options->full, "All cells, some ten minutes");
   command.flag_without(
       "--validation", {"--quick", "--full"}, options->validation,
       "Predictions beside measurements on concrete, in place of the rungs; under ten minutes");

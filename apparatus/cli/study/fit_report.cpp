@@ -104,7 +104,7 @@ report::FitReport fit_report(const FitResult& r, const Instrument& in, const std
   add_flow_curve(r, in, report);
   add_flocculation(r, report);
   report.scatter = r.scatter, report.correlation = r.correlation;
-  report.readings = r.readings, report.dropped = r.dropped_count;
+  report.readings = r.readings, report.dropped = r.dropped_reasons;
   report.notes = r.notes, report.reasons = r.reasons, report.law_in_doubt = r.law_in_doubt;
   return report;
 }

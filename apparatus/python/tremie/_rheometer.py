@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from . import _tremie
 from ._result import Result, checked
-from ._values import Quantity, positive, si
+from ._values import Quantity, bare, numbers, positive, si
 
 
 def _instrument(vane_radius: Quantity, vane_height: Quantity, container_radius: Quantity) -> Any:
@@ -26,7 +26,7 @@ def _instrument(vane_radius: Quantity, vane_height: Quantity, container_radius: 
 
 
 def _readings(name: str, values: ArrayLike, torque: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-    x, T = np.asarray(values, dtype=float), np.asarray(torque, dtype=float)
+    x, T = numbers(name, values, "s" if name == "t" else "rad/s"), numbers("torque", torque, "N.m")
     if x.ndim != 1 or x.shape != T.shape:
         raise _tremie.InputError(f"{name} and torque: two arrays of one length; these have the shapes {x.shape}, {T.shape}")
     for what, array in ((name, x), ("torque", T)):
@@ -119,7 +119,7 @@ def reiner_riwlin(
     """Torques of a Bingham material (yield_stress [Pa], plastic_viscosity [Pa s]) between vane and container at the
     speeds [rad/s], the plug solved for."""
     instrument = _instrument(vane_radius, vane_height, container_radius)
-    omega = np.asarray(speed, dtype=float)
+    omega = numbers("speed", speed, "rad/s")
     torque, radius = _tremie.torques(
         si("yield_stress", yield_stress, "Pa"), si("plastic_viscosity", plastic_viscosity, "Pa.s"), omega.ravel(), instrument
     )
@@ -137,7 +137,7 @@ def reiner_riwlin_speed(
 ) -> np.ndarray:
     """The inverse of reiner_riwlin(): speeds [rad/s] that the torques [N m] drive; 0 where nothing yields."""
     instrument = _instrument(vane_radius, vane_height, container_radius)
-    T = np.asarray(torque, dtype=float)
+    T = numbers("torque", torque, "N.m")
     tau_0, mu = si("yield_stress", yield_stress, "Pa"), si("plastic_viscosity", plastic_viscosity, "Pa.s")
     return _tremie.speeds(tau_0, mu, T.ravel(), instrument).reshape(T.shape)
 
@@ -174,14 +174,14 @@ def flocculation(
     kinetics            "gated", "roussel" or "power" (then exponent n, saturation lambda_max or None for none)"""
     thixotropy = _tremie.Thixotropy(
         A_thix=si("structuration_rate", structuration_rate, "Pa/s"),
-        alpha=float(destructuration),
+        alpha=bare("destructuration", destructuration),
         kinetics=kinetics,
         gamma_c=si("critical_shear_rate", critical_shear_rate, "1/s"),
-        exponent=float(exponent),
-        saturation=saturation,
+        exponent=bare("exponent", exponent),
+        saturation=None if saturation is None else bare("saturation", saturation),
     )
-    at = np.atleast_1d(np.asarray(times, dtype=float))
-    return _tremie.flocculation(at, _segments(history), thixotropy, positive("yield_stress", yield_stress, "Pa"), float(initial))
+    at = np.atleast_1d(numbers("times", times, "s"))
+    return _tremie.flocculation(at, _segments(history), thixotropy, positive("yield_stress", yield_stress, "Pa"), bare("initial", initial))
 
 
 def estimate(

@@ -7,20 +7,47 @@ import math
 import os
 from typing import Any, Mapping, Sequence, Union
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from . import _tremie
 
 #: A number in the SI unit that the argument's description names, or text with any unit: 0.0635 or "63.5 mm".
 Quantity = Union[float, str]
 
 
+def bare(name: str, value: float, kind: str = "number") -> float:
+    """A finite number; raises InputError that names the argument."""
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        raise _tremie.InputError(f"{name}: {value!r} is no {kind}") from None
+    if not math.isfinite(number):
+        raise _tremie.InputError(f"{name}: {number} is no finite number")
+    return number
+
+
 def si(name: str, value: Quantity, unit: str) -> float:
     """The value in `unit`; raises InputError that names the argument."""
     if isinstance(value, str):
         return _tremie.quantity(name, value, unit)
-    number = float(value)
-    if not math.isfinite(number):
-        raise _tremie.InputError(f"{name}: {number} is no finite number")
-    return number
+    return bare(name, value, "number, nor text with a unit")
+
+
+def numbers(name: str, values: ArrayLike, unit: str) -> np.ndarray:
+    """An array of numbers in `unit`, or of texts with units; as si(), element by element."""
+    if isinstance(values, str):
+        raise _tremie.InputError(f"{name}: {values!r} is one value; it takes several, [\"…\", \"…\"]")
+    try:
+        array = np.asarray(values)
+        if array.dtype.kind in "biuf":
+            return array.astype(float)
+        flat = [si(f"{name}[{i}]", value, unit) for i, value in enumerate(np.asarray(values, dtype=object).ravel())]
+        return np.array(flat, dtype=float).reshape(array.shape)
+    except (TypeError, ValueError) as error:
+        if isinstance(error, _tremie.InputError):
+            raise
+        raise _tremie.InputError(f"{name}: takes numbers, or texts with units: {error}") from None
 
 
 def positive(name: str, value: Quantity, unit: str) -> float:

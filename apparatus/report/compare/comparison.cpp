@@ -63,11 +63,13 @@ void set_difference(const std::vector<RunResult>& runs, ComparedRow& row) {
 
 ComparedRow row_of(const std::vector<RunResult>& runs, std::vector<Entry> RunResult::*part,
                    const std::string& key) {
-  ComparedRow row{key, {}, {}, false, {}, {}};
+  ComparedRow row{key, {}, {}, false, {}, {}, {}};
   for (const auto& run : runs) {
     const Entry* entry = find_entry(run.*part, key);
     row.texts.push_back(entry ? entry->text : "–");
     row.numbers.push_back(entry ? entry->number : std::nullopt);
+    row.errors.push_back(row.numbers.back() && part == &RunResult::results ? error_of(run, key)
+                                                                           : std::nullopt);
     row.differs = row.differs || row.texts.back() != row.texts.front();
   }
   set_difference(runs, row);
@@ -157,6 +159,20 @@ std::vector<std::string> comparison_reasons(const Comparison& comparison) {
       reasons.push_back(fmt::format("{}: the run is {}", run.name, run.status));
   }
   return reasons;
+}
+
+std::string error_sentence(const Comparison& comparison) {
+  std::vector<std::string> with, without;
+  for (const auto& run : comparison.runs) (run.errors.empty() ? without : with).push_back(run.name);
+  if (with.empty())
+    return "The runs state no error by cells and steps (--with-error), so a small difference may be theirs.";
+  if (without.empty())
+    return "The ± of a difference is by cells and steps, of the two runs that are furthest apart.";
+  return fmt::format(
+      "{} {} the error by cells and steps, the ± beside a number; {} {} not (--with-error), so a difference "
+      "from {} has no ±.",
+      fmt::join(with, ", "), with.size() == 1 ? "states" : "state", fmt::join(without, ", "),
+      without.size() == 1 ? "does" : "do", without.size() == 1 ? "it" : "them");
 }
 
 std::string scene_sentence(const Comparison& comparison) {

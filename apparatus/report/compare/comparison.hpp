@@ -18,8 +18,9 @@ struct ComparedRow {
   std::vector<std::string> texts;
   std::vector<std::optional<double>> numbers;
   bool differs = false;
-  std::optional<double> difference;  ///< largest less smallest, where all are numbers
-  std::optional<double> error;       ///< of that by cells and steps, where the two runs state one
+  std::optional<double> difference;           ///< largest less smallest, where all are numbers
+  std::optional<double> error;                ///< of that by cells and steps, where the two runs state one
+  std::vector<std::optional<double>> errors;  ///< of each run's number, where it states one
 };
 
 struct Comparison {
@@ -38,6 +39,9 @@ std::string comparison_json(const Comparison& comparison);
 
 /// Why a run among them is not to be trusted.
 std::vector<std::string> comparison_reasons(const Comparison& comparison);
+
+/// Which runs state an error by cells and steps, and what the ± are; in a sentence.
+std::string error_sentence(const Comparison& comparison);
 
 /// In a sentence: "The scenes differ in test.rest: 0 s | 240 s."
 std::string scene_sentence(const Comparison& comparison);

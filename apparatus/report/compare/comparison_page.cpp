@@ -82,7 +82,9 @@ void add_curves(const Comparison& comparison, Page& page) {
 
 std::string cell_text(const ComparedRow& row, std::size_t i) {
   if (row.texts[i] == "true" || row.texts[i] == "false") return row.texts[i] == "true" ? "yes" : "no";
-  return row.numbers[i] ? person_number(*row.numbers[i], row.key) : row.texts[i];
+  if (!row.numbers[i]) return row.texts[i];
+  const std::string text = person_number(*row.numbers[i], row.key);
+  return row.errors[i] ? text + " ± " + person_number(*row.errors[i], row.key) : text;
 }
 
 std::string difference_text(const ComparedRow& row) {
@@ -123,12 +125,7 @@ GridTable result_table(const Comparison& comparison) {
 Trust trust_of(const Comparison& comparison) {
   Trust trust{true, "", comparison_reasons(comparison)};
   trust.trusted = trust.reasons.empty();
-  const bool errors = std::any_of(comparison.results.begin(), comparison.results.end(),
-                                  [](const auto& row) { return row.error.has_value(); });
-  trust.text =
-      errors ? "The ± of a difference is by cells and steps, of the two runs that are furthest apart."
-             : "The runs state no error by cells and steps (--with-error), so a small difference may be "
-               "theirs.";
+  trust.text = error_sentence(comparison);
   return trust;
 }
 

@@ -32,7 +32,7 @@ std::string below(const std::string& place, const std::string& key) {
 std::string list_text(const Json& list) {
   std::vector<std::string> items;
   for (const auto& item : list)
-    items.push_back(item.is_number()   ? fmt::format("{:.4g}", item.get<double>())
+    items.push_back(item.is_number()   ? scene::rounded(item.get<double>(), 4)
                     : item.is_string() ? item.get<std::string>()
                                        : item.dump());
   const bool interval = list.size() == 2 && list.front().is_number();

@@ -7,16 +7,18 @@
 
 #include "apparatus/report/page/charts.hpp"
 #include "apparatus/report/page/page.hpp"
+#include "apparatus/scene/units.hpp"
 
 namespace tremie::report {
 namespace {
 
 std::string value_text(const FitParameter& p) {
   if (!p.value) return "not told by this record";
-  const std::string text = fmt::format("{:.4g}", *p.value);
+  const std::string text = scene::rounded(*p.value, 4);
   if (p.given) return text + " (given)";
-  return p.low && p.high ? fmt::format("{} ({:.4g} to {:.4g})", text, *p.low, *p.high)
-                         : text + " (no interval)";
+  return p.low && p.high
+             ? fmt::format("{} ({} to {})", text, scene::rounded(*p.low, 4), scene::rounded(*p.high, 4))
+             : text + " (no interval)";
 }
 
 std::string x_label(const FitReport& fit) { return fit.decay ? "time (s)" : "speed (rev/s)"; }
@@ -76,13 +78,21 @@ void add_residuals(const FitReport& fit, Page& page) {
   add(chart, "residuals", "Without a pattern where the model fits.", page);
 }
 
+/// "left out: 2 (before the torque's peak), 1 (no torque)".
+std::string left_out(const FitReport& fit) {
+  std::vector<std::string> parts;
+  for (const auto& [reason, rows] : fit.dropped) parts.push_back(fmt::format("{} ({})", rows, reason));
+  if (parts.empty()) return "none is left out";
+  return fmt::format("left out: {}", fmt::join(parts, ", "));
+}
+
 std::string trust_text(const FitReport& fit) {
   const bool pattern = std::abs(fit.correlation) >= 0.3 && fit.readings > 10;
   return fmt::format(
-      "{} readings are used, {} are left out as outliers. They scatter by {:.2g} % about the fitted line{} "
+      "{} readings are used; {}. Those used scatter by {:.2g} % about the fitted line{} "
       "Intervals "
       "hold 95 %.",
-      fit.readings, fit.dropped, 100.0 * fit.scatter,
+      fit.readings, left_out(fit), 100.0 * fit.scatter,
       pattern ? fmt::format(
                     ", and successive ones go together (correlation {:.2f}): to that size the model leaves "
                     "something out, or the record is smoothed.",
@@ -94,7 +104,7 @@ std::string headline(const FitReport& fit) {
   std::string text;
   for (const FitParameter& p : fit.parameters) {
     if (!p.value || p.given) continue;
-    text += fmt::format("{}{} {:.3g}{}{}", text.empty() ? "" : ", ", p.words, *p.value,
+    text += fmt::format("{}{} {}{}{}", text.empty() ? "" : ", ", p.words, scene::rounded(*p.value, 3),
                         p.unit.empty() ? "" : " ", p.unit);
   }
   const std::string file = std::filesystem::path(fit.record).filename().string();

@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tremie::report {
@@ -27,7 +28,8 @@ struct FitReport {
   std::vector<double> lambda_apparent, lambda_line;          ///< over x, as read off the torque; may be empty
   double scatter = 0.0;                                      ///< relative standard deviation about the fit
   double correlation = 0.0;                                  ///< of successive residuals
-  long readings = 0, dropped = 0;
+  long readings = 0;
+  std::vector<std::pair<std::string, long>> dropped;  ///< rows that were left out, by their reason
   bool law_in_doubt = false;  ///< another law describes the readings far better; a note tells which
   std::vector<std::string> notes, reasons;
   std::string command;  ///< repeats the fit

@@ -4,6 +4,7 @@
 
 #include "apparatus/report/page/charts.hpp"
 #include "apparatus/report/page/page.hpp"
+#include "apparatus/scene/units.hpp"
 
 namespace tremie::report {
 namespace {
@@ -40,8 +41,10 @@ GridTable means_table(const ReplicatesReport& r) {
                   {}};
   for (const MeanParameter& m : r.means) {
     const std::string unit = m.unit.empty() ? "" : " " + m.unit;
-    table.rows.push_back({m.words, fmt::format("{:.4g}{}", m.mean, unit),
-                          m.low && m.high ? fmt::format("{:.4g} to {:.4g}", *m.low, *m.high) : "–",
+    table.rows.push_back({m.words, scene::rounded(m.mean, 4) + unit,
+                          m.low && m.high
+                              ? fmt::format("{} to {}", scene::rounded(*m.low, 4), scene::rounded(*m.high, 4))
+                              : "–",
                           fmt::format("{} of {}", m.records, r.fits.size()), percent(m.between),
                           percent(m.within), percent(m.laboratories)});
   }
@@ -54,8 +57,7 @@ GridTable records_table(const ReplicatesReport& r) {
     table.columns.push_back(m.unit.empty() ? m.words : fmt::format("{} ({})", m.words, m.unit));
   for (std::size_t i = 0; i < r.fits.size(); ++i) {
     std::vector<std::string> row{fmt::format("{}", i + 1), r.fits[i].record, percent(r.fits[i].scatter)};
-    for (const MeanParameter& m : r.means)
-      row.push_back(m.values[i] ? fmt::format("{:.4g}", *m.values[i]) : "–");
+    for (const MeanParameter& m : r.means) row.push_back(m.values[i] ? scene::rounded(*m.values[i], 4) : "–");
     table.rows.push_back(row);
   }
   return table;
@@ -64,8 +66,8 @@ GridTable records_table(const ReplicatesReport& r) {
 std::string headline(const ReplicatesReport& r) {
   std::string text;
   for (const MeanParameter& m : r.means) {
-    text += fmt::format("{}{} {:.3g}", text.empty() ? "" : ", ", m.words, m.mean);
-    if (m.low && m.high) text += fmt::format(" ± {:.2g}", 0.5 * (*m.high - *m.low));
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", m.words, scene::rounded(m.mean, 3));
+    if (m.low && m.high) text += " ± " + scene::rounded(0.5 * (*m.high - *m.low), 2);
     if (!m.unit.empty()) text += " " + m.unit;
   }
   return fmt::format("{} records of one material: {}", r.fits.size(),

@@ -162,8 +162,11 @@ std::string shape_svg(const Shape& shape) {
       "<line class=\"wall\" stroke=\"#1c2126\" stroke-width=\"2\" x1=\"{0:.1f}\" x2=\"{1:.1f}\" "
       "y1=\"{2:.1f}\" y2=\"{2:.1f}\"/>",
       paper.x(box.x0), paper.x(box.x1), section_end + 1);
+  // What clings to a wall is no height of the body.
   text += centred(0.5 * width, section_end + 20,
-                  fmt::format("section, true proportions; {:.0f} mm at its highest", 1e3 * tall));
+                  shape.walls.empty()
+                      ? fmt::format("section, true proportions; {:.0f} mm at its highest", 1e3 * tall)
+                      : "section, true proportions");
   double end = section_end + 32;
   if (shape.plan_diameter > 0.0) {
     text += plan_svg(shape, 0.5 * width, scale, end);

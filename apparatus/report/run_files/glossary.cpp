@@ -137,11 +137,12 @@ std::string words_of(const std::string& name) {
 
 std::string unit_for_people(const std::string& name) {
   const std::string unit = unit_of(name);
-  return unit == "1" ? "" : unit == "N.m" ? "N·m" : unit == "Pa.s" ? "Pa·s" : unit == "m3" ? "m³" : unit;
+  return unit == "1" ? "" : unit == "N.m" ? "N·m" : unit == "Pa.s" ? "Pa·s" : unit == "m3" ? "l" : unit;
 }
 
 std::string person_number(double value, const std::string& name) {
   if (!std::isfinite(value)) return "–";
+  if (unit_of(name) == "m3") value *= 1e3;  // litres, as unit_for_people() says
   if (unit_of(name) == "mm") return fmt::format("{:.{}f}", value, std::abs(value) < 10.0 ? 1 : 0);
   // Runs are good to about a per cent: three digits.
   return std::abs(value) < 100.0 ? fmt::format("{:.3g}", value) : fmt::format("{:.0f}", value);

@@ -12,10 +12,10 @@ std::string words_of(const std::string& name);
 /// "mm", "1/s", "N.m": the unit that a name ends with; "1" for none.
 std::string unit_of(const std::string& name);
 
-/// The same as people write it: "N·m"; empty for none.
+/// The same as people write it: "N·m"; empty for none. Volumes are in litres, as person_number() has them.
 std::string unit_for_people(const std::string& name);
 
-/// A number with as many digits as it has: millimetres whole, else four.
+/// A number in that unit with as many digits as it has: millimetres whole, else three.
 std::string person_number(double value, const std::string& name);
 
 }  // namespace tremie::report

@@ -10,6 +10,7 @@
 #include "apparatus/report/run_files/chart.hpp"
 #include "apparatus/report/run_files/glossary.hpp"
 #include "apparatus/report/summary.hpp"
+#include "apparatus/scene/units.hpp"
 
 namespace tremie::report {
 namespace {
@@ -76,7 +77,10 @@ Trust trust_of(const scene::Outcome& o) {
                                                                      c.unconverged_steps, o.cost.steps),
                               c.points_lost == 0 ? std::string("no point was lost")
                                                  : fmt::format("{} points were lost", c.points_lost));
-  if (o.moving_at_end)
+  if (o.status == Status::interrupted)
+    trust.text +=
+        fmt::format(" The run was interrupted at {:.2f} s: its numbers are those so far.", o.cost.simulated);
+  else if (o.moving_at_end)
     trust.text += " The concrete still moved when the time of the test was over (test.duration).";
   return trust;
 }
@@ -88,6 +92,13 @@ std::string value_text(const scene::ResultValue& value, const std::string& key) 
   return "–";
 }
 
+/// What stands in place of a result that is null.
+std::string words_for_none(const scene::Outcome& o, const std::string& name) {
+  for (const auto& [result, words] : o.none)
+    if (result == name) return words;
+  return "–";
+}
+
 void add_rows(const scene::Outcome& o, const std::vector<scene::Result>& results, const std::string& prefix,
               NumberTable& table) {
   for (const auto& [name, value] : results) {
@@ -96,9 +107,11 @@ void add_rows(const scene::Outcome& o, const std::vector<scene::Result>& results
       continue;
     }
     if (name == "measured" && std::holds_alternative<std::monostate>(value)) continue;  // nothing was
-    std::string text = value_text(value, name);
+    std::string text = prefix.empty() && std::holds_alternative<std::monostate>(value)
+                           ? words_for_none(o, name)
+                           : value_text(value, name);
     if (const auto error = error_of(o, name); error && prefix.empty())
-      text += fmt::format(" ± {:.2g}", *error);
+      text += " ± " + scene::rounded(*error, 2);
     const bool number = std::holds_alternative<double>(value);
     table.rows.push_back({words_of(prefix + name), text, number ? unit_for_people(name) : "", prefix + name});
   }
@@ -106,11 +119,11 @@ void add_rows(const scene::Outcome& o, const std::vector<scene::Result>& results
 
 NumberTable cost_table(const Cost& c) {
   return {"What it cost",
-          {{"processor time", fmt::format("{:.3g}", c.cpu), "s", "cpu_s"},
-           {"by the clock", fmt::format("{:.3g}", c.wall), "s", "wall_s"},
+          {{"processor time", scene::rounded(c.cpu, 3), "s", "cpu_s"},
+           {"by the clock", scene::rounded(c.wall, 3), "s", "wall_s"},
            {"steps", fmt::format("{}", c.steps), "", "steps"},
            {"points", fmt::format("{}", c.points), "", "points"},
-           {"simulated", fmt::format("{:.4g}", c.simulated), "s", "simulated_s"}}};
+           {"simulated", scene::rounded(c.simulated, 4), "s", "simulated_s"}}};
 }
 
 void add_shape(const scene::Outcome& o, const MovingPicture& moving, Page& page) {
@@ -169,7 +182,10 @@ std::string headline_of(const scene::Outcome& o) {
     if (const std::string part = answer_text(o, answer); !part.empty())
       text += (text.empty() ? "" : ", ") + part;
   const std::string asked = o.asked.empty() ? o.apparatus : o.asked;
-  const std::string so_far = o.moving_at_end ? " and still moving" : "";
+  const std::string so_far = o.status == Status::interrupted
+                                 ? fmt::format(" so far, interrupted at {:.2f} s", o.cost.simulated)
+                             : o.moving_at_end ? " and still moving"
+                                               : "";
   return asked + ": " + (text.empty() ? status_name(o.status) : text + so_far);
 }
 
@@ -181,7 +197,8 @@ std::string measured_line(const scene::Outcome& o) {
       fmt::format("{:.3g} {} {}", std::abs(m.difference), m.unit, m.difference < 0.0 ? "below" : "above");
   if (!m.on.empty()) return fmt::format("Not measured on this concrete; {} {} of {}.", off, measured, m.on);
   if (o.moving_at_end && m.difference <= m.tolerance)
-    return fmt::format("Still moving at the end, so no verdict; so far {} {}.", off, measured);
+    return fmt::format("Still moving{}, so no verdict; so far {} {}.",
+                       o.status == Status::interrupted ? "" : " at the end", off, measured);
   if (std::abs(m.difference) <= m.tolerance) return fmt::format("Agrees with {}: {}.", measured, off);
   return m.tolerance > 0.0 ? fmt::format("Differs from {}: {}, {:.1f} times the tolerance.", measured, off,
                                          std::abs(m.difference) / m.tolerance)

@@ -62,7 +62,7 @@ function measuredOn(concrete) {
 
 function classText({class_en12350_8: name, spread_mm: spread}) {
   const limits = {SF1: "550 to 650 mm", SF2: "660 to 750 mm", SF3: "760 to 850 mm"};
-  if (name) return `Class ${name} of EN 206 (${limits[name]})`;
+  if (name) return `Class ${name} of EN 206 (${limits[name]}, read to 10 mm)`;
   return spread < 600 ? "Below class SF1 of EN 206 (550 to 650 mm)" : "Above class SF3 of EN 206 (760 to 850 mm)";
 }
 
@@ -80,13 +80,19 @@ function measuredText(spread, {value, tolerance}) {
   ];
 }
 
+const stillMoving = ({yield_stress}) => yield_stress > 0 ? "More time may be given: time of the test, at most." :
+                                                           "Without a yield stress a fluid never comes to rest.";
+
+/// What the program's line on t500 says beside its value; "" where that is to be relied on.
+const doubtOfT500 = (lines) => lines.find((line) => line.startsWith("t500"))?.split(/\s{2,}/)[2] ?? "";
+
 /// Lines of [text, class].
 function verdicts(run) {
   const {results, checks} = run.summary, lines = [];
   const {spread_mm: spread, stopped_at_s: stopped, t500_s: t500} = results;
   checks.reasons.forEach((reason) => lines.push([`Not to be trusted: ${reason}`, "bad"]));
   if (stopped == null)
-    lines.push(["Still moving at the end of the run: no class and no verdict", "bad"]);
+    lines.push([`Still moving at the end of the run: no class and no verdict. ${stillMoving(run.concrete)}`, "bad"]);
   else {
     lines.push([
       `${results.within_tremie_range ? "Within" : "Outside"} the range of tremie concrete (450 to 650 mm)`,
@@ -94,8 +100,8 @@ function verdicts(run) {
     ]);
     lines.push([classText(results), ""]);
   }
-  const near = stopped != null && Math.abs(spread - 500) < 14 ? "; not to be relied on: the spread ends too near to 500 mm" : "";
-  lines.push([(t500 == null ? "t500: never reached" : `t500 ${seconds(t500)}, from the start of the lift`) + near, ""]);
+  const doubt = doubtOfT500(run.result.lines);
+  lines.push([(t500 == null ? "t500: never reached" : `t500 ${seconds(t500)}, from the start of the lift`) + (doubt && `; ${doubt}`), ""]);
   const height = `${millimetres(results.height_mm)} high in the middle`;
   if (stopped != null)
     lines.push([keptItsShape(results) ? `It kept the cone's shape: ${height}` : `At rest after ${seconds(stopped)}; ${height}`, ""]);

@@ -2,7 +2,7 @@
 
 const tremieRange = [450, 650];
 
-function drawChart(canvas, runs, time, measured) {
+function drawChart(canvas, runs, time) {
   const {context, width, height} = prepare(canvas, canvas.clientWidth < 500 ? 0.75 : 0.5);
   const legendHeight = runs.length === 2 ? 36 : 0;  // above the curves, so that it never covers one
   const box = {left: 46, right: width - 12, top: 12 + legendHeight, bottom: height - 40};
@@ -13,7 +13,7 @@ function drawChart(canvas, runs, time, measured) {
   band(context, box, y(tremieRange[0]), y(tremieRange[1]), theme("--band"), "tremie concrete, 450 to 650 mm");
   axes(context, box, x, y, last, most);
   line(context, [[box.left, y(500)], [box.right, y(500)]], theme("--text"), 1, [6, 4]);
-  if (measured) drawMeasured(context, box, y, measured);
+  runs.forEach((run, i) => drawMeasured(context, box.right - 10 - 16 * i, y, run, runs.length === 2));
   for (const run of runs) {
     line(context, run.time.map((t, i) => [x(t), y(run.spread[i])]), run.colour, 2.5, run.dash);
     const t500 = run.summary?.results.t500_s;
@@ -70,14 +70,18 @@ function dot(context, x, y, colour, open = false) {
   context.stroke();
 }
 
-/// The measured spread and its tolerance as a bar at the end of the time.
-function drawMeasured(context, box, y, {value, tolerance}) {
-  const x = box.right - 10;
-  line(context, [[x, y(value - tolerance)], [x, y(value + tolerance)]], theme("--measured"), 2);
+/// The measured spread and its tolerance as a bar at the end of the time; one of two in its run's colour, named in the
+/// legend.
+function drawMeasured(context, x, y, run, ofTwo) {
+  const measured = measuredOn(run.concrete), colour = ofTwo ? run.colour : theme("--measured");
+  if (!measured) return;
+  const {value, tolerance} = measured;
+  line(context, [[x, y(value - tolerance)], [x, y(value + tolerance)]], colour, 2);
   for (const mm of [value - tolerance, value + tolerance])
-    line(context, [[x - 5, y(mm)], [x + 5, y(mm)]], theme("--measured"), 2);
-  dot(context, x, y(value), theme("--measured"));
-  context.fillStyle = theme("--measured");
+    line(context, [[x - 5, y(mm)], [x + 5, y(mm)]], colour, 2);
+  dot(context, x, y(value), colour);
+  if (ofTwo) return;
+  context.fillStyle = colour;
   context.textAlign = "right";
   context.fillText("measured", x - 10, y(value) + 4);
 }
@@ -88,6 +92,8 @@ function legend(context, runs, x) {
     const y = 16 + 16 * i;
     line(context, [[x, y - 4], [x + 26, y - 4]], run.colour, 2.5, run.dash);
     context.fillStyle = theme("--text");
-    context.fillText(run.label, x + 32, y);
+    const measured = measuredOn(run.concrete);
+    const bar = measured ? `; bar: measured ${measured.value} ± ${measured.tolerance} mm` : "";
+    context.fillText(run.label + bar, x + 32, y);
   });
 }

@@ -9,6 +9,10 @@ const slider = {
   },
 };
 
+function mark(text, wrong) {
+  wrong ? text.setAttribute("aria-invalid", "true") : text.removeAttribute("aria-invalid");
+}
+
 /// Builds the fields; change(key, value) is called when a value is settled, never for one that cannot be run.
 function buildFields(place, change) {
   for (const f of fields) {
@@ -27,8 +31,10 @@ function buildFields(place, change) {
     const trouble = element("p", {class: "wrong", id: `wrong-${f.key}`, role: "alert"});
     const settle = (value) => {
       trouble.textContent = wrong(f, value);
-      text.toggleAttribute("aria-invalid", Boolean(trouble.textContent));
-      if (!trouble.textContent) change(f.key, value);
+      mark(text, Boolean(trouble.textContent));
+      if (trouble.textContent) return;
+      showField(f, value);
+      change(f.key, value);
     };
     range.addEventListener("input", () => (text.value = slider.value(f, range.value)));
     range.addEventListener("change", () => settle(slider.value(f, range.value)));
@@ -39,16 +45,18 @@ function buildFields(place, change) {
 
 /// The first field whose text is no value; undefined where all are.
 function firstWrong() {
-  return fields.map((f) => byId(`field-${f.key}`)).find((text) => text.hasAttribute("aria-invalid"));
+  return fields.find((f) => byId(`wrong-${f.key}`).textContent);
+}
+
+function showField(f, value) {
+  byId(`field-${f.key}`).value = value;
+  byId(`slider-${f.key}`).value = slider.from(f, value);
+  byId(`wrong-${f.key}`).textContent = "";
+  mark(byId(`field-${f.key}`), false);
 }
 
 function showConcrete(concrete) {
-  for (const f of fields) {
-    byId(`field-${f.key}`).value = concrete[f.key];
-    byId(`slider-${f.key}`).value = slider.from(f, concrete[f.key]);
-    byId(`wrong-${f.key}`).textContent = "";
-    byId(`field-${f.key}`).removeAttribute("aria-invalid");
-  }
+  for (const f of fields) showField(f, concrete[f.key]);
   byId("mix").value = mixOf(concrete);
 }
 

@@ -45,16 +45,17 @@ function buildEstimate(place, density, take) {
     place.append(element("div", {class: "field"}, element("label", {for: `measured-${key}`}, word), box));
   }
   let found = {};
-  const read = (key) => {
-    const text = byId(`measured-${key}`).value, value = readNumber(text);
-    if (text.trim() && Number.isNaN(value)) throw new Error(`write a number, not ${text}`);
-    return text.trim() ? value : undefined;
+  const read = ({key, word}) => {
+    const field = byId(`measured-${key}`), text = field.value.trim(), value = readNumber(text);
+    mark(field, text && Number.isNaN(value));
+    if (text && Number.isNaN(value)) throw new Error(`${word}: write a number, not ${text}`);
+    return text ? value : undefined;
   };
   const run = async () => {
     byId("estimate-wrong").textContent = "";
     try {
       const measured = {density_kg_m3: density()};
-      for (const {key} of measuredFields) measured[key] = read(key);
+      for (const field of measuredFields) measured[field.key] = read(field);
       const answer = await estimateFor(measured), {yield_stress_Pa: tau, plastic_viscosity_Pa_s: mu} = answer.results;
       found = {...(tau && {yield_stress: Number(tau.value.toPrecision(3))}), ...(mu && {plastic_viscosity: Number(mu.value.toPrecision(3))})};
       if (answer.checks.reasons.length) found = {};

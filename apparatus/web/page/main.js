@@ -27,7 +27,7 @@ function draw() {
   const seen = view(), {time} = player;
   drawSection(byId("section"), state.runs, time, seen);
   drawPlate(byId("plate"), state.runs, time, seen);
-  drawChart(byId("chart"), state.runs, time, state.runs.length === 1 ? measuredOn(state.runs[0].concrete) : null);
+  drawChart(byId("chart"), state.runs, time);
   document.querySelector(".at-rest").hidden = !quantities[state.by].log;
   byId("low").textContent = written(seen.range[0], 2);
   byId("high").textContent = written(seen.range[1], 2);
@@ -61,6 +61,20 @@ function complain(message) {
   byId("trouble").textContent = message;
 }
 
+/// Whether a field cannot be read, or values cannot be run beside each other; says which.
+function refused() {
+  const field = firstWrong();
+  const fault = field ? byId(`wrong-${field.key}`).textContent : state.concretes.map(wrongTogether).find(Boolean);
+  if (fault) complain(`${fault}. Nothing was run, saved or copied.`);
+  return Boolean(fault);
+}
+
+/// Brings the result into view where the page is one column; the focus stays.
+function seeResult() {
+  const narrow = matchMedia("(max-width: 800px)").matches;
+  if (narrow) document.querySelector(".answers").scrollIntoView({behavior: still.matches ? "auto" : "smooth"});
+}
+
 /// Runs one scene into one run of the page; `turn` tells whether it is still wanted. Settles with the result, and with
 /// `over`: a promise of the result with its error bar, null where that was given up.
 async function runInto(run, which, scene, turn) {
@@ -87,6 +101,7 @@ function start(concretes) {
   labelsOf(concretes).forEach((label, i) => (state.runs[i].label = label));
   state.errorState = "computing the error …";
   complain("");
+  byId("unread").textContent = "";
   busy(true);
   showAnswers();
   showAt(0);
@@ -104,6 +119,7 @@ function finish(turn) {
 async function runAll() {
   const turn = start(state.concretes);
   history.replaceState(null, "", `#${fragmentOf(state.concretes)}`);
+  if (refused()) return cancel();
   try {
     for (const [i, run] of state.runs.entries()) {
       const {over} = await runInto(run, i, tomlOf(run.concrete), turn);
@@ -173,6 +189,14 @@ function change(concrete) {
   runAll();
 }
 
+/// Takes one field's value; what another field cannot read stays in it, and nothing is run.
+function changeField(key, value) {
+  const concrete = {...state.concretes[state.active], [key]: value};
+  if (!firstWrong()) return change(concrete);
+  state.concretes[state.active] = concrete;
+  refused();
+}
+
 function chooseSecond(on) {
   const other = mixOf(state.concretes[0]) === "mix_c" ? "mix_a" : "mix_c";
   state.concretes =
@@ -183,12 +207,12 @@ function chooseSecond(on) {
 }
 
 function listen() {
-  byId("run").addEventListener("click", () => {
+  const whenRead = (id, act) => byId(id).addEventListener("click", () => {
+    if (!refused()) return act();
     const field = firstWrong();
-    if (!field) return runAll();
-    complain("A field cannot be read; nothing was run.");
-    field.focus();
+    if (field) byId(`field-${field.key}`).focus();
   });
+  whenRead("run", () => (runAll(), seeResult()));
   byId("cancel").addEventListener("click", cancel);
   byId("second").addEventListener("change", (event) => chooseSecond(event.target.checked));
   document.querySelectorAll('input[name="which"]')
@@ -196,35 +220,42 @@ function listen() {
   document.querySelectorAll('input[name="by"]')
       .forEach(
           (radio) => radio.addEventListener("change", () => ((state.by = radio.value), (state.range = null), draw())));
-  byId("save-toml")
-      .addEventListener(
-          "click",
-          () => labelsOf(state.concretes).forEach((label, i) => saveToml({concrete: state.concretes[i], label})));
-  byId("save-csv").addEventListener("click", () => state.runs.forEach(saveCsv));
-  byId("save-png").addEventListener("click", () => savePng(state.runs));
-  byId("copy-link").addEventListener("click", () => copyLink(byId("said")));
+  whenRead(
+      "save-toml",
+      () => labelsOf(state.concretes).forEach((label, i) => saveToml({concrete: state.concretes[i], label})));
+  whenRead("save-csv", () => state.runs.forEach(saveCsv));
+  whenRead("save-png", () => savePng(state.runs));
+  whenRead("copy-link", () => copyLink(byId("said")));
   window.addEventListener("resize", draw);
-  window.addEventListener("hashchange", () => load(concretesOf(location.hash.slice(1))));
+  window.addEventListener("hashchange", () => load(location.hash.slice(1)));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
     state.runs.forEach((run, i) => (run.colour = theme(i ? "--second" : "--first")));
     draw();
   });
 }
 
-function load(concretes) {
+/// Takes a link's fragment, and says what of it was not read.
+function load(fragment) {
+  const {concretes, unread} = readFragment(fragment);
   state.concretes = concretes.length ? concretes : [concreteOf("mix_a")];
   state.active = 0;
   showChoice();
   runAll();
+  if (unread.length) byId("unread").textContent = `Not read from the link: ${unread.join(", ")}.`;
 }
 
-buildMixes(
-    (name) => change(
-        {...concreteOf(name), rest: state.concretes[state.active].rest, lift: state.concretes[state.active].lift}));
-buildFields(byId("fields"), (key, value) => change({...state.concretes[state.active], [key]: value}));
+buildMixes((name) => {
+  const {rest, lift, duration} = state.concretes[state.active];
+  change({...concreteOf(name), rest, lift, duration});
+  seeResult();
+});
+buildFields(byId("fields"), changeField);
 buildEstimate(
     byId("estimate-fields"), () => state.concretes[state.active].density,
-    (values) => change({...state.concretes[state.active], ...values, rest: 0, structuration_rate: 0}));
+    (values) => {
+      change({...state.concretes[state.active], ...values, rest: 0, structuration_rate: 0});
+      seeResult();
+    });
 buildPlayer();
 player.draw = draw;
 byId("scale").style.background = `linear-gradient(to right, ${shades.join(", ")})`;
@@ -234,4 +265,4 @@ window.tremie = {
   estimate: estimateFor,
   version: byId("version").textContent
 };
-load(concretesOf(location.hash.slice(1)));
+load(location.hash.slice(1));

@@ -4,7 +4,7 @@ const mixes = JSON.parse(byId("mixes").textContent);
 
 /// The fields: key, symbol, unit, limits of the slider, and how it goes into the scene.
 const fields = [
-  {key: "yield_stress", word: "yield stress", symbol: "τ₀", unit: "Pa", low: 5, high: 500, log: true, above: 0},
+  {key: "yield_stress", word: "yield stress", symbol: "τ₀", unit: "Pa", low: 5, high: 500, log: true, least: 0},
   {
     key: "plastic_viscosity",
     word: "plastic viscosity",
@@ -19,7 +19,18 @@ const fields = [
   {key: "rest", word: "rest before the lift", symbol: "t", unit: "s", low: 0, high: 1200, least: 0},
   {key: "structuration_rate", word: "structuration rate", symbol: "A_thix", unit: "Pa/s", low: 0, high: 5, least: 0},
   {key: "destructuration", word: "destructuration", symbol: "α", unit: "", low: 0.001, high: 1, log: true, least: 0},
-  {key: "lift", word: "lift of the cone", symbol: "v", unit: "cm/s", low: 2, high: 50, log: true, above: 0},
+  {
+    key: "lift",
+    word: "lift of the cone",
+    symbol: "v",
+    unit: "cm/s",
+    low: 0.5,
+    high: 50,
+    log: true,
+    least: 0.5,
+    why: " cm/s; slower lifts are beyond what is verified"
+  },
+  {key: "duration", word: "time of the test, at most", symbol: "", unit: "s", low: 5, high: 300, log: true, above: 0},
 ];
 const unitShown = {
   "Pa.s": "Pa·s",
@@ -37,16 +48,26 @@ function concreteOf(name) {
     rest: 0,
     structuration_rate: mix.structuration_rate,
     destructuration: mix.destructuration,
-    lift: 15
+    lift: 15,
+    duration: 30
   };
 }
+
+/// A concrete's value with its unit.
+const shown = (field, concrete) => `${concrete[field.key]} ${unitShown[field.unit] ?? field.unit}`.trim();
 
 /// Why a value cannot be run; "" where it can.
 function wrong(field, value) {
   if (!Number.isFinite(value)) return `${field.word}: write a number${field.unit && ` in ${unitShown[field.unit] ?? field.unit}`}, like ${written(field.low)}`;
   if (field.above !== undefined && value <= field.above) return `${field.word}: must be above ${field.above}`;
-  if (field.least !== undefined && value < field.least) return `${field.word}: must be at least ${field.least}`;
+  if (field.least !== undefined && value < field.least) return `${field.word}: must be at least ${field.least}${field.why ?? ""}`;
   return "";
+}
+
+/// Why values cannot be run beside each other; "" where they can.
+function wrongTogether({yield_stress, structuration_rate}) {
+  if (yield_stress > 0 || structuration_rate === 0) return "";
+  return "yield stress: 0 takes a structuration rate of 0, since rest builds up by A_thix/τ₀";
 }
 
 /// The bundled mix whose values the concrete has, whatever its rest and lift; "" for one of its own.
@@ -67,16 +88,23 @@ function labelsOf(concretes) {
       (label, i) => (labels.indexOf(label) === labels.lastIndexOf(label) ? label : `${label} (${i + 1})`));
 }
 
-/// The scene that `tremie run` takes.
-function tomlOf(c) {
-  const lines = [`# ${nameOf(c)}: slump flow after ${c.rest} s of rest.`, 'apparatus = "slump_flow"', ""];
+/// The scene's lines on the mix: the name of a bundled one, which brings what was measured on it, or the values.
+function mixLines(c) {
+  if (mixOf(c)) return [`mix = "${mixOf(c)}"`];
+  const lines = [""];
   lines.push("[mix]", `density           = "${c.density} kg/m3"`, `yield_stress      = "${c.yield_stress} Pa"`);
   lines.push(`plastic_viscosity = "${c.plastic_viscosity} Pa.s"`);
   if (c.structuration_rate > 0) {
     lines.push("", "[mix.thixotropy]", `structuration_rate = "${c.structuration_rate} Pa/s"`);
     lines.push(`destructuration    = ${c.destructuration}`);
   }
-  lines.push("", "[test]", `rest       = "${c.rest} s"`, `lift_speed = "${c.lift} cm/s"`);
+  return lines;
+}
+
+/// The scene that `tremie run` takes.
+function tomlOf(c) {
+  const lines = [`# ${nameOf(c)}: slump flow after ${c.rest} s of rest.`, 'apparatus = "slump_flow"', ...mixLines(c), ""];
+  lines.push("[test]", `rest       = "${c.rest} s"`, `lift_speed = "${c.lift} cm/s"`, `duration   = "${c.duration} s"`);
   return lines.join("\n") + "\n";
 }
 
@@ -87,19 +115,20 @@ function fragmentOf(concretes) {
   return parts.toString();
 }
 
-/// The concretes of a fragment; empty where it holds none. A value that cannot be run falls back to Mix A's.
-function concretesOf(fragment) {
-  const parts = new URLSearchParams(fragment);
-  const read = (suffix) => {
-    if (!fields.some((f) => parts.has(f.key + suffix))) return [];
-    const concrete = concreteOf("mix_a");
-    for (const f of fields) {
-      const value = Number(parts.get(f.key + suffix) ?? NaN);
-      if (!wrong(f, value)) concrete[f.key] = value;
-    }
-    return [concrete];
-  };
-  return [...read(""), ...read("2")];
+/// {concretes, unread} of a fragment. No concretes where it holds none; Mix A's values where it gives none that can be
+/// run. `unread`: a text for each entry that was not taken.
+function readFragment(fragment) {
+  const concretes = {}, unread = [];
+  for (const [name, text] of new URLSearchParams(fragment)) {
+    const suffix = name.endsWith("2") ? "2" : "", field = fields.find((f) => f.key + suffix === name);
+    const concrete = field && (concretes[suffix] ??= concreteOf("mix_a"));
+    const value = readNumber(text), fault = field ? wrong(field, value) : "no field has this name";
+    if (!fault)
+      concrete[field.key] = value;
+    else
+      unread.push(`${name}=${text} (${fault}${field ? `; ${shown(field, concrete)} stands in its place` : ""})`);
+  }
+  return {concretes: ["", "2"].filter((suffix) => suffix in concretes).map((suffix) => concretes[suffix]), unread};
 }
 
 const tomlValue = (value) => Array.isArray(value) ? `[${value.map(tomlValue).join(", ")}]` : JSON.stringify(value);

@@ -1,5 +1,6 @@
 // What the web page calls: a scene as TOML in, summary.json out, and the points on the way. One thread.
 
+#include <algorithm>
 #include <any>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -29,8 +30,9 @@ namespace {
 
 using namespace tremie;
 
-/// Simulated time between two frames [s]: the concrete spreads within one second.
-constexpr double page_frame_interval = 0.1;
+/// Simulated time between two frames [s]: the concrete spreads within one second. A long test has fewer, which the
+/// browser must hold all.
+constexpr double page_frame_interval = 0.1, most_frames = 600.0;
 
 void hand_over(const Frame& frame) {
   std::vector<float> points;
@@ -50,6 +52,7 @@ void hand_over(const scene::Scene& scene, const scene::Outcome& outcome) {
   json["summary"] = nlohmann::ordered_json::parse(report::summary_json(outcome));
   json["scene"] = scene.resolved;
   json["notes"] = scene.notes;
+  json["lines"] = outcome.lines;
   json["timeseries"] = report::columns_csv(outcome.series);
   tremie_page_result(json.dump().c_str());
 }
@@ -69,7 +72,8 @@ std::vector<std::string> lines_of(const std::string& text) {
 void run(const char* toml, const char* overrides, bool with_error) {
   scene::Scene scene = scene::read_text(toml, "scene.toml", lines_of(overrides));
   scene.output.frames = true;
-  if (auto* test = std::any_cast<slump_flow::Scene>(&scene.test)) test->frame_interval = page_frame_interval;
+  if (auto* test = std::any_cast<slump_flow::Scene>(&scene.test))
+    test->frame_interval = std::max(page_frame_interval, test->duration / most_frames);
   scene::Observer observer = observer_of_run(0);
   observer.on_frame = [](const Frame& frame) { hand_over(frame); };
   scene::Outcome outcome = scene::run(scene, observer);
