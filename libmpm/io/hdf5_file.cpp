@@ -115,7 +115,7 @@ void Hdf5File::array(const std::string& path, std::span<const double> values, st
   if (packed && !values.empty()) {
     H5Pset_chunk(creation, columns == 1 ? 1 : 2, size.data());
     H5Pset_shuffle(creation);
-    H5Pset_deflate(creation, 6);
+    H5Pset_deflate(creation, 1);
   }
   {
     const Handle made(H5Dcreate2(file_, path.c_str(), packed ? H5T_NATIVE_FLOAT : H5T_NATIVE_DOUBLE, space,

@@ -302,6 +302,25 @@ std::size_t choose(const Readings& r, const std::vector<DecayFit>& fits, FitResu
   return best;
 }
 
+/// Power kinetics contain Roussel's, n = 1: a fit of them that ended above those starts again from there.
+void start_power_from_roussel(const Readings& r, const FitInput& in, std::vector<DecayFit>& fits) {
+  const auto of = [&](Kinetics k) {
+    return std::find_if(fits.begin(), fits.end(), [k](const DecayFit& f) { return f.kinetics == k; });
+  };
+  const auto roussel = of(Kinetics::roussel), power = of(Kinetics::power);
+  double n = 0.0;
+  if (roussel == fits.end() || power == fits.end() ||
+      common_mean_square(fits, power->fit, n) <= common_mean_square(fits, roussel->fit, n))
+    return;
+  DecayFit again = *power;
+  again.layout.all = roussel->parameters();
+  again.layout.all[i_exponent] = 1.0;
+  for (std::size_t k = 0; k < again.layout.free.size(); ++k)
+    again.fit.parameters[k] = again.layout.all[again.layout.free[k]];
+  again = refined(r, in, again, 100);
+  if (common_mean_square(fits, again.fit, n) < common_mean_square(fits, power->fit, n)) *power = again;
+}
+
 /// Fits of the kinetics that are asked for, in order of their complexity; one that has no solution is left out.
 std::vector<DecayFit> fit_candidates(const Readings& r, FitInput in) {
   if (!in.choose_kinetics) return {fit_decay(r, in)};
@@ -319,6 +338,8 @@ std::vector<DecayFit> fit_candidates(const Readings& r, FitInput in) {
     }
   }
   if (fits.empty()) throw std::runtime_error(failure);
+  in.kinetics = Kinetics::power;
+  start_power_from_roussel(r, in, fits);
   return fits;
 }
 

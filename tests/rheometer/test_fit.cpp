@@ -234,6 +234,17 @@ TEST(Fit, SaysWhenTheSizesAreThoseOfAWrongUnit) {
   EXPECT_TRUE(fit(flow_curve(7), {}).reasons.empty());
 }
 
+// Power kinetics of exponent 1 are Roussel's: on a record that his equation made they fit no worse than it does.
+TEST(FitTorqueDecay, PowerKineticsFitNoWorseThanRoussels) {
+  FitInput input = decay_input();
+  input.choose_kinetics = true;
+  const CouetteFlow flow{mix_a, {1.3, 0.02, Kinetics::roussel, 0.1, lambda_0}, omega, {}};
+  const FitResult f = fit(torque_decay(thixotropic_couette(flow, even_times(60, 60.0), {}), 0.003), input);
+  ASSERT_EQ(f.candidates.size(), 3u);
+  // each leaves out outliers of its own
+  EXPECT_LE(f.candidates[2].scatter, 1.02 * f.candidates[1].scatter);
+}
+
 // A flat torque has nothing that breaks down: no alpha can be read from it, and none is reported.
 TEST(FitTorqueDecay, AFlatTorqueTellsNoAlpha) {
   TorqueRecord record;
