@@ -36,7 +36,7 @@ svg .body{fill:var(--c0)!important}svg .wall{stroke:var(--ink)!important}svg .so
 .tables>section>h2{margin-top:.6rem}
 table{border-collapse:collapse;width:100%;font-size:.94rem}
 td,th{padding:.22rem .5rem .22rem 0;border-bottom:1px solid var(--line);text-align:left;vertical-align:top}td:last-child:not(.n){overflow-wrap:anywhere}
-td.n,th.n{text-align:right;font-variant-numeric:tabular-nums;white-space:nowrap;padding-right:0}
+td.n,th.n{text-align:right;font-variant-numeric:tabular-nums;padding-right:0}
 .key{font-size:.76rem;display:block;overflow-wrap:anywhere;font-family:ui-monospace,"DejaVu Sans Mono",monospace}
 .wide{overflow-x:auto}.wide td,.wide th{padding-right:1.1rem}.wide td.n{white-space:normal}.wide td:first-child{min-width:8rem}
 .wide th{white-space:normal;overflow-wrap:break-word;min-width:4.5rem}
