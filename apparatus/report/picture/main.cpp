@@ -1,6 +1,6 @@
 // tremie-picture FRAME.vtp OUT.png [--axisymmetric] [--spread MM]: the final shape on its plate, seen
 // obliquely, coloured by the flocculation state, or by the shear rate where there is none.
-// tremie-picture DIR --movie OUT.mp4|OUT.gif: all frames of a slump flow.
+// tremie-picture DIR --movie [OUT.mp4|OUT.gif]: all frames of a slump flow; DIR/movie.mp4 where no file is named.
 // A program of its own, so that a run without pictures loads no VTK. Needs a display: VTK is built for GLX here.
 
 #include <cstdio>
@@ -29,8 +29,8 @@ Options parse(int argc, char** argv) {
       view.axisymmetric = true;
     else if (word == "--spread" && i + 1 < argc)
       view.spread_mm = std::atof(argv[++i]);
-    else if (word == "--movie" && i + 1 < argc)
-      options.movie = argv[++i];
+    else if (word == "--movie")
+      options.movie = i + 1 < argc ? argv[++i] : view.frame + "/movie.mp4";
     else if (view.frame.empty())
       view.frame = word;
     else
@@ -39,7 +39,7 @@ Options parse(int argc, char** argv) {
   if (view.frame.empty() || view.out.empty() == options.movie.empty())
     throw std::invalid_argument(
         "usage: tremie-picture FRAME.vtp OUT.png [--axisymmetric] [--spread MM]\n"
-        "       tremie-picture DIR --movie OUT.mp4|OUT.gif");
+        "       tremie-picture DIR --movie [OUT.mp4|OUT.gif]");
   return options;
 }
 
