@@ -170,7 +170,7 @@ TEST(FitTorqueDecay, FindsTheStartOfTheShear) {
 // are far below, whatever the noise behind, and the fit is the one that begins at the peak.
 TEST(FitTorqueDecay, LeavesOutARiseThatBendsIntoThePeak) {
   for (const double noise : {0.0, 0.01})
-    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    for (std::uint64_t seed = 1; seed <= (noise > 0.0 ? 2 : 1); ++seed) {
       const TorqueRecord decay = torque_decay(exact_decay(even_times(160, 40.0)), noise, seed);
       TorqueRecord rising = decay;
       for (double& t : rising.time) t += 1.0;
@@ -192,11 +192,11 @@ TEST(FitTorqueDecay, LeavesOutARiseThatBendsIntoThePeak) {
 // Without a rise the first reading is used, wherever the noise puts the highest one.
 TEST(FitTorqueDecay, KeepsTheStartOfANoisyDecay) {
   long dropped = 0;
-  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const FitResult f = fit(torque_decay(exact_decay(even_times(200, 20.0)), 0.02, seed), decay_input());
     dropped += f.dropped_count;
   }
-  EXPECT_LE(dropped, 8);
+  EXPECT_LE(dropped, 2);
 }
 
 TEST(FitTorqueDecay, IsNotMovedByOutliers) {
