@@ -1,5 +1,7 @@
 // The slump flow by implicit steps.
 
+#include <stdexcept>
+
 #include "apparatus/run/energy_watch.hpp"
 #include "apparatus/run/frames.hpp"
 #include "apparatus/run/run_checks.hpp"
@@ -98,8 +100,13 @@ Outcome run_implicit_in(const Scene& scene, const Observer& observer) {
 }  // namespace
 
 Outcome run_implicit(const Scene& scene, const Observer& observer) {
-  return scene.model.space == SpaceKind::axisymmetric ? run_implicit_in<Axisymmetric>(scene, observer)
-                                                      : run_implicit_in<ThreeD>(scene, observer);
+  if (scene.model.space == SpaceKind::axisymmetric) return run_implicit_in<Axisymmetric>(scene, observer);
+#ifdef TREMIE_SECTIONS_ONLY
+  throw std::invalid_argument(
+      "model.space: the page has \"axisymmetric\" alone; run the scene by `tremie run`");
+#else
+  return run_implicit_in<ThreeD>(scene, observer);
+#endif
 }
 
 }  // namespace tremie::slump_flow

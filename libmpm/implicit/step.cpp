@@ -100,11 +100,13 @@ template StepReport implicit_step(ImplicitBody<Axisymmetric>&, const YieldLaw&, 
                                   const RigidWall<2>&);
 template StepReport implicit_step(ImplicitBody<PlaneStrain>&, const YieldLaw&, const StepSettings&,
                                   const RigidWall<2>&);
+#ifndef TREMIE_SECTIONS_ONLY  // the page for the browser has no vane and nothing in space
 template StepReport implicit_step(ImplicitBody<Couette>&, const YieldLaw&, const StepSettings&,
                                   const RigidWall<1>&);
 template StepReport implicit_step(ImplicitBody<Polar>&, const YieldLaw&, const StepSettings&,
                                   const RigidWall<2>&);
 template StepReport implicit_step(ImplicitBody<ThreeD>&, const YieldLaw&, const StepSettings&,
                                   const RigidWall<3>&);
+#endif
 
 }  // namespace tremie

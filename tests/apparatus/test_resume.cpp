@@ -10,9 +10,10 @@ namespace {
 // One kill in each of the apparatus and in explicit steps; 100 kills: test_resume_slow.
 TEST(Resume, KilledRunsEndWithTheSameBytes) {
   test::KilledRuns runs(1);
-  for (const test::KilledScene& scene : test::killed_scenes)
-    if (scene.name != "quarter" && scene.name != "paper") runs.kill(scene, 1);
-  EXPECT_EQ(runs.killed(), 7);
+  for (const test::KilledScene& scene : test::killed_scenes)  // the others: test_resume_slow.cpp
+    if (scene.name == "cone" || scene.name == "explicit" || scene.name == "couette" || scene.name == "box")
+      runs.kill(scene, 1);
+  EXPECT_EQ(runs.killed(), 4);
 }
 
 class Refused : public ::testing::Test {
