@@ -4,7 +4,7 @@
 The same numbers to 1e-9 relative: both do the same arithmetic in double precision; what differs is the order in
 which compilers contract products and the last digit of exp and log, 1e-14 on the spread. Leaves screenshots in OUT.
 Exit 77, a skipped test, where there is no Chromium or no native program."""
-import json, pathlib, subprocess, sys, tempfile, time
+import concurrent.futures, json, pathlib, subprocess, sys, tempfile, time
 
 from browser import Browser, is_there
 
@@ -318,9 +318,12 @@ def main():
         check(browser.console_errors() == [], "no console error")
     finally:
         browser.close()
-    use_the_fields(page.as_uri(), program)
-    use_the_page(page.as_uri(), program, out, 1280, False)
-    use_the_page(page.as_uri(), program, out, 390, True)
+    with concurrent.futures.ThreadPoolExecutor(2) as browsers:  # a browser keeps one core busy
+        uses = [browsers.submit(use_the_fields, page.as_uri(), program),
+                browsers.submit(use_the_page, page.as_uri(), program, out, 1280, False),
+                browsers.submit(use_the_page, page.as_uri(), program, out, 390, True)]
+        for use in uses:
+            use.result()
     return 1 if failures else 0
 
 
