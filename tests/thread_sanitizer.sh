@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Two threads under the thread sanitizer: tests/thread_sanitizer.sh library, the loops of libmpm, a minute; without
+# Two threads under the thread sanitizer: tests/thread_sanitizer.sh library, the loops of libmpm, two to four minutes; without
 # "library" every apparatus too, ten minutes on two cores. Needs clang 14 and its OpenMP, whose tool (archer) tells the
 # sanitizer what OpenMP orders.
 set -euo pipefail
