@@ -136,7 +136,8 @@ std::string head(const std::vector<CaseGroup>& groups, const std::string& comman
       "# Verification: error against run time\n\ntremie {} ({}), {}, {}.\nMade by `{}`. CPU seconds are of "
       "one "
       "thread; "
-      "a shared machine makes them uncertain by a fifth.\nThe order is the least-squares slope of log error "
+      "other work on the machine may double them, so compare them within this file alone.\nThe order is the "
+      "least-squares slope of log error "
       "over "
       "log "
       "cell size over all resolutions of the scheme.\n\n",

@@ -75,7 +75,7 @@ function measuredText(spread, {value, tolerance}) {
   if (Math.abs(by) <= tolerance) return [`${stands}; the computed spread agrees`, "good"];
   return [
     `${stands}; computed ${Math.abs(by).toFixed(0)} mm ${
-        sign}, beyond that. It follows from a rheometer's values and an α from the literature.`,
+        sign}, beyond that. The spread computed follows from a rheometer's values and an α from the literature.`,
     "bad"
   ];
 }
@@ -94,9 +94,11 @@ function verdicts(run) {
   if (stopped == null)
     lines.push([`Still moving at the end of the run: no class and no verdict. ${stillMoving(run.concrete)}`, "bad"]);
   else {
+    const within = results.within_tremie_range, error = run.summary.error?.spread_mm ?? 0;
+    const near = tremieRange.some((end) => Math.abs(spread - end) < error);
     lines.push([
-      `${results.within_tremie_range ? "Within" : "Outside"} the range of tremie concrete (450 to 650 mm)`,
-      results.within_tremie_range ? "good" : "bad"
+      `${within ? "Within" : "Outside"} the range of tremie concrete (450 to 650 mm)${near ? ", nearer to its end than the error" : ""}`,
+      near ? "" : within ? "good" : "bad"
     ]);
     lines.push([classText(results), ""]);
   }

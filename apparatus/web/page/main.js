@@ -59,13 +59,15 @@ function busy(on) {
 
 function complain(message) {
   byId("trouble").textContent = message;
+  if (message) byId("said").textContent = "";
 }
 
 /// Whether a field cannot be read, or values cannot be run beside each other; says which.
 function refused() {
   const field = firstWrong();
   const fault = field ? byId(`wrong-${field.key}`).textContent : state.concretes.map(wrongTogether).find(Boolean);
-  if (fault) complain(`${fault}. Nothing was run, saved or copied.`);
+  const before = state.runs.some((run) => run.summary) ? " The result is that of the values before." : "";
+  if (fault) complain(`${fault}. Nothing was run, saved or copied.${before}`);
   return Boolean(fault);
 }
 
@@ -101,7 +103,7 @@ function start(concretes) {
   labelsOf(concretes).forEach((label, i) => (state.runs[i].label = label));
   state.errorState = "computing the error …";
   complain("");
-  byId("unread").textContent = "";
+  byId("unread").textContent = byId("said").textContent = "";
   busy(true);
   showAnswers();
   showAt(0);
@@ -213,7 +215,11 @@ function listen() {
     if (field) byId(`field-${field.key}`).focus();
   });
   whenRead("run", () => (runAll(), seeResult()));
-  byId("cancel").addEventListener("click", cancel);
+  byId("cancel").addEventListener("click", () => {
+    cancel();
+    byId("said").textContent = "Cancelled: what had come until then is shown.";
+    byId("run").focus();
+  });
   byId("second").addEventListener("change", (event) => chooseSecond(event.target.checked));
   document.querySelectorAll('input[name="which"]')
       .forEach((radio) => radio.addEventListener("change", () => ((state.active = Number(radio.value)), showChoice())));
@@ -254,6 +260,7 @@ buildEstimate(
     byId("estimate-fields"), () => state.concretes[state.active].density,
     (values) => {
       change({...state.concretes[state.active], ...values, rest: 0, structuration_rate: 0});
+      byId("said").textContent = "Rest and structuration rate are 0 now: one spread does not tell them.";
       seeResult();
     });
 buildPlayer();

@@ -15,7 +15,7 @@ const fields = [
     log: true,
     above: 0
   },
-  {key: "density", word: "density", symbol: "ρ", unit: "kg/m3", low: 1800, high: 2800, above: 0},
+  {key: "density", word: "density", symbol: "ρ", unit: "kg/m3", low: 1800, high: 2800, least: 500, most: 5000},
   {key: "rest", word: "rest before the lift", symbol: "t", unit: "s", low: 0, high: 1200, least: 0},
   {key: "structuration_rate", word: "structuration rate", symbol: "A_thix", unit: "Pa/s", low: 0, high: 5, least: 0},
   {key: "destructuration", word: "destructuration", symbol: "α", unit: "", low: 0.001, high: 1, log: true, least: 0},
@@ -59,6 +59,7 @@ const shown = (field, concrete) => `${concrete[field.key]} ${unitShown[field.uni
 /// Why a value cannot be run; "" where it can.
 function wrong(field, value) {
   if (!Number.isFinite(value)) return `${field.word}: write a number${field.unit && ` in ${unitShown[field.unit] ?? field.unit}`}, like ${written(field.low)}`;
+  if (value > field.most) return `${field.word}: must be at most ${field.most}`;
   if (field.above !== undefined && value <= field.above) return `${field.word}: must be above ${field.above}`;
   if (field.least !== undefined && value < field.least) return `${field.word}: must be at least ${field.least}${field.why ?? ""}`;
   return "";
