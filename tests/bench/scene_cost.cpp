@@ -178,7 +178,8 @@ void write(std::ostream& out, const std::string& tremie, const std::string& bare
       "around it. Reading "
       "spread, height, energy and means of the points takes {:.2f} % of a step; what the program has beyond "
       "that, and this "
-      "scene does not use, {:.2f} %.\n",
+      "scene does not use, {:.2f} %. Less than 3 % of either sign is what it changes that the step is "
+      "compiled in another file.\n",
       100.0 * (read.per_point_step / step.per_point_step - 1.0), 100.0 * (first / read.per_point_step - 1.0));
   output_of("rm -r " + folder);
   write_programs(out, tremie);
