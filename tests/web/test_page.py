@@ -163,8 +163,8 @@ def verdict_lines(browser):
 
 def read_links(browser, page):
     """What of a link cannot be read is told, with what stands in its place; the rest is taken."""
-    cases = {"yield_stress=-5&plastic_viscosity=abc&lift=0": [("yield_stress=-5", "54 Pa"), ("plastic_viscosity=abc", "35.8 Pa·s"), ("lift=0", "15 cm/s")],
-             "yield_stress=80&rest=abc&colour=red": [("rest=abc", "0 s"), ("colour=red", "no field has this name")]}
+    cases = {"yield_stress=-5&plastic_viscosity=abc&lift=0&duration=2": [("yield_stress=-5", "54 Pa"), ("plastic_viscosity=abc", "35.8 Pa·s"), ("lift=0", "15 cm/s")],
+             "yield_stress=80&rest=abc&colour=red&duration=2": [("rest=abc", "0 s"), ("colour=red", "no field has this name")]}
     for fragment, told in cases.items():
         open_link(browser, page, fragment)
         entries = text_of(browser, "unread").split("), ")
@@ -193,7 +193,7 @@ def doubt_t500(browser, page, program):
 
 def refuse_unreadable(browser, page, folder):
     """Nothing is run or taken away while a field cannot be read."""
-    open_link(browser, page, "yield_stress=54")
+    open_link(browser, page, "yield_stress=54&duration=2")
     address, before = browser.run("return location.href"), set(folder.iterdir())
     write_into(browser, "yield_stress", "-5")
     invalid = browser.run("return [...document.querySelectorAll('[aria-invalid]')].map((f) => [f.id, f.getAttribute('aria-invalid')])")
@@ -217,16 +217,16 @@ def save_mixes(browser, page, program, folder):
     """A bundled mix keeps its name and what was measured on it; a changed one has its values."""
     measured = {"mix_a": 590, "mix_b": 550, "mix_c": 500}
     for mix, value in measured.items():
-        open_link(browser, page, "rest=0&duration=25")
+        open_link(browser, page, "rest=0&duration=3")
         browser.run(f"const mix = document.getElementById('mix'); mix.value = '{mix}'; mix.dispatchEvent(new Event('change'))")
         answered(browser)
         toml = saved_toml(browser, folder)
         shown = float(browser.run("return document.getElementById('result-spread').dataset.value"))
         results = native(program, toml)["results"]
-        check(f'mix = "{mix}"' in toml and "[mix]" not in toml and 'duration   = "25 s"' in toml, f"{mix}: saved by its name")
+        check(f'mix = "{mix}"' in toml and "[mix]" not in toml and 'duration   = "3 s"' in toml, f"{mix}: saved by its name")
         check(results["measured"]["spread_mm"] == value, f"{mix}: measured {value} mm in the program")
         check(abs(results["spread_mm"] - shown) < 1e-9 * shown, f"{mix}: the saved scene spreads to {shown:.2f} mm in the program")
-    open_link(browser, page, "yield_stress=61.5")
+    open_link(browser, page, "yield_stress=61.5&duration=2")
     check("[mix]" in saved_toml(browser, folder), "a changed mix is saved with its values")
 
 
