@@ -94,12 +94,14 @@ A run fills a folder ([which files](../guide/slump_flow.md#what-a-run-leaves)); 
 
 | in `results.h5` | shape | what |
 |---|---|---|
-| `results/KEY` | one number or word | the readings below |
+| `results`, its attribute `KEY` | one number or word | the readings below; NaN where there is none |
+| `errors`, its attribute `KEY` | one number | half-widths, with `--with-error` or `--accuracy` |
 | `series/NAME` | samples | the columns of `timeseries.csv`; `series/time_s` is their scale |
+| `frames/00000`, its attribute `time_s` | one number | [s] |
 | `frames/00000/position`, `velocity` | points, 3 | [m], [m/s] |
 | `frames/00000/volume`, `pressure`, `shear_rate`, `flocculation` | points | [m³], [Pa], [1/s], [1] |
 
-`fit`, `estimate`, `study` and `calibrate` leave files of their own: what is in them is on their pages of the guide. A run that was cut short keeps its state in `.NAME.part/checkpoint` beside its folder, for the very build that wrote it.
+`fit`, `estimate`, `study` and `calibrate` leave files of their own: what is in them is on their pages of the guide. A run that was cut short keeps its state in `.NAME.part/checkpoint` beside its folder, for the very build that wrote it: points, time, step, grid, the solver's stresses and rates, friction, bars' drag, and the apparatus' own series.
 """
 listed = says("--commands")
 commands = [line.split("\t")[0] for line in listed.splitlines()] if listed else []

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <sstream>
 #include <stdexcept>
 
@@ -40,6 +41,14 @@ double blade_factor(const BladeTable& table, const Instrument& in, double bingha
   what << "no factor of the blades for a container of " << container << " vane radii; the table holds "
        << table.begin()->first << " to " << table.rbegin()->first;
   throw std::invalid_argument(what.str());
+}
+
+double largest_bingham_number(const BladeTable& table, const Instrument& in) {
+  const double container = detail::rounded(in.container_radius / in.vane_radius);
+  const auto last = [](const auto& entry) { return std::expm1(entry.second.rbegin()->first); };
+  const auto above = table.lower_bound(container);
+  if (above == table.end()) return last(*table.rbegin());
+  return above == table.begin() ? last(*above) : std::min(last(*above), last(*std::prev(above)));
 }
 
 double torque_of_cylinder(const BladeTable& table, const Instrument& in, double mu, double omega,

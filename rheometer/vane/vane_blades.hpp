@@ -25,6 +25,9 @@ BladeTable blade_table(const std::string& csv, const std::string& name);
 /// std::invalid_argument, with the range, for a container that the table does not have.
 double blade_factor(const BladeTable& table, const Instrument& instrument, double bingham_number);
 
+/// The Bingham number up to which the table holds a container: the lesser one of its two neighbours' in the table.
+double largest_bingham_number(const BladeTable& table, const Instrument& instrument);
+
 /// The torque [N m] that a cylinder would have taken where the vane took `torque` at the speed omega [rad/s] in concrete
 /// of plastic viscosity mu [Pa s]: the Bingham number is the one at which Reiner and Riwlin's torque, times the factor, is
 /// the vane's. A torque below the Newtonian one is taken for Newtonian.

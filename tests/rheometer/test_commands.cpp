@@ -139,6 +139,21 @@ TEST_F(Commands, FitWritesTheParametersOfADecay) {
     EXPECT_TRUE(is_there("out/" + std::string(file)));
 }
 
+// Bi = tau_0/(mu Omega): at 0.025 rev/s 366 Pa over 35.8 Pa s is 65, beyond the blades' 40 for ICAR's container; at 0.25
+// rev/s it is 6.5.
+TEST_F(Commands, FitSaysWhereTheBladesTableEnds) {
+  const std::string run =
+      "run '" TREMIE_SCENES "/icar_vane_mix_a_rest240.toml' --quiet --set test.duration='20 s' --out ";
+  const std::string fit =
+      " --rest '240 s' --plastic-viscosity '35.8 Pa.s' --yield-stress '54 Pa' --blades computed --speed ";
+  ASSERT_EQ(tremie(run + "slow --set test.speed='0.025 rev/s'").code, 0);
+  ASSERT_EQ(tremie(run + "fast").code, 0);
+  const Result slow = tremie("fit slow/torque.csv --out slow_fit" + fit + "'0.025 rev/s'"),
+               fast = tremie("fit fast/torque.csv --out fast_fit" + fit + "'0.25 rev/s'");
+  EXPECT_NE(slow.text.find("beyond the table's 40"), std::string::npos) << slow.text;
+  EXPECT_EQ(fast.text.find("beyond the table's"), std::string::npos) << fast.text;
+}
+
 TEST_F(Commands, FitNeverWritesOverAnEarlierResult) {
   write("curve.csv", curve_csv(6, 0.0));
   EXPECT_EQ(tremie("fit curve.csv --out out").code, 0);

@@ -163,6 +163,22 @@ void note_beyond_ends(const Options& o, const FitInput& in, FitResult& result) {
         "ends: the Bingham number, {:.3g}, lies beyond the table's {:.3g}, whose factor is taken", Bi, last));
 }
 
+/// A note where a reading's Bingham number lies beyond the blades' table: the slowest reading's, with the largest yield stress.
+void note_beyond_blades(const TorqueRecord& record, const FitInput& in, const BladeTable& table,
+                        FitResult& result) {
+  const auto& yield = result.static_yield_stress ? result.static_yield_stress : result.tau_0;
+  double slowest = in.omega.value_or(0.0);
+  for (const double omega : record.omega)
+    if (omega > 0.0 && (slowest <= 0.0 || omega < slowest)) slowest = omega;
+  if (!yield || !result.mu || !(slowest > 0.0)) return;
+  const double last = largest_bingham_number(table, in.instrument);
+  const double Bi = yield->value / (result.mu->value * slowest);
+  if (Bi > 1.001 * last)
+    result.notes.push_back(fmt::format(
+        "blades: the Bingham number, up to {:.3g}, lies beyond the table's {:.3g}, whose factor is taken", Bi,
+        last));
+}
+
 /// The fit of a vane: of the torques that its cylinder would have taken, where the blades are corrected for.
 FitResult fit_vane(const Options& o, const TorqueRecord& record, const FitInput& in) {
   if (o.blades == "none") {
@@ -174,11 +190,13 @@ FitResult fit_vane(const Options& o, const TorqueRecord& record, const FitInput&
     return result;
   }
   const auto [text, name] = vane_table("vane_blades", "--blades");
-  VaneFit vane = fit_with_blades(record, in, blade_table(text, name));
+  const BladeTable table = blade_table(text, name);
+  VaneFit vane = fit_with_blades(record, in, table);
   vane.fit.notes.push_back(
       fmt::format("torques are the cylinder's: the record's divided by {:.3f} to {:.3f}, what four thin "
                   "blades take of it",
                   vane.least_factor, vane.most_factor));
+  note_beyond_blades(record, in, table, vane.fit);
   if (vane.fit.alpha && !vane.fit.alpha->given)
     vane.fit.notes.push_back(
         "alpha: with blades it reads some 30 % too small, more than its interval: what stands between the "
