@@ -185,6 +185,12 @@ double parse_quantity(std::string_view text, Dimension dimension,
       throw std::invalid_argument(fmt::format("\"{}\" is too large to be held", text));
     return value;
   }
+  if (parts->unit.size() > 1 && parts->unit[0] == ',' && parts->unit[1] >= '0' && parts->unit[1] <= '9') {
+    std::string with_point(trimmed(text));
+    with_point[with_point.find(',')] = '.';
+    throw std::invalid_argument(fmt::format("\"{}\" has a decimal comma; write a point: \"{}\" (units: {})",
+                                            text, with_point, allowed));
+  }
   throw std::invalid_argument(
       fmt::format("\"{}\" has the wrong unit \"{}\"; allowed units: {}", text, parts->unit, allowed));
 }

@@ -31,6 +31,7 @@ const std::vector<ColumnQuantity>& torque_quantities() {
         {"rpm", two_pi / 60.0},
         {"rev/min", two_pi / 60.0},
         {"1/min", two_pi / 60.0},
+        {"u/min", two_pi / 60.0},
         {"rad/s", 1.0},
         {"deg/s", two_pi / 360.0}},
        "speed_rev_per_s, speed_rpm, speed_rad_per_s or speed_deg_per_s"},

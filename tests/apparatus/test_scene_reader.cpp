@@ -110,6 +110,8 @@ TEST(SceneReader, BareNumberShowsHowToWriteIt) {
 TEST(SceneReader, WrongUnit) {
   EXPECT_TRUE(
       says(complaint(mix_a + "density = \"2400 kg\"\n"), {"bad.toml:5: mix.density", "wrong unit", "kg/m3"}));
+  EXPECT_TRUE(says(complaint(mix_a + "density = \"2,4 kg/dm3\"\n"),
+                   {"bad.toml:5: mix.density", "decimal comma", "2.4 kg/dm3"}));
 }
 
 TEST(SceneReader, OutOfRange) {

@@ -48,7 +48,7 @@ TEST(InstrumentExport, ReadsLatin1WithDecimalCommasAndARepeatedHeader) {
 // Made in the layout of a mortar rheometer: tabs, units in a line of their own, no time.
 TEST(InstrumentExport, ReadsAFlowCurveWithUnitsBelowTheHeader) {
   const TorqueRecord r =
-      parse_torque_record("Mischung A\nDrehzahl\tMoment\n[1/min]\t[N mm]\n30\t12,5\n60\t20\n", "r.csv");
+      parse_torque_record("Mischung A\nDrehzahl\tMoment\n[U/min]\t[N mm]\n30\t12,5\n60\t20\n", "r.csv");
   EXPECT_EQ(r.kind, RecordKind::flow_curve);
   EXPECT_NEAR(r.torque[0], 0.0125, 1e-15);
   EXPECT_NEAR(r.omega[1], angular_speed(1.0), 1e-12);
