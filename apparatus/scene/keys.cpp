@@ -46,9 +46,11 @@ std::string range_text(const Key& key) {
 }
 
 std::string nearest(std::string_view word, const std::vector<std::string>& words) {
-  const auto closer = [&](const std::string& a, const std::string& b) {
-    return edit_distance(word, a) < edit_distance(word, b);
+  // A word of which the given one is a part ("vane" of "icar_vane") is meant more often than one of like letters.
+  const auto distance = [&](const std::string& of) {
+    return word.size() > 2 && of.find(word) != std::string::npos ? 0 : edit_distance(word, of);
   };
+  const auto closer = [&](const std::string& a, const std::string& b) { return distance(a) < distance(b); };
   const auto found = std::min_element(words.begin(), words.end(), closer);
   return found == words.end() ? std::string{} : *found;
 }

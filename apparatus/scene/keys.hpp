@@ -116,7 +116,7 @@ std::string range_text(const Key& key);
 
 bool contains(const Range& range, double value);
 
-/// The word nearest to `word` by edit distance; empty where there are none.
+/// The word of which `word` is a part, else the nearest by edit distance; empty where there are none.
 std::string nearest(std::string_view word, const std::vector<std::string>& words);
 
 const Section* find_section(const Schema& schema, std::string_view name);

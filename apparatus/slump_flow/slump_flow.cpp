@@ -18,7 +18,8 @@ void refuse_what_has_no_engine(const Scene& scene) {
   if (is_explicit(scene.model) && is_exact(scene.model.law))
     throw std::invalid_argument(
         "model.yield: \"exact\" has an unbounded viscosity at rest, for which no explicit step is short "
-        "enough; give \"papanastasiou\" or \"bi_viscous\", or model.scheme = \"implicit\"");
+        "enough; give a regularised one that the mix's law has (\"papanastasiou\"), or model.scheme = "
+        "\"implicit\"");
   if (!is_explicit(scene.model) && scene.model.shape == ShapeKind::gimp)
     throw std::invalid_argument(
         "model.shape: \"gimp\" goes with model.scheme = \"explicit\" or \"explicit_usf\"");

@@ -16,10 +16,10 @@
 //   secant(gamma_dot, tau_y)    s                                   [Pa s]
 //   slope(gamma_dot, tau_y)     (ds/dgamma_dot) / gamma_dot         [Pa s^3]
 //   potential(gamma_dot, tau_y) int_0^gamma_dot f                   [Pa/s], convex
-//   prox(a, tau_y, r)           the d >= 0 with f(d) + r d = a; r > 0, or r = 0 where f grows without bound [1/s]
+//   prox(a, tau_y, r)           the d >= 0 with f(d) + r d = a, 0 where a is at most f(0); r > 0, or r = 0 where f grows without bound [1/s]
 //   stress(gamma_dot, tau_y)    f, and at gamma_dot = 0 its limit from the side of flow [Pa]
 //   dual_limit(gamma_dot, tau_y) the stress |s| that Newton's dual may carry, at most what keeps its tangent positive:
-//                               secant^2 / (|slope| gamma_dot); tau_y for exact Bingham, f will do elsewhere [Pa]
+//                               secant^2 / (|slope| gamma_dot); tau_y will do where f has no viscous part, f elsewhere [Pa]
 //   newtonian()                 its share in the mix's mu: 0 unless it is Bingham in other words, with no viscous part
 //                               left in f (Reiner-Riwlin's formulas then hold) [Pa s]
 //   viscosity(gamma_dot, tau_y) (f - tau_y) / gamma_dot where f has a viscous part beyond mu, 0 else; for the stress
@@ -30,10 +30,10 @@
 // none of which divides by a shear rate that may be zero, and
 //
 //   exact                       whether the stress at rest is anything up to tau_y
-//   viscous                     whether it takes the place of the mix's plastic viscosity
+//   viscous                     whether it takes the place of the mix's plastic viscosity: then a key in [mix] says how much
 //   word                        the word of model.yield that says how its yield is smoothed: "exact" or one of its own.
 //                               Laws may share it, as Bingham and Herschel-Bulkley do; the keys in [mix] tell which is
-//                               meant
+//                               meant, so that no two have both the same
 //   keys()                      the scene keys of its parameters; those in [mix] take the place of plastic_viscosity
 //
 // and may state simd_secant(gamma_dot, tau_y) for points side by side, where one by one is too slow for it.

@@ -6,8 +6,8 @@
 
 namespace tremie::detail {
 
-/// Flat walls on one node, v its velocity before them. A wall takes the velocity towards it; friction
-/// takes up to the coefficient times that from the sliding.
+/// Flat walls on one node, v its velocity before them. A wall takes the normal velocity; friction takes up to the
+/// coefficient times what of it went into the wall from the sliding.
 template <int D>
 void apply_walls(const std::array<Axis, D>& axes, const Shape<D>& shape, const WallVelocities<D>& walls,
                  double friction_coefficient, const Index<D>& node, f64x4& v) {

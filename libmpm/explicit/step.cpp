@@ -43,7 +43,7 @@ PassSums stress_last(Body<Geometry>& body, const YieldLaw& law, const ExplicitSe
   const bool flip = settings.transfer.flip;
   const Buffers &sums = std::get<Buffers>(state.grid.sums),
                 &impulses = std::get<Buffers>(state.grid.impulses);
-  // Momentum balance on the grid; the stresses' impulses are in the momenta, but for FLIP.
+  // Momentum balance on the grid with flat walls and friction; the stresses' impulses are in the momenta, but for FLIP.
   for_each_block(state.grid, [&](std::size_t block) {
     velocities_from_sums(body, flip ? 0.0 : friction, sums, flip ? none : pull, block, state);
     if (flip) add_impulses(body, friction, impulses, flip, pull, block, state);
@@ -68,7 +68,7 @@ PassSums stress_first(Body<Geometry>& body, const YieldLaw& law, const ExplicitS
   follow_points<Real>(settings, state);
   // Grid to points, stress, its impulses to the grid.
   PassSums all = pass_over_points<stress_pass, Real>(body.mix, law, settings, {dt, dt}, state);
-  // Momentum balance on the grid.
+  // Momentum balance on the grid, flat walls and friction.
   for_each_block(state.grid, [&](std::size_t block) {
     add_impulses(body, friction, sums, settings.transfer.flip, pull, block, state);
   });

@@ -53,7 +53,7 @@ struct ImplicitBody : Body<Geometry> {
   std::vector<PenaltyPoint<D>> bound{};  ///< walls inside the grid that touched concrete in the last step
   SlenderBars<D> bar_drag{};             ///< of the points of bars that touched concrete in the last step
   double time_error = 0.0;               ///< of the last step: its local error, if it was asked for [m]
-  double shear_rate = 0.0;               ///< mean of the last step [1/s]
+  double shear_rate = 0.0;               ///< volume mean of the last step [1/s]
   BlockSystem<D> system{};
   std::conditional_t<D == 3, MatrixFreeSystem, Nothing> matrix_free{};  ///< for large bodies in 3D
 };

@@ -30,10 +30,10 @@ StepReport implicit_step(ImplicitBody<Geometry>& body, const YieldLaw& law, cons
   old_cells = {};
   lay_out_quadrature<Geometry>(body.grid, body.points, body.mix.tau_0, body.mix.K, body.quadrature,
                                settings.cut_cell_rule, settings.settle_on_floor);
-  body.v = body.nodes.v;
 
   // The step's convex problem and its solution, the velocities at the end of the step. One that does not
-  // converge is tried again over half the time; so is a long one in which something starts to fall.
+  // converge is tried again over half the time; so is a long one in which something starts to fall. The last try is
+  // kept, unless it runs away.
   const std::vector<Vec<D>> v_old = body.nodes.v;
   const int attempts = settings.fixed_dt ? 1 : most_attempts;
   std::optional<AdmmState<Geometry>> guess;
@@ -68,7 +68,7 @@ StepReport implicit_step(ImplicitBody<Geometry>& body, const YieldLaw& law, cons
   if (body.points.thixotropic()) detail::update_flocculation(body, dt, body.points);
   detail::update_volumes(problem, body.v, body.points);
   std::vector<double> gamma_dot;
-  const double shear_rate_mean = detail::shear_rates(problem, settings, body, gamma_dot);
+  body.shear_rate = detail::shear_rates(problem, settings, body, gamma_dot);
   const bool even = Geometry::advects && settings.particle_shifting.on, measured = settings.time_error > 0.0;
   const std::vector<Vec<D>> u =
       even ? detail::particle_shift(problem, settings, gamma_dot, body) : std::vector<Vec<D>>{};
@@ -93,7 +93,7 @@ StepReport implicit_step(ImplicitBody<Geometry>& body, const YieldLaw& law, cons
           .iterations = solve.iterations,
           .max_speed = detail::max_speed(body.points),
           .bulk_speed = detail::speed_of_most(body.points, detail::detached_share, speed),
-          .shear_rate_mean = shear_rate_mean};
+          .shear_rate_mean = body.shear_rate};
 }
 
 template StepReport implicit_step(ImplicitBody<Axisymmetric>&, const YieldLaw&, const StepSettings&,

@@ -289,9 +289,10 @@ std::size_t choose(const Readings& r, const std::vector<DecayFit>& fits, FitResu
                   " independent readings of " + std::to_string(std::lround(n)) +
                   " (the correlation of the noise taken off)";
   if (!std::isfinite(aicc[best])) {
-    result.choice = std::string("kinetics ") + name_of(fits[best].kinetics) + ": the simplest; " +
-                    std::to_string(std::lround(independent)) + " independent readings of " +
-                    std::to_string(std::lround(n)) + " are too few to choose by AICc";
+    result.choice = std::string("kinetics ") + name_of(fits[best].kinetics) +
+                    ", as nothing else was asked for; " + std::to_string(std::lround(independent)) +
+                    " independent readings of " + std::to_string(std::lround(n)) +
+                    " are too few to choose by AICc";
     return best;
   }
   double second = std::numeric_limits<double>::infinity();

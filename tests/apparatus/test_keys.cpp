@@ -40,6 +40,14 @@ Loaded load_cell(const std::string& text, const std::vector<std::string>& overri
   return load({"cell.toml", overrides, text}, std::vector{cell_keys()});
 }
 
+// "vane" is three letters from "cell" and five from "icar_vane", which it is part of.
+TEST(Keys, TheNearestWordIsTheOneThatHoldsWhatWasTyped) {
+  const std::vector<std::string> known = {"slump_flow", "l_box", "icar_vane", "cell"};
+  EXPECT_EQ(nearest("vane", known), "icar_vane");
+  EXPECT_EQ(nearest("slump", known), "slump_flow");
+  EXPECT_EQ(nearest("sel", known), "cell");
+}
+
 TEST(Keys, RepeatedTables) {
   const std::string text =
       "apparatus = \"cell\"\n" + mix +

@@ -109,6 +109,8 @@ double plane_flow_error(Flow flow, double n, int cells, bool& converged) {
   settings.admm.max_iterations = 20000;
   StepReport last;
   for (int i = 0; i < 150; ++i) last = implicit_step(body, HerschelBulkley{k, n}, settings);
+  EXPECT_GT(last.shear_rate_mean, 0.0);
+  EXPECT_EQ(body.shear_rate, last.shear_rate_mean);  // the next step takes its scale of viscosity from it
   converged = last.converged;
   const auto exact = [&](double y) {
     const double e = 1.0 + 1.0 / n, from_wall = std::min(y, top - (film ? 0.0 : y)),

@@ -204,6 +204,24 @@ class Rheometer(Folder):
             tremie.estimate("590 bar")
 
 
+class Messages(Folder):
+    def test_a_spread_in_millimetres_is_told_as_such(self):
+        with self.assertRaisesRegex(tremie.InputError, "590 mm"):
+            tremie.estimate(590)
+
+    def test_they_speak_of_arguments(self):
+        out = self.folder / "twice"
+        tremie.run(COARSE, out)
+        with self.assertRaisesRegex(tremie.InputError, "force=True replaces it, out=DIR writes elsewhere"):
+            tremie.run(COARSE, out)
+        with self.assertRaisesRegex(tremie.InputError, "^mix.yield_stress"):
+            tremie.run(COARSE, mix__yield_stress="-5 Pa")
+
+    def test_a_result_that_is_not_there(self):
+        with self.assertRaisesRegex(KeyError, "spread_m'; there are:.*spread_mm"):
+            tremie.run(COARSE)["spread_m"]
+
+
 class Programs(Folder):
     definition = {
         "base": COARSE,

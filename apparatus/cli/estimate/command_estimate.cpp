@@ -51,7 +51,8 @@ void print_interval(const char* name, const std::optional<estimate::Interval>& i
 
 void print_text(const Options& o, const estimate::Measured& m, const estimate::Estimate& e) {
   print_interval("yield stress", e.tau_0, "Pa", "not in the table");
-  print_interval("plastic viscosity", e.mu, "Pa.s", o.t500.empty() ? "takes --t500" : "not in the table");
+  print_interval("plastic viscosity", e.mu, "Pa.s",
+                 o.t500.empty() ? "takes --t500" : "not told by this t500");
   fmt::print("{:<24} {} Pa (thin layer at rest, Roussel and Coussot)\n", "by the closed forms",
              scene::rounded(e.tau_0_thin_layer, 3));
   fmt::print("{:<24} {} Pa (with the plug's normal stress)\n", "", scene::rounded(e.tau_0_plug, 3));

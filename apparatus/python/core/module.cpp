@@ -1,9 +1,26 @@
 // _tremie: what tremie/__init__.py calls. Plain values in SI units in, dictionaries and arrays out.
 
+#include <string>
+#include <utility>
+
 #include "apparatus/python/core/parts.hpp"
 #include "apparatus/scene/input_error.hpp"
 #include "rheometer/records/torque_record.hpp"
 #include "tremie_version.hpp"
+
+namespace {
+
+/// A message of the program with the arguments of run() for its options.
+std::string in_python(std::string message) {
+  const std::pair<std::string, std::string> words[] = {
+      {"--set ", ""}, {"--force", "force=True"}, {"--out DIR", "out=DIR"}};
+  for (const auto& [option, argument] : words)
+    for (std::size_t at = 0; (at = message.find(option, at)) != std::string::npos; at += argument.size())
+      message.replace(at, option.size(), argument);
+  return message;
+}
+
+}  // namespace
 
 PYBIND11_MODULE(_tremie, module) {
   namespace py = pybind11;
@@ -12,10 +29,16 @@ PYBIND11_MODULE(_tremie, module) {
   input_error.attr("__module__") = "tremie";
   input_error.doc() = "Bad input: what is wrong, where, and what is allowed (the program's exit code 2).";
   py::register_exception_translator([](std::exception_ptr thrown) {
+    const auto raise = [](const char* message) {
+      PyErr_SetString(py::module_::import("tremie._tremie").attr("InputError").ptr(),
+                      in_python(message).c_str());
+    };
     try {
       if (thrown) std::rethrow_exception(thrown);
     } catch (const tremie::RecordError& error) {
-      PyErr_SetString(py::module_::import("tremie._tremie").attr("InputError").ptr(), error.what());
+      raise(error.what());
+    } catch (const tremie::scene::InputError& error) {
+      raise(error.what());
     }
   });
   module.attr("version") = tremie::version;

@@ -60,14 +60,19 @@ class Result:
     @property
     def h5(self):
         """results.h5, opened to be read by h5py; the caller closes it."""
-        import h5py
-
         if self.folder is None:
             raise InputError("results.h5 lies in a folder: run with out=…")
+        try:
+            import h5py
+        except ImportError:
+            raise InputError("results.h5 is read by h5py, which is not installed here (python3-h5py)") from None
         return h5py.File(self.folder / "results.h5", "r")
 
     def __getitem__(self, name: str) -> Any:
-        return self.results[name]
+        try:
+            return self.results[name]
+        except KeyError:
+            raise KeyError(f"there is no result {name!r}; there are: {', '.join(self.results)}") from None
 
     def __repr__(self) -> str:
         head = f"<tremie.Result of {self.summary.get('apparatus', '?')}: {self.summary.get('status', '?')}>"

@@ -196,15 +196,19 @@ def estimate(
 
     The errors are one standard error each. `.results` has yield_stress_Pa and plastic_viscosity_Pa_s (value, ci95;
     None where the table does not reach, and the viscosity without t500) and two closed forms."""
+    metres = positive("spread", spread, "m")
+    if not 0.2 < metres < 2.0:
+        raise _tremie.InputError(
+            f"spread: {metres:g} m; must be more than the cone's 200 mm at its bottom and less than 2 m "
+            "(a number is in metres: 0.59, or \"590 mm\")"
+        )
     measured = _tremie.Measured(
-        spread=positive("spread", spread, "m"),
+        spread=metres,
         spread_error=positive("spread_error", spread_error, "m"),
         t500=_optional("t500", t500, "s"),
         t500_error=positive("t500_error", t500_error, "s"),
         density=positive("density", density, "kg/m3"),
     )
-    if si("spread", spread, "m") <= 0.2:
-        raise _tremie.InputError("spread: must be more than the cone's 200 mm at its bottom")
     results = _tremie.estimate(measured)
     summary = {"apparatus": "estimate", "status": "completed", "checks": {"reasons": results.pop("reasons")}}
     return checked(Result({**summary, "results": results}))

@@ -75,8 +75,7 @@ std::string disc_svg(const Disc& disc) {
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1:.0f}\" role=\"img\" aria-label=\"{2}\" "
       "font-family=\"sans-serif\" font-size=\"15\" fill=\"#1c2126\"><text x=\"{3}\" y=\"18\" "
       "text-anchor=\"middle\">{2}</text>{4}<text x=\"{3}\" y=\"{5:.0f}\" text-anchor=\"middle\">from above; "
-      "radii {6:.1f} "
-      "and {7:.1f} mm</text>{8}</svg>\n",
+      "shown from {6:.1f} to {7:.1f} mm</text>{8}</svg>\n",
       width, end + 76, escaped(disc.title), 0.5 * width, rings, end + 20, 1e3 * disc.radius[0],
       1e3 * disc.radius[n - 1], scale_svg(disc, end + 32));
 }

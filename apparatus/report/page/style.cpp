@@ -45,13 +45,15 @@ pre{background:var(--panel);padding:.7rem .9rem;overflow-x:auto;font-size:.82rem
 .controls input[type=range]{flex:1 1 10rem;min-width:8rem;accent-color:var(--c0)}
 button,select{font:inherit;color:inherit;background:var(--panel);border:1px solid var(--line);border-radius:.3rem;padding:.25rem .8rem}
 canvas{background:var(--panel);border-radius:.3rem}
+@media (max-width:500px){.wide table{font-size:.8rem}.wide td,.wide th{padding-right:.5rem}.wide td:first-child{min-width:6rem}
+.wide th{min-width:0}}
 @page{size:A4;margin:13mm 14mm}
 @media print{:root{color-scheme:light;--ink:#000;--soft:#444;--line:#bbb;--paper:#fff;--panel:#f4f6f7;--c0:#0067a5;--c1:#c25400;
 --c2:#00785a;--c3:#9a4f8a;--band:#e6e9ec}
 body{font-size:8.6pt;line-height:1.35;padding:0;max-width:none}figcaption{font-size:7.5pt}.verdict{font-size:10.5pt}h1{font-size:14pt}h2{font-size:10pt;margin:.5rem 0 .15rem}
 .controls,.screen{display:none}.figures{grid-template-columns:1fr 1fr;gap:0 6mm}figure{margin:.2rem 0}figure svg{max-height:52mm}
 canvas{max-height:48mm;width:auto;max-width:100%}
-.tables{columns:2;column-gap:8mm}td,th{padding:.06rem .4rem .06rem 0}.key{display:inline;font-size:.85em;margin-left:.5em}
+.tables{columns:2;column-gap:8mm}td,th{padding:.06rem .4rem .06rem 0}.key{font-size:.8em;line-height:1.1}
 details:not([open]){display:none}pre{font-size:6.5pt}}
 )css";
 

@@ -108,7 +108,7 @@ function verdicts(run) {
   if (stopped != null)
     lines.push([keptItsShape(results) ? `It kept the cone's shape: ${height}` : `At rest after ${seconds(stopped)}; ${height}`, ""]);
   const measured = measuredOn(run.concrete);
-  if (measured) lines.push(measuredText(spread, measured));
+  if (measured && stopped != null) lines.push(measuredText(spread, measured));
   if (!checks.reasons.length) lines.push([trustText(run.summary), "note"]);
   return lines;
 }

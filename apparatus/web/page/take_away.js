@@ -10,23 +10,33 @@ const fileName = (run, ending) => `slump_flow_${run.label.toLowerCase().replace(
 const saveToml = (run) => save(fileName(run, "toml"), new Blob([tomlOf(run.concrete)], {type: "application/toml"}));
 const saveCsv = (run) => save(fileName(run, "csv"), new Blob([run.result.timeseries], {type: "text/csv"}));
 
-/// Answer, section, plate and chart on one sheet.
+/// The values of a concrete, on two lines.
+function valuesText({concrete}) {
+  const values = fields.filter(({symbol}) => symbol).map((field) => `${field.symbol} ${shown(field, concrete)}`);
+  return [values.slice(0, 4), values.slice(4)].map((line) => line.join(", "));
+}
+
+/// Answer, values, section, plate and chart on one sheet.
 function savePng(runs) {
   const parts = ["section", "plate", "chart"].map(byId), dense = window.devicePixelRatio || 1, margin = 24 * dense;
   const width = Math.max(...parts.map((p) => p.width)) + 2 * margin, line = 26 * dense;
   const sheet = element("canvas");
   sheet.width = width;
-  sheet.height = parts.reduce((sum, p) => sum + p.height + margin, (runs.length + 1) * line + margin);
+  sheet.height = parts.reduce((sum, p) => sum + p.height + margin, (3 * runs.length + 1) * line + margin);
   const context = sheet.getContext("2d");
   context.fillStyle = theme("--panel");
   context.fillRect(0, 0, sheet.width, sheet.height);
   context.fillStyle = theme("--text");
-  context.font = `${17 * dense}px system-ui, sans-serif`;
+  const write = (text, size) => {
+    context.font = `${size * dense}px system-ui, sans-serif`;
+    context.fillText(text, margin, y);
+    y += line;
+  };
   let y = line + margin / 2;
   for (const run of runs) {
     const {results, error} = run.summary, bar = error?.spread_mm ? ` ± ${Math.max(1, Math.ceil(error.spread_mm))}` : "";
-    context.fillText(`${run.label}: slump flow ${results.spread_mm.toFixed(0)}${bar} mm`, margin, y);
-    y += line;
+    write(`${run.label}: slump flow ${results.spread_mm.toFixed(0)}${bar} mm`, 17);
+    valuesText(run).forEach((text) => write(text, 14));
   }
   for (const part of parts) {
     context.drawImage(part, (width - part.width) / 2, y);
