@@ -250,6 +250,11 @@ def still_moving(browser, page):
     check("structuration rate of 0" in text_of(browser, "trouble"), f"a fluid builds up nothing: {text_of(browser, 'trouble')}")
 
 
+def rest_without_structuration(browser, page):
+    open_link(browser, page, "yield_stress=60&rest=240&structuration_rate=0&duration=1")
+    check(any("rest changes nothing" in line for line in verdict_lines(browser)), "a rest that builds nothing up is told")
+
+
 def scroll_to_result(browser, page):
     """On a telephone a run brings the result into view, and leaves the focus."""
     open_link(browser, page, "yield_stress=54&duration=2")
@@ -283,6 +288,7 @@ def use_the_fields(page, program):
             refuse_unreadable(browser, page, pathlib.Path(folder))
             save_mixes(browser, page, program, pathlib.Path(folder))
             still_moving(browser, page)
+            rest_without_structuration(browser, page)
         check(browser.console_errors() == [], "links and fields: no console error")
     finally:
         browser.close()

@@ -107,6 +107,8 @@ function verdicts(run) {
   const height = `${millimetres(results.height_mm)} high in the middle`;
   if (stopped != null)
     lines.push([keptItsShape(results) ? `It kept the cone's shape: ${height}` : `At rest after ${seconds(stopped)}; ${height}`, ""]);
+  if (run.concrete.rest > 0 && run.concrete.structuration_rate === 0)
+    lines.push(["The rest changes nothing: with a structuration rate A_thix of 0 nothing builds up. A slump flow alone does not tell it.", "bad"]);
   const measured = measuredOn(run.concrete);
   if (measured && stopped != null) lines.push(measuredText(spread, measured));
   if (!checks.reasons.length) lines.push([trustText(run.summary), "note"]);

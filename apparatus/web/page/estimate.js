@@ -9,6 +9,7 @@ const measuredFields = [
 
 /// window.tremie.estimate: {spread_mm, t500_s, spread_error_mm, t500_error_s, density_kg_m3}, the first alone needed.
 async function estimateFor({spread_mm, t500_s = NaN, spread_error_mm = 15, t500_error_s = 0.2, density_kg_m3 = 2400}) {
+  if (spread_mm === undefined) throw new Error("slump flow: write a number");
   if (!(spread_mm > 200)) throw new Error("slump flow: must be more than the cone's 200 mm at its bottom");
   if (!Number.isNaN(t500_s) && !(t500_s > 0)) throw new Error("t500: must be above 0");
   if (!(spread_error_mm > 0 && t500_error_s > 0)) throw new Error("standard errors: must be above 0");

@@ -215,6 +215,7 @@ function listen() {
     if (field) byId(`field-${field.key}`).focus();
   });
   whenRead("run", () => (runAll(), seeResult()));
+  byId("to-fields").addEventListener("click", () => document.querySelector(".controls").scrollIntoView());
   byId("cancel").addEventListener("click", () => {
     cancel();
     byId("said").textContent = "Cancelled: what had come until then is shown.";
@@ -259,8 +260,10 @@ buildFields(byId("fields"), changeField);
 buildEstimate(
     byId("estimate-fields"), () => state.concretes[state.active].density,
     (values) => {
-      change({...state.concretes[state.active], ...values, rest: 0, structuration_rate: 0});
-      byId("said").textContent = "Rest and structuration rate are 0 now: one spread does not tell them.";
+      const now = state.concretes[state.active];
+      // Such a mix may creep for longer than a test is given at first; a run ends where the flow does.
+      change({...now, ...values, rest: 0, structuration_rate: 0, duration: Math.max(now.duration, 120)});
+      byId("said").textContent = "Rest and structuration rate are 0 now, one spread does not tell them; the test may take 120 s.";
       seeResult();
     });
 buildPlayer();

@@ -22,7 +22,7 @@ function savePng(runs) {
   const width = Math.max(...parts.map((p) => p.width)) + 2 * margin, line = 26 * dense;
   const sheet = element("canvas");
   sheet.width = width;
-  sheet.height = parts.reduce((sum, p) => sum + p.height + margin, (3 * runs.length + 1) * line + margin);
+  sheet.height = parts.reduce((sum, p) => sum + p.height + margin, (3 * runs.length + 2) * line + margin);
   const context = sheet.getContext("2d");
   context.fillStyle = theme("--panel");
   context.fillRect(0, 0, sheet.width, sheet.height);
@@ -42,6 +42,7 @@ function savePng(runs) {
     context.drawImage(part, (width - part.width) / 2, y);
     y += part.height + margin;
   }
+  write(`Tremie ${byId("version").textContent}, ${new Date().toISOString().slice(0, 10)}; lengths in mm, grey: at rest`, 14);
   sheet.toBlob((blob) => save(fileName(runs[0], "png"), blob));
 }
 
