@@ -29,7 +29,7 @@ function savePng(runs) {
   context.fillStyle = theme("--text");
   const write = (text, size) => {
     context.font = `${size * dense}px system-ui, sans-serif`;
-    context.fillText(text, margin, y);
+    context.fillText(text, margin, y, width - 2 * margin);
     y += line;
   };
   let y = line + margin / 2;
