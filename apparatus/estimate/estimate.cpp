@@ -104,8 +104,10 @@ void refine(const SlumpTable& table, const Measured& m, const Grid& grid, Margin
 }
 
 Interval interval_of(const std::vector<double>& weights, const Axis& axis, std::optional<double> best) {
-  return {axis.at(best ? *best : quantile(weights, 0.5)), axis.at(quantile(weights, 0.025)),
-          axis.at(quantile(weights, 0.975))};
+  const double value = axis.at(best ? *best : quantile(weights, 0.5));
+  // A best point at the table's edge may lie beyond the quantiles.
+  return {value, std::min(value, axis.at(quantile(weights, 0.025))),
+          std::max(value, axis.at(quantile(weights, 0.975)))};
 }
 
 /// `best`: share of the best point.

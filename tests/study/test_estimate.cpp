@@ -107,6 +107,19 @@ TEST(Estimate, OutsideOfTheTableSaysSo) {
 
 // The table's entries that do not reach 500 mm have no t500, so that next to them an interval ends where the table does:
 // the mix of 80 Pa and 30 Pa.s that spreads 501 mm is not in it.
+// A t500 that no mix of the table has puts the best mix on the table's edge: marked, and still inside of its interval.
+TEST(Estimate, AnIntervalHoldsItsValue) {
+  for (const double t500 : {0.3, 3.0, 300.0}) {
+    const Estimate e = estimate(table(), {.spread = 0.560, .t500 = t500});
+    EXPECT_EQ(e.reasons.empty(), t500 == 3.0) << t500;
+    ASSERT_TRUE(e.tau_0 && e.mu);
+    for (const Interval& of : {*e.tau_0, *e.mu}) {
+      EXPECT_LE(of.low, of.value) << t500;
+      EXPECT_GE(of.high, of.value) << t500;
+    }
+  }
+}
+
 TEST(Estimate, ASpreadNextTo500MillimetresSaysThatItsT500IsNoUse) {
   for (const double t500 : {5.0, 9.73})
     EXPECT_FALSE(estimate(table(), {.spread = 0.501, .t500 = t500}).reasons.empty());
