@@ -26,8 +26,7 @@ struct Body {
   std::vector<BarPoint<D>> bars{};         ///< thinner than the grid resolves
   double time = 0.0, dt = 0.0;             ///< [s]; dt of the last step
 
-  NodalState<D>
-      nodes;  ///< of the last step, velocities at its start; after an implicit one with gravity in them
+  NodalState<D> nodes;             ///< of the last step, velocities at its start (implicit: with gravity)
   std::vector<Vec<D>> v;           ///< nodal velocities at the end of the last step [m/s]
   double dissipation = 0.0;        ///< power of the stresses in the last step [W], if asked for
   std::vector<Vec<D>> wall_force;  ///< of the flat walls on each node in the last step [N], if asked for

@@ -16,10 +16,12 @@
 //   secant(gamma_dot, tau_y)    s                                   [Pa s]
 //   slope(gamma_dot, tau_y)     (ds/dgamma_dot) / gamma_dot         [Pa s^3]
 //   potential(gamma_dot, tau_y) int_0^gamma_dot f                   [Pa/s], convex
-//   prox(a, tau_y, r)           the d >= 0 with f(d) + r d = a, 0 where a is at most f(0); r > 0, or r = 0 where f grows without bound [1/s]
+//   prox(a, tau_y, r)           the d >= 0 with f(d) + r d = a, 0 where a is at most f(0); r > 0, or r = 0 where f grows
+//                               without bound [1/s]
 //   stress(gamma_dot, tau_y)    f, and at gamma_dot = 0 its limit from the side of flow [Pa]
 //   dual_limit(gamma_dot, tau_y) the stress |s| that Newton's dual may carry, at most what keeps its tangent positive:
-//                               secant^2 / (|slope| gamma_dot); tau_y will do where f has no viscous part, f elsewhere [Pa]
+//                               secant^2 / (|slope| gamma_dot); tau_y will do where f has no viscous part, f elsewhere
+//                               [Pa]
 //   newtonian()                 its share in the mix's mu: 0 unless it is Bingham in other words, with no viscous part
 //                               left in f (Reiner-Riwlin's formulas then hold) [Pa s]
 //   viscosity(gamma_dot, tau_y) (f - tau_y) / gamma_dot where f has a viscous part beyond mu, 0 else; for the stress

@@ -101,7 +101,8 @@ double excess_divergence(const Vec<Geometry::n_strain>& q, double mean) {
 }
 
 /// Nodal forces at velocities v of everything but yield and friction, which each solver adds in its own way
-/// (Newton: add_friction_forces(), ADMM: add_friction_forces_admm()): inertia, pressure, walls inside the grid, moving contact, bars, drag; plus
+/// (Newton: add_friction_forces(), ADMM: add_friction_forces_admm()): inertia, pressure, walls inside the grid, moving
+/// contact, bars, drag; plus
 /// the deviatoric forces of the stresses that `stress(c, k, q)` returns for the strain rate q.
 template <class Geometry, class Stress>
 Eigen::VectorXd residual(const YieldProblem<Geometry>& problem, const std::vector<Vec<Geometry::dim>>& v,
