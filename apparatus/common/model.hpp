@@ -52,7 +52,7 @@ struct Model {
   double step_scale = 1.0;  ///< on the longest step that is chosen; no scene key, for error estimates
   std::array<double, 2> cell = {0.01, 0.005};  ///< [m] across, up
   bool particle_shifting =
-      true;  ///< keep cells inside the body full (libmpm/implicit/particle_shifting.hpp); no scene key, for studies
+      true;  ///< keep cells inside the body full (libmpm/implicit/shifting/particle_shifting.hpp); no scene key, for studies
   std::array<int, 2> points_per_cell = {4, 4};  ///< across, up
 };
 

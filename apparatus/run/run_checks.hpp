@@ -3,31 +3,13 @@
 // What a run counts while it goes on, and whether its result is to be trusted at its end.
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <string>
+#include <cstdint>
 
 #include "apparatus/common/model.hpp"
 #include "apparatus/run/body_readings.hpp"
 #include "libmpm/implicit/step.hpp"
-#include "libmpm/implicit/step_size.hpp"
 
 namespace tremie::test_run {
-
-/// Points that are not finite or lie beyond a wall at the end of an axis.
-template <int D>
-std::int64_t points_lost(const std::array<Axis, D>& axes, const Points<D>& points) {
-  std::int64_t lost = 0;
-  for (const Vec<D>& x : points.x) {
-    bool in = x.allFinite();
-    for (int d = 0; d < D; ++d) {
-      in = in && !(axes[d].wall_low() && x[d] < axes[d].origin);
-      in = in && !(axes[d].wall_high() && x[d] > axes[d].origin + axes[d].length());
-    }
-    lost += in ? 0 : 1;
-  }
-  return lost;
-}
 
 /// Adds one step to the counts of a run.
 template <class Geometry>
@@ -39,59 +21,15 @@ void count_step(const Body<Geometry>& body, const StepReport& step, Checks& chec
 
 /// A step that the scene fixes is not bound to the cells: how many the fastest point crossed in it.
 template <class Geometry>
-void watch_fixed_step(const Body<Geometry>& body, const Model& model, const StepReport& step,
-                      Checks& checks) {
-  if (!model.time_step) return;
-  for (int d = 0; d < Geometry::dim; ++d) {
-    double v = 0.0;
-    for (std::size_t p = 0; p < body.points.size(); ++p)
-      v = std::max(v, std::abs(body.motion.rate(body.points.x[p], body.points.v[p])[d]));
-    checks.cells_in_a_step = std::max(checks.cells_in_a_step, v * step.dt / body.grid.axes[d].h);
-  }
-}
+void watch_fixed_step(const Body<Geometry>& body, const Model& model, const StepReport& step, Checks& checks);
 
 /// Fills checks and cost at the end of a run, with the reasons why a result is not to be trusted.
 template <class Geometry>
-void judge(const Body<Geometry>& body, double start_mass, Checks& checks, Cost& cost) {
-  checks.volume_change = volume_change(body.points);
-  checks.mass_error = total_mass(body.points) / start_mass - 1.0;
-  checks.points_lost = points_lost<Geometry::dim>(body.grid.axes, body.points);
-  checks.max_speed_end = detail::max_speed(body.points);
-  if (checks.unconverged_steps > 0)
-    checks.reasons.push_back(std::to_string(checks.unconverged_steps) + " of " + std::to_string(cost.steps) +
-                             " steps did not converge to the tolerance");
-  const auto infinite = std::count_if(body.points.lambda.begin(), body.points.lambda.end(),
-                                      [](double lambda) { return !std::isfinite(lambda * lambda); });
-  if (infinite > 0)
-    checks.reasons.push_back(
-        "the flocculation state is infinite in " + std::to_string(infinite) +
-        " points: a smaller mix.thixotropy.structuration_rate over mix.yield_stress, or a shorter test.rest");
-  if (checks.points_lost > 0)
-    checks.reasons.push_back(std::to_string(checks.points_lost) +
-                             " points left the domain or are not finite");
-  if (checks.cells_in_a_step > 1.0) {
-    checks.stability_limit_exceeded = true;
-    checks.reasons.push_back("model.time_step is too long: a point crossed " +
-                             std::to_string(std::lround(std::ceil(checks.cells_in_a_step))) +
-                             " cells in a step; up to one is trusted");
-  }
-  cost.points = static_cast<std::int64_t>(body.points.size());
-  cost.bytes_per_point = bytes_per_point<Geometry::dim>(body.points.thixotropic());
-  cost.simulated = body.time;
-}
+void judge(const Body<Geometry>& body, double start_mass, Checks& checks, Cost& cost);
 
 /// Concrete that has slowed down bears less pressure than where it stood: a change of volume beyond three
 /// times that at the start [1], and half a per cent, is the method's. What falls and hits may be compressed
 /// more.
-inline void judge_volume(double at_start, Checks& checks) {
-  constexpr double slow = 1e-2;  // [m/s]
-  const double most = 3.0 * std::abs(at_start) + 5e-3;
-  if (checks.max_speed_end > slow || !(std::abs(checks.volume_change) > most)) return;
-  char text[160];
-  std::snprintf(text, sizeof text,
-                "the concrete's volume changed by %+.2g %%; its weight can account for %.2g %%",
-                100.0 * checks.volume_change, 100.0 * most);
-  checks.reasons.push_back(text);
-}
+void judge_volume(double at_start, Checks& checks);
 
 }  // namespace tremie::test_run

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "libmpm/body/body.hpp"
-#include "libmpm/implicit/particle_shifting_3d.hpp"
+#include "libmpm/implicit/shifting/particle_shifting_3d.hpp"
 #include "libmpm/implicit/solvers/admm_factorised.hpp"
 #include "libmpm/implicit/solvers/admm_matrix_free.hpp"
 #include "libmpm/implicit/solvers/newton.hpp"

@@ -7,11 +7,9 @@
 // tensor of the stencil is computed where the point is (tensor-product splines: it is diagonal).
 
 #include <array>
-#include <memory>
 #include <vector>
 
 #include "libmpm/grid/active_grid.hpp"
-#include "libmpm/grid/node_reduction.hpp"
 #include "libmpm/particles/advection.hpp"
 #include "libmpm/particles/particles.hpp"
 #include "libmpm/transfer/stencil_3d.hpp"
@@ -24,74 +22,6 @@ struct NodalState {
   std::vector<double> mass;  ///< [kg]
   std::vector<Vec<D>> v;     ///< velocity after the transfer [m/s]
 };
-
-namespace detail {
-
-/// Positions of a cell's three nodes in each direction.
-template <int D>
-std::array<std::array<double, 3>, D> node_positions(const std::array<Axis, D>& axes, const Index<D>& cell) {
-  std::array<std::array<double, 3>, D> xi;
-  for (int d = 0; d < D; ++d)
-    for (int k = 0; k < 3; ++k) xi[d][k] = axes[d].node_position(axes[d].first_node(cell[d]) + k);
-  return xi;
-}
-
-/// Shape values of one point with the arms x_i - x_p and the stencil's inverse inertia in each direction.
-template <int D>
-struct PointStencil {
-  std::array<SplineValues, D> one;
-  std::array<std::array<double, 3>, D> arm;
-  Vec<D> inverse_inertia;
-
-  PointStencil(const std::array<Axis, D>& axes, const Index<D>& cell,
-               const std::array<std::array<double, 3>, D>& xi, const Vec<D>& x) {
-    const Vec<D> s = local_coordinates<D>(axes, cell, x);
-    for (int d = 0; d < D; ++d) {
-      one[d] = splines(axes[d], cell[d], s[d]);
-      double inertia = 0.0;
-      for (int k = 0; k < 3; ++k) {
-        arm[d][k] = xi[d][k] - x[d];
-        inertia += one[d].N[k] * arm[d][k] * arm[d][k];
-      }
-      // On a wall one spline is 1 and the others 0: no slope can be seen there, and none is given.
-      inverse_inertia[d] = inertia > 1e-12 * axes[d].h * axes[d].h ? 1.0 / inertia : 0.0;
-    }
-  }
-  /// The splines with their moments about the point, or with their slopes.
-  SpaceWeights with_arms() const {
-    SpaceWeights w;
-    for (int d = 0; d < D; ++d)
-      for (int k = 0; k < 3; ++k) w.N[d][k] = one[d].N[k], w.slope[d][k] = one[d].N[k] * arm[d][k];
-    return w;
-  }
-  SpaceWeights with_slopes() const {
-    SpaceWeights w;
-    for (int d = 0; d < D; ++d)
-      for (int k = 0; k < 3; ++k) w.N[d][k] = one[d].N[k], w.slope[d][k] = one[d].dN[k];
-    return w;
-  }
-  double N(const Index<D>& o) const {
-    double n = 1.0;
-    for (int d = 0; d < D; ++d) n *= one[d].N[o[d]];
-    return n;
-  }
-  Vec<D> arms(const Index<D>& o) const {
-    Vec<D> a;
-    for (int d = 0; d < D; ++d) a[d] = arm[d][o[d]];
-    return a;
-  }
-  Vec<D> gradient(const Index<D>& o) const {
-    Vec<D> g;
-    for (int d = 0; d < D; ++d) {
-      g[d] = one[d].dN[o[d]];
-      for (int e = 0; e < D; ++e)
-        if (e != d) g[d] *= one[e].N[o[e]];
-    }
-    return g;
-  }
-};
-
-}  // namespace detail
 
 /// Wraps a place around periodic axes. The velocity normal to a wall vanishes on it, but a finite step may
 /// still carry a point through: it stops just before.
@@ -116,82 +46,6 @@ void keep_in_domain(const ActiveGrid<D>& grid, const Vec<D>& from, Vec<D>& x) {
 
 namespace detail {
 
-/// Momenta and masses that the points of a cell give its nodes.
-template <int D>
-void cell_momenta(const ActiveGrid<D>& grid, const Points<D>& points, int c,
-                  std::array<Vec<D + 1>, power(3, D)>& local) {
-  const auto xi = node_positions<D>(grid.axes, grid.cell_index[c]);
-  for (auto& sum : local) sum.setZero();
-  for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
-    const int p = grid.order[i];
-    const PointStencil<D> st(grid.axes, grid.cell_index[c], xi, points.x[p]);
-    const Mat<D, D>& C = points.C[p];
-    for (int k = 0; k < power(3, D); ++k) {
-      const Index<D> o = local_offset<D>(k);
-      const double m = points.mass[p] * st.N(o);
-      local[k].template head<D>() += m * (points.v[p] + C * st.arms(o));
-      local[k][D] += m;
-    }
-  }
-}
-inline CellQuads cell_momenta(const ActiveGrid<3>& grid, const Points<3>& points, int c) {
-  const auto xi = node_positions<3>(grid.axes, grid.cell_index[c]);
-  CellQuads sum{};
-  for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
-    const int p = grid.order[i];
-    const PointStencil<3> st(grid.axes, grid.cell_index[c], xi, points.x[p]);
-    const double m = points.mass[p];
-    std::array<Quad, 3> slope;
-    for (int d = 0; d < 3; ++d) slope[d] = m * to_quad(points.C[p].col(d));
-    spread(st.with_arms(), m * to_quad(points.v[p], 1.0), slope, sum);
-  }
-  return sum;
-}
-
-/// Masses, and momenta in the place of velocities, that the points give the nodes: cell by cell.
-template <int D>
-void add_momenta(const ActiveGrid<D>& grid, const Points<D>& points, NodalState<D>& nodes) {
-  constexpr int n_local = power(3, D), at_a_time = 4096;
-  nodes.mass.assign(grid.node_index.size(), 0.0);
-  nodes.v.assign(grid.node_index.size(), Vec<D>::Zero());
-  using Momenta = std::array<Vec<D + 1>, n_local>;
-  const std::unique_ptr<Momenta[]> local(
-      new Momenta[static_cast<std::size_t>(std::min(grid.n_cells(), at_a_time))]);
-  for (int first = 0; first < grid.n_cells(); first += at_a_time) {
-    const int last = std::min(first + at_a_time, grid.n_cells());
-#pragma omp parallel for schedule(static)
-    for (int c = first; c < last; ++c) cell_momenta(grid, points, c, local[c - first]);
-    for (int c = first; c < last; ++c)
-      for (int k = 0; k < n_local; ++k) {
-        const int i = grid.cell_nodes[c][k];
-        nodes.v[i] += local[c - first][k].template head<D>();
-        nodes.mass[i] += local[c - first][k][D];
-      }
-  }
-}
-/// In 3D in chunks of cells.
-inline void add_momenta(const ActiveGrid<3>& grid, const Points<3>& points, NodalState<3>& nodes) {
-  resize_for_overwrite(nodes.mass, grid.node_index.size());
-  resize_for_overwrite(nodes.v, grid.node_index.size());
-  NodeReduction reduction;
-  reduction.lay_out(grid);
-  ReductionBuffer buffer;
-  reduction.resize_for_overwrite(buffer);
-  const auto give = [&](int chunk, double* to) {
-    for (int c = reduction.first_cell(chunk); c < reduction.last_cell(chunk); ++c) {
-      const CellQuads momenta = cell_momenta(grid, points, c);
-      for (std::size_t k = 0; k < 27; ++k)
-        add_to_node(momenta[k], to + 4 * std::ptrdiff_t{grid.cell_nodes[c][k]});
-    }
-  };
-#pragma omp parallel
-  reduction.sweep_in_region<double>(buffer, give, [&](int i) {
-    const Vec<4> sum = reduction.sum_at<double, 4>(i, buffer);
-    nodes.v[i] = sum.head<3>();
-    nodes.mass[i] = sum[3];
-  });
-}
-
 /// Nodal vectors of the nodes of a cell.
 template <int D>
 std::array<Vec<D>, power(3, D)> at_controls(const ActiveGrid<D>& grid, const std::vector<Vec<D>>& v, int c) {
@@ -203,41 +57,12 @@ inline CellQuads at_controls(const ActiveGrid<3>& grid, const std::vector<Vec<3>
   return of_cell(grid, v, c);
 }
 
-/// What the nodes of a cell say of the place of a point: velocity and, column by column, its moments about
-/// it.
-template <int D>
-void velocity_at(const std::array<Vec<D>, power(3, D)>& u, const PointStencil<D>& st, Vec<D>& vp,
-                 Mat<D, D>& moment) {
-  vp.setZero(), moment.setZero();
-  for (int k = 0; k < power(3, D); ++k) {
-    const Index<D> o = local_offset<D>(k);
-    const Vec<D> Nv = st.N(o) * u[k];
-    vp += Nv;
-    moment += Nv * st.arms(o).transpose();
-  }
-}
-inline void velocity_at(const CellQuads& u, const PointStencil<3>& st, Vec<3>& vp, Mat<3, 3>& moment) {
-  Quad value;
-  std::array<Quad, 3> slope;
-  contract(u, st.with_arms(), value, slope);
-  vp = to_vec(value);
-  for (int d = 0; d < 3; ++d) moment.col(d) = to_vec(slope[d]);
-}
-
 }  // namespace detail
 
 /// Point to grid: nodal masses and velocities, momentum and angular momentum kept. The sums do not depend on
 /// the threads.
 template <int D>
-void point_to_grid(const ActiveGrid<D>& grid, const Points<D>& points, NodalState<D>& nodes) {
-  detail::add_momenta(grid, points, nodes);
-  for (const MirrorNode<D>& m : grid.mirrors) nodes.v[m.of] += m.sign.cwiseProduct(nodes.v[m.node]);
-  fold_mirrors<D>(grid, nodes.mass);
-#pragma omp parallel for schedule(static)
-  for (int i = 0; i < grid.n_nodes(); ++i)
-    if (nodes.mass[i] > 0.0) nodes.v[i] /= nodes.mass[i];
-  fill_mirrors<D>(grid, nodes.v);
-}
+void point_to_grid(const ActiveGrid<D>& grid, const Points<D>& points, NodalState<D>& nodes);
 
 /// How grid velocities come back to the points.
 struct Transfer {
@@ -247,81 +72,19 @@ struct Transfer {
 
 /// Grid to point: velocities and affine velocities from the nodal velocities v at the end of the step (v_old
 /// at its start, for FLIP alone); the points move with the same v over dt, as their space has it.
-template <int D, class Move = StraightAhead>
+template <int D>
 void grid_to_point(const ActiveGrid<D>& grid, const std::vector<Vec<D>>& v, const std::vector<Vec<D>>& v_old,
-                   const Transfer& transfer, double dt, Points<D>& points, const Move& motion = {}) {
-  points.C.resize(points.size());
-#pragma omp parallel for schedule(static)
-  for (int c = 0; c < grid.n_cells(); ++c) {
-    const auto xi = detail::node_positions<D>(grid.axes, grid.cell_index[c]);
-    const auto u = detail::at_controls(grid, v, c);
-    for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
-      const int p = grid.order[i];
-      const detail::PointStencil<D> st(grid.axes, grid.cell_index[c], xi, points.x[p]);
-      Vec<D> vp, vp_old = Vec<D>::Zero();
-      Mat<D, D> moment, unused;
-      detail::velocity_at(u, st, vp, moment);
-      if (transfer.flip) detail::velocity_at(detail::at_controls(grid, v_old, c), st, vp_old, unused);
-      points.C[p] =
-          transfer.flip ? Mat<D, D>(Mat<D, D>::Zero()) : Mat<D, D>(moment * st.inverse_inertia.asDiagonal());
-      points.v[p] = transfer.flip ? Vec<D>(vp + transfer.flip_blend * (points.v[p] - vp_old)) : vp;
-      const Vec<D> from = points.x[p];
-      motion.move(points, p, vp, dt);
-      keep_in_domain<D>(grid, from, points.x[p]);
-    }
-  }
-}
+                   const Transfer& transfer, double dt, Points<D>& points, const StraightAhead& motion = {});
+void grid_to_point(const ActiveGrid<2>& grid, const std::vector<Vec<2>>& v, const std::vector<Vec<2>>& v_old,
+                   const Transfer& transfer, double dt, Points<2>& points, const Motion<Polar>& motion);
 
 /// Affine velocities alone from the nodal velocities v, of points that have given theirs up.
 template <int D>
-void affine_from_grid(const ActiveGrid<D>& grid, const std::vector<Vec<D>>& v, Points<D>& points) {
-  points.C.resize(points.size());
-#pragma omp parallel for schedule(static)
-  for (int c = 0; c < grid.n_cells(); ++c) {
-    const auto xi = detail::node_positions<D>(grid.axes, grid.cell_index[c]);
-    const auto u = detail::at_controls(grid, v, c);
-    for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
-      const int p = grid.order[i];
-      const detail::PointStencil<D> st(grid.axes, grid.cell_index[c], xi, points.x[p]);
-      Vec<D> vp;
-      Mat<D, D> moment;
-      detail::velocity_at(u, st, vp, moment);
-      points.C[p] = moment * st.inverse_inertia.asDiagonal();
-    }
-  }
-}
+void affine_from_grid(const ActiveGrid<D>& grid, const std::vector<Vec<D>>& v, Points<D>& points);
 
 /// Shear rate [1/s] at every point from the nodal velocities.
 template <class Geometry>
 void shear_rate_at_points(const ActiveGrid<Geometry::dim>& grid, const std::vector<Vec<Geometry::dim>>& v,
-                          const Points<Geometry::dim>& points, std::vector<double>& gamma_dot) {
-  constexpr int D = Geometry::dim;
-  gamma_dot.resize(points.size());
-#pragma omp parallel for schedule(static)
-  for (int c = 0; c < grid.n_cells(); ++c) {
-    const auto xi = detail::node_positions<D>(grid.axes, grid.cell_index[c]);
-    const auto u = detail::at_controls(grid, v, c);
-    for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
-      const int p = grid.order[i];
-      const detail::PointStencil<D> st(grid.axes, grid.cell_index[c], xi, points.x[p]);
-      if constexpr (D == 3) {
-        detail::Quad value;
-        std::array<detail::Quad, 3> slope;
-        detail::contract(u, st.with_slopes(), value, slope);
-        Mat<3, 3> L;
-        for (int d = 0; d < 3; ++d) L.col(d) = detail::to_vec(slope[d]);
-        const Mat<3, 3> rate = L + L.transpose();  // 2 D
-        gamma_dot[p] = std::sqrt(0.5 * (rate.squaredNorm() - rate.trace() * rate.trace() / 3.0));
-      } else {
-        Vec<Geometry::n_strain> q = Vec<Geometry::n_strain>::Zero();
-        for (int k = 0; k < power(3, D); ++k) {
-          const Index<D> o = local_offset<D>(k);
-          q += Geometry::strain_rows(st.N(o), st.gradient(o), points.x[p]) * u[k];
-        }
-        gamma_dot[p] = q.norm();
-      }
-    }
-  }
-}
+                          const Points<Geometry::dim>& points, std::vector<double>& gamma_dot);
 
 }  // namespace tremie

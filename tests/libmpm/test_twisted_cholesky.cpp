@@ -38,7 +38,7 @@ struct System {
   /// What the factor makes of A times the solution with so many threads.
   Eigen::VectorXf solved(int threads) const {
     omp_set_num_threads(threads);
-    TwistedCholesky<float> factor;
+    TwistedCholesky factor;
     factor.reset(first);
     const int n = static_cast<int>(A.rows());
     for (int i = 0; i < n; ++i)
@@ -111,7 +111,7 @@ TEST(TwistedCholesky, SolvesWhatIsNotCoupledAtAll) {
 
 TEST(TwistedCholesky, RefusesWhatIsNotPositiveDefinite) {
   for (int wrong : {3, 250, 497}) {  // at the first end, in the middle, at the last
-    TwistedCholesky<float> factor;
+    TwistedCholesky factor;
     std::vector<int> first;
     for (int i = 0; i < 500; ++i) first.push_back(std::max(0, i - 40));
     factor.reset(first);

@@ -13,6 +13,8 @@
 // momentum balance; its solvers are in admm.hpp and newton.hpp.
 
 #include <algorithm>
+#include <array>
+#include <functional>
 #include <vector>
 
 #include "libmpm/boundary/boundary_points.hpp"
@@ -100,6 +102,28 @@ double excess_divergence(const Vec<Geometry::n_strain>& q, double mean) {
     return 0.0;
 }
 
+/// Turns the strain rates of a cell's quadrature points into stresses, in place.
+template <class Geometry>
+using CellStresses =
+    std::function<void(int c, std::array<Vec<Geometry::n_strain>, power(2, Geometry::dim)>& q)>;
+/// Multiplies the strain rows of quadrature point k of cell c by V times its tangent, in place.
+template <class Geometry>
+using CellTangents = std::function<void(int c, int k, double V,
+                                        Mat<Geometry::n_strain, power(3, Geometry::dim) * Geometry::dim>& B)>;
+
+namespace detail {
+
+// Compiled once for each geometry; what the laws give comes by one call a cell, and one a quadrature point.
+template <class Geometry>
+Eigen::VectorXd residual_of_cells(const YieldProblem<Geometry>& problem,
+                                  const std::vector<Vec<Geometry::dim>>& v,
+                                  const CellStresses<Geometry>& stresses);
+template <class Geometry>
+void assemble_cells(const YieldProblem<Geometry>& problem, const CellTangents<Geometry>& tangents,
+                    BlockSystem<Geometry::dim>& system);
+
+}  // namespace detail
+
 /// Nodal forces at velocities v of everything but yield and friction, which each solver adds in its own way
 /// (Newton: add_friction_forces(), ADMM: add_friction_forces_admm()): inertia, pressure, walls inside the grid, moving
 /// contact, bars, drag; plus
@@ -107,36 +131,9 @@ double excess_divergence(const Vec<Geometry::n_strain>& q, double mean) {
 template <class Geometry, class Stress>
 Eigen::VectorXd residual(const YieldProblem<Geometry>& problem, const std::vector<Vec<Geometry::dim>>& v,
                          Stress stress) {
-  constexpr int D = Geometry::dim, n_local = power(3, D);
-  const auto& grid = problem.grid;
-  const auto& quad = problem.quadrature;
-  std::vector<std::array<Vec<D>, n_local>> local(grid.cell_index.size());
-#pragma omp parallel for schedule(static)
-  for (int c = 0; c < grid.n_cells(); ++c) {
-    const double div = divergence(problem, v, c), p = problem.offset(c) - problem.K * problem.dt * div;
-    const auto& b = quad.divergence_rows(c);
-    for (int i = 0; i < n_local; ++i) local[c][i] = quad.V_cell[c] * p * b[i];
-    for (int k = 0; k < power(2, D); ++k) {
-      const Vec<Geometry::n_strain> q = strain_rate(problem, v, c, k);
-      Vec<Geometry::n_strain> s = quad.V[c][k] * stress(c, k, q);
-      if constexpr (requires { Geometry::divergence_of(q); })
-        s += quad.V[c][k] * problem.zeta * excess_divergence<Geometry>(q, div) * Geometry::divergence_part();
-      for (int i = 0; i < n_local; ++i) local[c][i].noalias() -= quad.B[c][k][i].transpose() * s;
-    }
-  }
-  Eigen::VectorXd R(grid.n_nodes() * D);
-  for (int i = 0; i < grid.n_nodes(); ++i)
-    R.segment<D>(i * D) = problem.nodes.mass[i] / problem.dt * (problem.nodes.v[i] - v[i]);
-  for (std::size_t i = 0; i < problem.drag.size(); ++i)
-    R.segment<D>(static_cast<Eigen::Index>(i) * D) -= problem.drag[i] * v[i];
-  for (int c = 0; c < grid.n_cells(); ++c)
-    for (int i = 0; i < n_local; ++i) R.segment<D>(grid.cell_nodes[c][i] * D) += local[c][i];
-  add_contact_forces<D>(problem.contact, grid.cell_nodes, v, R);
-  add_penalty_forces<D>(problem.bound, grid.cell_nodes, v, R);
-  add_penalty_forces<D>(problem.surface, grid.cell_nodes, v, R);
-  add_penalty_forces<D>(problem.bars.points, grid.cell_nodes, v, R);
-  fold_mirrors<D>(grid, R);
-  return R;
+  return detail::residual_of_cells<Geometry>(problem, v, [&stress](int c, auto& q) {
+    for (int k = 0; k < power(2, Geometry::dim); ++k) q[k] = stress(c, k, q[k]);
+  });
 }
 
 /// Sets to zero what walls prescribe.
@@ -147,44 +144,11 @@ inline void mask(const std::vector<char>& fixed, Eigen::VectorXd& R) {
 }
 
 /// Assembles inertia, bulk and contact, and the deviatoric stiffness V B' T B with the tangents T =
-/// tangent(c, k).
+/// tangent(c, k), a number or a matrix.
 template <class Geometry, class Tangent>
 void assemble(const YieldProblem<Geometry>& problem, Tangent tangent, BlockSystem<Geometry::dim>& system) {
-  constexpr int D = Geometry::dim, n_dof = power(3, D) * D, ns = Geometry::n_strain;
-  const auto& quad = problem.quadrature;
-  system.set_zero();
-  for (int c = 0; c < problem.grid.n_cells(); ++c) {
-    Eigen::Matrix<double, ns, n_dof> B;
-    Eigen::Matrix<double, n_dof, n_dof> cell = Eigen::Matrix<double, n_dof, n_dof>::Zero();
-    double bulk = problem.K * problem.dt;
-    if constexpr (requires { Geometry::divergence_part(); }) bulk -= problem.zeta;
-    for (int k = 0; k < power(2, D); ++k) {
-      for (int i = 0; i < power(3, D); ++i) B.template middleCols<D>(i * D) = quad.B[c][k][i];
-      Eigen::Matrix<double, ns, n_dof> TB = quad.V[c][k] * tangent(c, k) * B;
-      if constexpr (requires { Geometry::divergence_part(); })
-        TB += (quad.V[c][k] * problem.zeta) * Geometry::divergence_part() *
-              (Geometry::divergence_part().transpose() * B);
-      cell.noalias() += B.transpose() * TB;
-    }
-    const auto& rows = quad.divergence_rows(c);
-    Vec<n_dof> b;
-    for (int i = 0; i < power(3, D); ++i) b.template segment<D>(i * D) = rows[i];
-    cell.noalias() += (quad.V_cell[c] * bulk * b) * b.transpose();
-    system.add_cell(c, cell);
-  }
-  // A point on the very edge of a cell gives some of its nodes no mass; a trace of it keeps the matrix
-  // definite.
-  double trace = 0.0;
-  for (double m : problem.nodes.mass) trace = std::max(trace, 1e-12 * m);
-  for (int i = 0; i < problem.grid.n_nodes(); ++i)
-    for (int d = 0; d < D; ++d)
-      system.add_diagonal(i, d,
-                          std::max(trace, problem.nodes.mass[i]) / problem.dt +
-                              (problem.drag.empty() ? 0.0 : problem.drag[i]));
-  add_contact_stiffness<D>(problem.contact, system);
-  add_penalty_stiffness<D>(problem.bound, system);
-  add_penalty_stiffness<D>(problem.surface, system);
-  add_penalty_stiffness<D>(problem.bars.points, system);
+  detail::assemble_cells<Geometry>(
+      problem, [&tangent](int c, int k, double V, auto& B) { B = (V * tangent(c, k) * B).eval(); }, system);
 }
 
 }  // namespace tremie

@@ -69,7 +69,7 @@ class SchurComplementPreconditioner {
   TwoLevelPcg iteration_;  ///< where S is not factorised
   Eigen::VectorXf y_, p_;
   std::vector<int> first_;  ///< of each row of the band: its first column
-  TwistedCholesky<float> band_;
+  TwistedCholesky band_;
 };
 
 }  // namespace tremie

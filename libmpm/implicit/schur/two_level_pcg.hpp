@@ -40,7 +40,7 @@ class TwoLevelPcg {
   std::vector<int>
       aggregate_begin_;  ///< cells aggregate_cell_[aggregate_begin_[k] .. aggregate_begin_[k + 1]) are in cube k
   std::vector<int> aggregate_cell_;
-  TwistedCholesky<float> band_;
+  TwistedCholesky band_;
 };
 
 }  // namespace tremie

@@ -4,7 +4,7 @@
 // preconditioner.hpp is the matrix itself, but for walls inside the grid and its single precision:
 // one or two iterations.
 
-#include "libmpm/implicit/particle_shifting.hpp"
+#include "libmpm/implicit/shifting/particle_shifting.hpp"
 #include "libmpm/implicit/solvers/linear_system_3d.hpp"
 
 namespace tremie {

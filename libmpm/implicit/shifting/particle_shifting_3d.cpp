@@ -1,6 +1,6 @@
 // Displacements that even out the points in 3D.
 
-#include "libmpm/implicit/particle_shifting_3d.hpp"
+#include "libmpm/implicit/shifting/particle_shifting_3d.hpp"
 
 namespace tremie {
 
