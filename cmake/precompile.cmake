@@ -21,3 +21,16 @@ function(tremie_cold)
     target_compile_options(${target} PRIVATE ${cold})
   endforeach()
 endfunction()
+
+# tremie_cold_headers(TARGET...): cold targets that share the wide headers of apparatus/cold_headers.cpp, read once for all.
+# They are compiled as those were: position independent, with OpenMP.
+function(tremie_cold_headers)
+  tremie_cold(${ARGN})
+  foreach(target ${ARGN})
+    target_compile_options(${target} PRIVATE -fPIC ${OpenMP_CXX_FLAGS})
+    target_compile_definitions(${target} PRIVATE EIGEN_DONT_PARALLELIZE)
+    if(TREMIE_PRECOMPILE AND NOT target STREQUAL tremie_cold_headers)
+      target_precompile_headers(${target} REUSE_FROM tremie_cold_headers)
+    endif()
+  endforeach()
+endfunction()

@@ -1,8 +1,15 @@
 #include "rheometer/regression/least_squares.hpp"
 
-#include <ceres/ceres.h>
+#include <ceres/cost_function.h>
+#include <ceres/covariance.h>
+#include <ceres/crs_matrix.h>
+#include <ceres/evaluation_callback.h>
+#include <ceres/loss_function.h>
+#include <ceres/problem.h>
+#include <ceres/solver.h>
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <memory>
