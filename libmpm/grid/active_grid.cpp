@@ -147,10 +147,8 @@ void activate(ActiveGrid<D>& grid, const std::vector<Vec<D>>& x) {
   template void activate_cells(ActiveGrid<D>&, const std::vector<Vec<D>>&); \
   template void activate(ActiveGrid<D>&, const std::vector<Vec<D>>&);       \
   template std::int64_t count_active_cells<D>(const std::array<Axis, D>&, const std::vector<Vec<D>>&);
-TREMIE_ACTIVATE_IN(2)
-#ifndef TREMIE_SECTIONS_ONLY  // the page for the browser has no vane and nothing in space
 TREMIE_ACTIVATE_IN(1)
+TREMIE_ACTIVATE_IN(2)
 TREMIE_ACTIVATE_IN(3)
-#endif
 
 }  // namespace tremie

@@ -128,7 +128,7 @@ void add_momenta(const ActiveGrid<D>& grid, const Points<D>& points, NodalState<
   }
 }
 /// In 3D in chunks of cells.
-void add_momenta(const ActiveGrid<3>& grid, const Points<3>& points, NodalState<3>& nodes) {
+[[maybe_unused]] void add_momenta(const ActiveGrid<3>& grid, const Points<3>& points, NodalState<3>& nodes) {
   resize_for_overwrite(nodes.mass, grid.node_index.size());
   resize_for_overwrite(nodes.v, grid.node_index.size());
   NodeReduction reduction;
@@ -163,7 +163,8 @@ void velocity_at(const std::array<Vec<D>, power(3, D)>& u, const PointStencil<D>
     moment += Nv * st.arms(o).transpose();
   }
 }
-void velocity_at(const CellQuads& u, const PointStencil<3>& st, Vec<3>& vp, Mat<3, 3>& moment) {
+[[maybe_unused]] void velocity_at(const CellQuads& u, const PointStencil<3>& st, Vec<3>& vp,
+                                  Mat<3, 3>& moment) {
   Quad value;
   std::array<Quad, 3> slope;
   contract(u, st.with_arms(), value, slope);
