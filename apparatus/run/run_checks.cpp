@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <vector>
 
 #include "libmpm/implicit/step_size.hpp"
 
@@ -22,6 +23,28 @@ std::int64_t points_lost(const std::array<Axis, D>& axes, const Points<D>& point
     lost += in ? 0 : 1;
   }
   return lost;
+}
+
+/// Why what was counted is not to be trusted.
+void tell_reasons(std::int64_t steps, const std::vector<double>& lambda, Checks& checks) {
+  if (checks.unconverged_steps > 0)
+    checks.reasons.push_back(std::to_string(checks.unconverged_steps) + " of " + std::to_string(steps) +
+                             " steps did not converge to the tolerance");
+  const auto infinite =
+      std::count_if(lambda.begin(), lambda.end(), [](double l) { return !std::isfinite(l * l); });
+  if (infinite > 0)
+    checks.reasons.push_back(
+        "the flocculation state is infinite in " + std::to_string(infinite) +
+        " points: a smaller mix.thixotropy.structuration_rate over mix.yield_stress, or a shorter test.rest");
+  if (checks.points_lost > 0)
+    checks.reasons.push_back(std::to_string(checks.points_lost) +
+                             " points left the domain or are not finite");
+  if (checks.cells_in_a_step > 1.0) {
+    checks.stability_limit_exceeded = true;
+    checks.reasons.push_back("model.time_step is too long: a point crossed " +
+                             std::to_string(std::lround(std::ceil(checks.cells_in_a_step))) +
+                             " cells in a step; up to one is trusted");
+  }
 }
 
 }  // namespace
@@ -44,24 +67,7 @@ void judge(const Body<Geometry>& body, double start_mass, Checks& checks, Cost& 
   checks.mass_error = total_mass(body.points) / start_mass - 1.0;
   checks.points_lost = points_lost<Geometry::dim>(body.grid.axes, body.points);
   checks.max_speed_end = detail::max_speed(body.points);
-  if (checks.unconverged_steps > 0)
-    checks.reasons.push_back(std::to_string(checks.unconverged_steps) + " of " + std::to_string(cost.steps) +
-                             " steps did not converge to the tolerance");
-  const auto infinite = std::count_if(body.points.lambda.begin(), body.points.lambda.end(),
-                                      [](double lambda) { return !std::isfinite(lambda * lambda); });
-  if (infinite > 0)
-    checks.reasons.push_back(
-        "the flocculation state is infinite in " + std::to_string(infinite) +
-        " points: a smaller mix.thixotropy.structuration_rate over mix.yield_stress, or a shorter test.rest");
-  if (checks.points_lost > 0)
-    checks.reasons.push_back(std::to_string(checks.points_lost) +
-                             " points left the domain or are not finite");
-  if (checks.cells_in_a_step > 1.0) {
-    checks.stability_limit_exceeded = true;
-    checks.reasons.push_back("model.time_step is too long: a point crossed " +
-                             std::to_string(std::lround(std::ceil(checks.cells_in_a_step))) +
-                             " cells in a step; up to one is trusted");
-  }
+  tell_reasons(cost.steps, body.points.lambda, checks);
   cost.points = static_cast<std::int64_t>(body.points.size());
   cost.bytes_per_point = bytes_per_point<Geometry::dim>(body.points.thixotropic());
   cost.simulated = body.time;

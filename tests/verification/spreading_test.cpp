@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "apparatus/verification/references/huppert.hpp"
-#include "tests/verification/slender_expectations.hpp"
+#include "apparatus/verification/references/slender.hpp"
 
 namespace tremie {
 namespace {
@@ -64,11 +64,6 @@ TEST(Spreading, HuppertOverADecade) {
   EXPECT_NEAR(fit.exponent * 8.0, 1.0, 0.03);
   EXPECT_NEAR(fit.prefactor / huppert_prefactor, 1.0, 0.03);
   EXPECT_LE(fit.worst, 0.03);
-}
-
-// At the default cells; slow_test.cpp has the finer ones.
-TEST(Spreading, SlenderBinghamFollowsTheLubricationEquation) {
-  expect_slender_flow_follows_the_lubrication_equation(0.01, 0.005);
 }
 
 }  // namespace

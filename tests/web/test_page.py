@@ -13,11 +13,11 @@ SCENES = {
     "Mix C": 'apparatus = "slump_flow"\nmix = "mix_c"\n',
     "Mix A rested": 'apparatus = "slump_flow"\nmix = "mix_a"\n[test]\nrest = "240 s"\n',
 }
-failures = []
+failures, began = [], time.time()
 
 
 def check(holds, message):
-    print(("ok      " if holds else "FAILED  ") + message, flush=True)
+    print(("ok      " if holds else "FAILED  ") + f"{time.time() - began:4.0f} s  {message}", flush=True)
     if not holds:
         failures.append(message)
 
@@ -297,8 +297,8 @@ def use_the_fields(page, program):
 def use_the_page(page, program, out, width, dark):
     browser = Browser(width, 900 if width > 500 else 844, dark)
     try:
-        short = "" if width > 500 else "&duration=2&duration2=2"  # a telephone's layout does not ask for the flow's end
-        browser.open(page + "#yield_stress=54&rest=0&yield_stress2=130&plastic_viscosity2=30.2&structuration_rate2=2.9" + short)
+        # A layout does not ask for the flow's end.
+        browser.open(page + "#yield_stress=54&rest=0&duration=2&yield_stress2=130&plastic_viscosity2=30.2&structuration_rate2=2.9&duration2=2")
         browser.until("document.querySelectorAll('.outcome .error')[1].textContent", 120)
         wide = browser.run("return document.documentElement.scrollWidth")
         check(wide <= width, f"{width} px: no sideways scrolling ({wide} px)")
@@ -307,7 +307,7 @@ def use_the_page(page, program, out, width, dark):
         browser.until("document.querySelector('#result-error').textContent && !document.body.classList.contains('busy')", 120)
         check("tau" not in browser.run("return location.hash") and "yield_stress=54" in browser.run("return location.hash"), "the link holds the scene")
         browser.screenshot(out / f"one_{width}_{'dark' if dark else 'light'}.png")
-        browser.run("const at = document.getElementById('scrubber'); at.value = arguments[0]; at.dispatchEvent(new Event('input'))", 150 if short else 30)
+        browser.run("const at = document.getElementById('scrubber'); at.value = arguments[0]; at.dispatchEvent(new Event('input'))", 150)
         check("0.3" in browser.run("return document.getElementById('time').textContent"), "the time can be chosen")
         browser.screenshot(out / f"moving_{width}_{'dark' if dark else 'light'}.png")
         if width > 500:

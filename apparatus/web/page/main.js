@@ -87,7 +87,7 @@ async function runInto(run, which, scene, turn) {
     withError: true,
     onProgress: (progress) => wanted() && showProgress(progress, which),
     onFrame: (frame) => wanted() &&
-        (addFrame(run, frame), (state.range = null), (player.end = Math.max(0.5, frame.time)), showAt(frame.time)),
+        (addFrame(run, frame), (state.range = null), (player.end = Math.max(0.5, frame.time)), showComing(frame.time)),
     onErrorBar: (whole) => ((last = whole), wanted() && ((run.summary = whole.summary), showAnswers())),
     onDone: () => done(last),
   });

@@ -4,6 +4,7 @@ const player = {
   time: 0,
   end: 1,
   playing: false,
+  drawnAt: 0,
   draw: () => {}
 };
 
@@ -32,6 +33,13 @@ function showAt(time) {
   player.playing = false;
   player.time = Math.min(time, player.end);
   showTime();
+}
+
+/// While it is computed: ten pictures a second, which leave the machine to the computation.
+function showComing(time) {
+  if (performance.now() - player.drawnAt < 100) return;
+  showAt(time);
+  player.drawnAt = performance.now();
 }
 
 function buildPlayer() {
