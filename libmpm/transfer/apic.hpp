@@ -46,7 +46,7 @@ void keep_in_domain(const ActiveGrid<D>& grid, const Vec<D>& from, Vec<D>& x) {
 
 namespace detail {
 
-/// Nodal vectors of the nodes of a cell.
+/// Nodal vectors of the nodes of a cell, the control points of its splines.
 template <int D>
 std::array<Vec<D>, power(3, D)> at_controls(const ActiveGrid<D>& grid, const std::vector<Vec<D>>& v, int c) {
   std::array<Vec<D>, power(3, D)> u;

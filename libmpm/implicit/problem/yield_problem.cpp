@@ -53,6 +53,7 @@ void assemble_cells(const YieldProblem<Geometry>& problem, const CellTangents<Ge
     Eigen::Matrix<double, ns, n_dof> B;
     Eigen::Matrix<double, n_dof, n_dof> cell = Eigen::Matrix<double, n_dof, n_dof>::Zero();
     double bulk = problem.K * problem.dt;
+    // zeta resists how div_q differs from its mean: sum_q V_q (div_q - div)^2 = sum_q V_q div_q^2 - V_c div^2.
     if constexpr (requires { Geometry::divergence_part(); }) bulk -= problem.zeta;
     for (int k = 0; k < power(2, D); ++k) {
       for (int i = 0; i < power(3, D); ++i) B.template middleCols<D>(i * D) = quad.B[c][k][i];

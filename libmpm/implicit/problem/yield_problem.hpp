@@ -125,9 +125,9 @@ void assemble_cells(const YieldProblem<Geometry>& problem, const CellTangents<Ge
 }  // namespace detail
 
 /// Nodal forces at velocities v of everything but yield and friction, which each solver adds in its own way
-/// (Newton: add_friction_forces(), ADMM: add_friction_forces_admm()): inertia, pressure, walls inside the grid, moving
-/// contact, bars, drag; plus
-/// the deviatoric forces of the stresses that `stress(c, k, q)` returns for the strain rate q.
+/// (Newton: add_friction_forces(), ADMM: add_friction_forces_admm()): inertia, pressure, zeta, walls inside the grid, the
+/// head of the free surface, moving contact, bars, drag; plus the deviatoric forces of the stresses that
+/// `stress(c, k, q)` returns for the strain rate q. Each pushes along its axis where it is positive; zero in equilibrium.
 template <class Geometry, class Stress>
 Eigen::VectorXd residual(const YieldProblem<Geometry>& problem, const std::vector<Vec<Geometry::dim>>& v,
                          Stress stress) {
@@ -143,8 +143,8 @@ inline void mask(const std::vector<char>& fixed, Eigen::VectorXd& R) {
     if (fixed[static_cast<std::size_t>(i)]) R[i] = 0.0;
 }
 
-/// Assembles inertia, bulk and contact, and the deviatoric stiffness V B' T B with the tangents T =
-/// tangent(c, k), a number or a matrix.
+/// Assembles what residual() has, and the deviatoric stiffness V B' T B with the tangents T = tangent(c, k), a number or a
+/// matrix.
 template <class Geometry, class Tangent>
 void assemble(const YieldProblem<Geometry>& problem, Tangent tangent, BlockSystem<Geometry::dim>& system) {
   detail::assemble_cells<Geometry>(
