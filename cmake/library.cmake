@@ -1,7 +1,7 @@
 # find_package(tremie): the libraries and their headers, as targets tremie::mpm, tremie::rheometer, tremie::scene, ...
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
-set(exported tremie_flags tremie_constitutive tremie_mpm tremie_rheometer tremie_scene_reader tremie_run_loop
+set(exported tremie_flags tremie_constitutive tremie_mpm tremie_rheometer tremie_scene_reader tremie_run_loop tremie_parts
              tremie_scene)
 foreach(name ${TREMIE_APPARATUS})
   list(APPEND exported tremie_${name})

@@ -17,22 +17,42 @@ using scene::Node;
 
 /// A reading that may be measured: its key in LAB.toml and its name in summary.json.
 struct Known {
-  const char *apparatus, *key, *result;
-  std::optional<Dimension> dimension;  ///< none: a plain number
-  double factor;                       ///< from SI to the result's unit
-  bool logarithmic;
+  std::string key, result;
+  std::optional<Dimension> dimension = {};  ///< none: a plain number
+  double factor = 1.0;                      ///< from SI to the result's unit
+  bool logarithmic = false;                 ///< times
 };
-const Known known_readings[] = {
-    {"slump_flow", "spread", "spread_mm", Dimension::length, 1e3, false},
-    {"slump_flow", "t500", "t500_s", Dimension::time, 1.0, true},
-    {"slump_flow", "height", "height_mm", Dimension::length, 1e3, false},
-    {"l_box", "passing_ratio", "passing_ratio", {}, 1.0, false},
-    {"l_box", "h1", "h1_mm", Dimension::length, 1e3, false},
-    {"l_box", "h2", "h2_mm", Dimension::length, 1e3, false},
-    {"l_box", "t200", "t200_s", Dimension::time, 1.0, true},
-    {"l_box", "t400", "t400_s", Dimension::time, 1.0, true},
-    {"icar_vane", "torque_peak", "torque_peak_N_m", Dimension::torque, 1.0, false},
-    {"icar_vane", "torque_end", "torque_end_N_m", Dimension::torque, 1.0, false}};
+
+Known known_of(const std::string& result) {
+  const std::string unit = scene::unit_of(result);
+  Known known{.key = result, .result = result};
+  if (unit == "1") return known;
+  known.key.resize(result.size() - unit.size() - 1);
+  known.dimension = unit == "mm" ? Dimension::length : unit == "s" ? Dimension::time : Dimension::torque;
+  known.factor = unit == "mm" ? 1e3 : 1.0;
+  known.logarithmic = unit == "s";
+  return known;
+}
+
+/// What a laboratory may have measured by an apparatus; empty for one that there is not.
+std::vector<Known> known_readings(const std::string& name) {
+  std::vector<Known> known;
+  for (const scene::Apparatus& apparatus : scene::all_apparatus())
+    if (apparatus.keys.name == name)
+      for (const scene::Described& reading : apparatus.glossary)
+        if (reading.measurable) known.push_back(known_of(reading.name));
+  return known;
+}
+
+/// The apparatus by which something can be measured.
+std::string measuring_apparatus() {
+  std::vector<std::string> names;
+  for (const scene::Apparatus& apparatus : scene::all_apparatus())
+    if (!known_readings(apparatus.keys.name).empty()) names.push_back(apparatus.keys.name);
+  const std::string last = names.back();
+  names.pop_back();
+  return fmt::format("{} or {}", fmt::join(names, ", "), last);
+}
 
 [[noreturn]] void complain(const Node& node, const std::string& key, const std::string& what) {
   throw InputError(fmt::format("{}: {}: {}", scene::describe(node.origin), key, what));
@@ -86,7 +106,7 @@ double quantity(const Node& node, const std::string& key, const Known& known) {
 }
 
 void read_measurement(const Node& table, const Known& known, Test& test) {
-  const std::string key = known.key;
+  const std::string& key = known.key;
   const Node* value = scene::find(table, key);
   const Node* error = scene::find(table, key + "_error");
   if (!value && error) complain(*error, key + "_error", "there is no " + key);
@@ -97,15 +117,14 @@ void read_measurement(const Node& table, const Known& known, Test& test) {
 }
 
 bool is_reading(const std::string& key, const std::string& apparatus) {
-  return std::any_of(std::begin(known_readings), std::end(known_readings), [&](const Known& k) {
-    return k.apparatus == apparatus && (key == k.key || key == std::string(k.key) + "_error");
-  });
+  const auto readings = known_readings(apparatus);
+  return std::any_of(readings.begin(), readings.end(),
+                     [&](const Known& k) { return key == k.key || key == k.key + "_error"; });
 }
 
 std::string readings_text(const std::string& apparatus) {
   std::string text;
-  for (const Known& known : known_readings)
-    if (known.apparatus == apparatus) text += (text.empty() ? "" : ", ") + std::string(known.key);
+  for (const Known& known : known_readings(apparatus)) text += (text.empty() ? "" : ", ") + known.key;
   return text;
 }
 
@@ -130,15 +149,14 @@ Test read_test(const Node& node, const std::string& label, bool measured) {
   if (!apparatus) complain(node, label, "missing key apparatus");
   test.apparatus = text_of(*apparatus, "apparatus");
   if (readings_text(test.apparatus).empty())
-    complain(*apparatus, "apparatus", "must be slump_flow, l_box or icar_vane");
+    complain(*apparatus, "apparatus", "must be " + measuring_apparatus());
   for (const auto& [key, value] : table_of(node, label)) {
     if (key == "apparatus" || is_reading(key, test.apparatus)) continue;
     const std::string full = key.find('.') == std::string::npos ? "test." + key : key;
     test.overrides.push_back(full + "=" + override_text(value, key));
   }
   test.words = words_of(test);
-  for (const Known& known : known_readings) {
-    if (test.apparatus != known.apparatus) continue;
+  for (const Known& known : known_readings(test.apparatus)) {
     if (measured)
       read_measurement(node, known, test);
     else

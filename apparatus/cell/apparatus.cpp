@@ -17,8 +17,16 @@ std::vector<std::string> uses(const std::any& any_scene) {
 }  // namespace
 
 scene::Apparatus apparatus() {
-  return {
-      .keys = keys(), .read = [](scene::Loaded& loaded) -> std::any { return build(loaded); }, .uses = uses};
+  return {.keys = keys(),
+          .words = "material cell",
+          .glossary = glossary(),
+          .read = [](scene::Loaded& loaded) -> std::any { return build(loaded); },
+          .uses = uses,
+          .run =
+              [](const std::any& scene, const scene::RunOptions&, const scene::Observer&) {
+                const Scene& own = *std::any_cast<Scene>(&scene);
+                return outcome(own, run(own));
+              }};
 }
 
 }  // namespace tremie::cell

@@ -9,6 +9,7 @@
 
 #include "apparatus/common/model.hpp"
 #include "apparatus/common/outcome.hpp"
+#include "apparatus/common/readings.hpp"
 #include "apparatus/scene/keys.hpp"
 #include "apparatus/scene/load.hpp"
 #include "rheometer/reference/material_cell.hpp"
@@ -39,6 +40,9 @@ Scene read_text(const std::string& text, const std::string& name,
 
 /// Runs the cell with the scene's law. Throws scene::InputError where the history cannot be run.
 CellResult run(const Scene& scene);
+
+/// What the names of readings mean.
+std::vector<scene::Described> glossary();
 
 /// The result under the names of timeseries.csv and summary.json.
 scene::Outcome outcome(const Scene& scene, const CellResult& result);

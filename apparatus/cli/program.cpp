@@ -13,6 +13,8 @@
 #include <string_view>
 
 #include "apparatus/cli/commands.hpp"
+#include "apparatus/registry/registry.hpp"
+#include "apparatus/report/run_files/glossary.hpp"
 #include "apparatus/scene/input_error.hpp"
 #include "apparatus/scene/keys.hpp"
 #include "tremie_version.hpp"
@@ -155,14 +157,29 @@ void print_commands(const CLI::App& app) {
     fmt::print("{}\t{}\n", command->get_name(), command->get_description());
 }
 
+/// What every apparatus reads, "apparatus TAB name TAB unit TAB words" a line: what the reference is made of.
+void print_readings() {
+  for (const scene::Apparatus& apparatus : scene::all_apparatus()) {
+    fmt::print("{}\t\t\t{}\n", apparatus.keys.name, apparatus.words);
+    for (const scene::Described& reading : apparatus.glossary)
+      if (reading.is_result)
+        fmt::print("{}\t{}\t{}\t{}\n", apparatus.keys.name, reading.name, report::unit_of(reading.name),
+                   report::words_of(reading.name));
+  }
+}
+
 int parse_and_run(int argc, char** argv, const std::function<void(CLI::App&, int&)>& add) {
   CLI::App app{invitation, "tremie"};
   app.set_version_flag("--version", fmt::format("tremie {} ({})", version, commit));
-  const auto list = [&app] {
-    print_commands(app);
-    throw CLI::Success();
+  const auto lists = [&app](const char* option, const char* what, auto print) {
+    const auto list = [print] {
+      print();
+      throw CLI::Success();
+    };
+    app.add_flag_callback(option, list, what)->group("");
   };
-  app.add_flag_callback("--commands", list, "List the commands for other programs")->group("");
+  lists("--commands", "List the commands for other programs", [&app] { print_commands(app); });
+  lists("--readings", "List the readings for other programs", print_readings);
   app.require_subcommand(1);
   int exit_code = done;
   add(app, exit_code);

@@ -11,6 +11,7 @@
 
 #include "apparatus/common/model.hpp"
 #include "apparatus/common/outcome.hpp"
+#include "apparatus/common/readings.hpp"
 #include "apparatus/common/shared_keys.hpp"
 #include "apparatus/scene/keys.hpp"
 #include "apparatus/scene/load.hpp"
@@ -27,52 +28,40 @@ struct Estimate {
 
 /// What a run is told beside its scene.
 struct RunOptions {
-  Measured measured;       ///< on the real concrete, for charts
-  bool all_frames = true;  ///< false: the observer sees the last frame alone
-  bool coarser = false;    ///< a run for an error estimate: its result is compared with nothing else
-};
-
-/// A number that a person looks at first. `unit` as printed; `digits` behind the point.
-struct Headline {
-  std::string name, word, unit;
-  int digits = 0;
+  Measured measured;     ///< on the real concrete, for charts
+  bool coarser = false;  ///< a run for an error estimate: its result is compared with nothing else
 };
 
 /// The functions take the apparatus' own scene as `read` returned it. Those after `uses` are empty for an
 /// apparatus without points (`tremie cell`).
 struct Apparatus {
   ApparatusKeys keys;
-  std::function<std::any(Loaded&)> read;  ///< may lay further files into the values; throws InputError
-  std::function<std::vector<std::string>(const std::any&)> uses;  ///< carried and left out, a line each
+  std::string words = {};                      ///< its name for people: "slump flow"
+  std::vector<Headline> headlines = {};        ///< the first is the one that --accuracy is about
+  std::vector<Described> glossary = {};        ///< its readings and columns
+  std::function<std::any(Loaded&)> read = {};  ///< may lay further files into the values; throws InputError
+  std::function<std::vector<std::string>(const std::any&)> uses = {};  ///< carried and left out, a line each
   std::function<Outcome(const std::any&, const RunOptions&, const Observer&)> run = {};
   std::function<Estimate(const std::any&)> estimate = {};
   std::function<Model&(std::any&)> model = {};
   std::function<int&(std::any&)> threads = {};
-  std::vector<Headline> headlines = {};  ///< the first is the one that --accuracy is about
 };
 
-/// Fills the functions for a Scene that has the members `model` and `threads`. `own_estimate(scene)` returns
-/// a struct with the members of Estimate.
-template <class TestScene, class Read, class Uses, class Run, class OwnEstimate>
-Apparatus make_apparatus(ApparatusKeys keys, std::vector<Headline> headlines, Read read, Uses uses, Run run,
-                         OwnEstimate own_estimate) {
+/// Fills the functions for a Scene that has the members `model` and `threads`.
+template <class TestScene, class Read, class Uses, class Run, class EstimateCost>
+Apparatus make_apparatus(Apparatus named, Read read, Uses uses, Run run, EstimateCost estimate) {
   const auto own = [](const std::any& scene) -> const TestScene& {
     return *std::any_cast<TestScene>(&scene);
   };
-  return {.keys = std::move(keys),
-          .read = [read](Loaded& loaded) -> std::any { return read(loaded.values); },
-          .uses = [own, uses](const std::any& scene) { return uses(own(scene)); },
-          .run = [own, run](const std::any& scene, const RunOptions& options,
-                            const Observer& observer) { return run(own(scene), options, observer); },
-          .estimate =
-              [own, own_estimate](const std::any& scene) {
-                const auto e = own_estimate(own(scene));
-                return Estimate{e.points,         e.cells_active,  e.bytes_per_point, e.steps,
-                                e.steps_expected, e.time_expected, e.point_step};
-              },
-          .model = [](std::any& scene) -> Model& { return std::any_cast<TestScene>(&scene)->model; },
-          .threads = [](std::any& scene) -> int& { return std::any_cast<TestScene>(&scene)->threads; },
-          .headlines = std::move(headlines)};
+  named.read = [read](Loaded& loaded) -> std::any { return read(loaded.values); };
+  named.uses = [own, uses](const std::any& scene) { return uses(own(scene)); };
+  named.run = [own, run](const std::any& scene, const RunOptions& options, const Observer& observer) {
+    return run(own(scene), options, observer);
+  };
+  named.estimate = [own, estimate](const std::any& scene) { return estimate(own(scene)); };
+  named.model = [](std::any& scene) -> Model& { return std::any_cast<TestScene>(&scene)->model; };
+  named.threads = [](std::any& scene) -> int& { return std::any_cast<TestScene>(&scene)->threads; };
+  return named;
 }
 
 }  // namespace tremie::scene

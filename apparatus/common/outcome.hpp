@@ -76,7 +76,7 @@ struct ErrorEstimate {
 /// A result that stands in the first line of a report: "spread 348 ± 8 mm". `name`: of the result; `word`
 /// before the number, empty for none; `digits` behind the point.
 struct Answer {
-  std::string name, word, unit;
+  std::string name, word;
   int digits = 0;
 };
 
@@ -145,9 +145,10 @@ struct Progress {
 };
 struct Observer {
   std::function<void(const Progress&)> on_progress;
-  std::function<void(const Frame&)> on_frame;
+  std::function<void(const Frame&)> on_frame;  ///< at the start, every frame interval and at the end
   const std::atomic<bool>* interrupted = nullptr;
   const Checkpoints* checkpoints = nullptr;
+  bool all_frames = true;  ///< false: on_frame sees the last one alone
 };
 
 }  // namespace tremie::scene

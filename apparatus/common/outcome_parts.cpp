@@ -25,10 +25,9 @@ const char* still_moving(Status status) {
   return "not within the time of the test (test.duration)";
 }
 
-void add_flocculation_line(std::optional<double> start, std::optional<double> end,
-                           std::vector<std::string>& lines) {
-  if (start && end)
-    lines.push_back(fmt::format("flocculation    {:.3g} at the start, {:.3g} at the end", *start, *end));
+std::vector<std::string> flocculation_lines(std::optional<double> start, std::optional<double> end) {
+  if (!start || !end) return {};
+  return {fmt::format("flocculation    {:.3g} at the start, {:.3g} at the end", *start, *end)};
 }
 
 std::string flocculation_use(const Mix& mix) {

@@ -16,14 +16,6 @@ inline constexpr double mm = 1e3;  ///< millimetres in a metre
 /// Not-a-number for no value: an empty field of a table.
 double or_nan(std::optional<double> value);
 
-/// One number of every row.
-template <class Row, class Read>
-Column column(const char* name, const std::vector<Row>& rows, Read read) {
-  Column result{name, {}};
-  for (const auto& row : rows) result.values.push_back(read(row));
-  return result;
-}
-
 /// "4.20 s", or what to say without a value.
 std::string seconds_or(std::optional<double> value, const char* otherwise);
 
@@ -37,8 +29,7 @@ const char* still_moving(Status status);
 std::string stopped_line(std::optional<double> stopped_at, Status status);
 
 /// "flocculation    5.78 at the start, 5.4 at the end"; nothing without both.
-void add_flocculation_line(std::optional<double> start, std::optional<double> end,
-                           std::vector<std::string>& lines);
+std::vector<std::string> flocculation_lines(std::optional<double> start, std::optional<double> end);
 
 /// What every apparatus may carry or leave out: flocculation, regularisation, FLIP.
 std::string flocculation_use(const Mix& mix);
@@ -52,6 +43,16 @@ double rest_told(const Scene& scene) {
 
 /// "slump flow at once", "… after 240 s of rest": what was asked of which mix.
 std::string asked_text(const std::string& mix_name, const std::string& test, double rest);
+
+/// The outcome of a run, without what its table reads.
+template <class Record>
+Outcome outcome_of(const Record& run) {
+  Outcome outcome;
+  outcome.status = run.status;
+  outcome.checks = run.checks;
+  outcome.cost = run.cost;
+  return outcome;
+}
 
 /// A word, or null for an empty one.
 ResultValue word_or_null(const std::string& word);

@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "apparatus/icar_vane/readings.hpp"
+#include "apparatus/icar_vane/instrument.hpp"
 #include "apparatus/icar_vane/stages.hpp"
 #include "rheometer/reference/instrument.hpp"
 
@@ -194,7 +194,7 @@ SteadyTorques turn_steadily(const Scene& scene, const EndsGrid& grid, double spe
   return t;
 }
 
-Outcome run_with_ends(const Scene& scene, const Observer& observer) {
+Outcome run_with_ends(const Scene& scene, const scene::Observer& observer) {
   const EndsGrid grid(scene, true);
   SteadyBody body = steady_body(scene, grid);
   Outcome outcome;
@@ -222,7 +222,8 @@ Outcome run_with_ends(const Scene& scene, const Observer& observer) {
                               .shear_rate_mean = mean_shear_rate(body),
                               .time_step = duration,
                               .iterations = t.solve.iterations});
-    if (observer.on_step) observer.on_step(outcome.series.back());
+    if (observer.on_progress)
+      observer.on_progress({time, whole_time(scene), duration, progress_text(outcome.series.back())});
   }
   outcome.cost.simulated = time;
   outcome.cost.cells_active = outcome.cost.points = body.grid.n_cells();
@@ -245,14 +246,14 @@ Outcome run_with_ends(const Scene& scene, const Observer& observer) {
   return outcome;
 }
 
-Estimate estimate_with_ends(const Scene& scene) {
+scene::Estimate estimate_with_ends(const Scene& scene) {
   const EndsGrid grid(scene, true);
   // The band couples two layers of nodes across the longest axis; its factor is most of the memory and of the time.
   const double layers[3] = {grid.n_radial + 4.0, grid.n_around + 2.0,
                             grid.n_bottom + grid.n_height + grid.n_cover + 4.0};
   const double n = 3.0 * layers[0] * layers[1] * layers[2];
   const double band = 2.1 * n / std::max({layers[0], 0.5 * layers[1], layers[2]});
-  Estimate e;
+  scene::Estimate e;
   e.points = e.cells_active = grid.n_cells();
   e.bytes_per_point = static_cast<std::int64_t>(8.0 * n * band / grid.n_cells() +
                                                 sizeof(Quadrature<Cylindrical>::StrainRows) * 8.0);

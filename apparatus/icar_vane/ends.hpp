@@ -44,8 +44,8 @@ SteadyBody steady_body(const Scene& scene, const EndsGrid& grid);
 SteadyTorques turn_steadily(const Scene& scene, const EndsGrid& grid, double speed, SteadyBody& body);
 
 /// Runs the test: as icar_vane::run.
-Outcome run_with_ends(const Scene& scene, const Observer& observer);
+Outcome run_with_ends(const Scene& scene, const scene::Observer& observer);
 
-Estimate estimate_with_ends(const Scene& scene);
+scene::Estimate estimate_with_ends(const Scene& scene);
 
 }  // namespace tremie::icar_vane

@@ -3,12 +3,9 @@
 #include <omp.h>
 
 #include "apparatus/icar_vane/ends.hpp"
-#include "apparatus/icar_vane/readings.hpp"
+#include "apparatus/icar_vane/instrument.hpp"
 #include "apparatus/icar_vane/sections.hpp"
 #include "apparatus/icar_vane/stages.hpp"
-#include "apparatus/run/frames.hpp"
-#include "apparatus/run/run_checks.hpp"
-#include "apparatus/run/run_loop.hpp"
 #include "libmpm/implicit/archived_state.hpp"
 #include "rheometer/reference/instrument.hpp"
 
@@ -88,66 +85,61 @@ struct Schedule {
 };
 
 template <class Section>
-Outcome run_section(const Scene& scene, const Section& section, const Observer& observer) {
+Outcome run_section(const Scene& scene, const Section& section, const scene::Observer& observer) {
   using Geometry = typename Section::Geometry;
   ImplicitBody<Geometry> body{section.body_at_rest(scene)};
   test_run::rest(body, scene.rest);
   StepSettings settings = test_run::step_settings(scene.model);
   settings.keep_forces = true;
   settings.cfl = reach;
-  const double start_mass = test_run::total_mass(body.points);
 
   Outcome outcome;
   double turned = 0.0, speed = 0.0, momentum = 0.0;
   Schedule schedule{stages_of(scene)};
   body.dt = first_dt;
-  const test_run::Flow flow{
-      .time = [&] { return body.time; },
-      .unfinished =
-          [&] {
-            if (schedule.follow(body.time)) body.dt = first_dt;
-            return schedule.at < schedule.stages.size();
-          },
-      .prepare =
-          [&] {
-            const double left = schedule.stage_end() - body.time;
-            settings.dt_max = left / std::ceil(left / (scene.model.step_scale * largest_dt) - 1e-9);
-            settings.fixed_dt = test_run::fixed_step(scene.model, left);
-            speed = schedule.speed(body.time);
-            section.turn(body, angular_speed(speed));
-          },
-      .advance =
-          [&](Checks& checks, Cost& cost) {
-            const StepReport step = implicit_step(body, scene.model.law, settings);
-            turned += angular_speed(speed) * step.dt;
-            test_run::count_step(body, step, checks, cost);
-            return step;
-          },
-      .read =
-          [&](const StepReport& step) {
-            const Torques t = section.torques(body);
-            outcome.series.push_back(read<Section>(body, scene, t, momentum, speed, step));
-            momentum = t.angular_momentum;
-            if (observer.on_step) observer.on_step(outcome.series.back());
-          },
-      .frame = [&] { return section.whole(test_run::frame_of(body), turned); },
-      .state =
-          [&](Archive& archive) {
-            archive(body, turned, momentum, outcome.series);
-            archive(schedule.at, schedule.stage_start, schedule.last_speed);
-          }};
-  test_run::run_loop(
-      flow, {observer.on_frame, observer.interrupted, scene.frame_interval, 0.0, observer.checkpoints},
-      outcome.status, outcome.checks, outcome.cost);
-
-  if (outcome.series.empty()) outcome.series.emplace_back();  // the first step failed
-  test_run::judge(body, start_mass, outcome.checks, outcome.cost);
-  outcome.results.profile = profile(body, section, scene.model.cell[0]);
-  read_instrument(scene, outcome);
-  check_torques_agree(scene, outcome);
-  check_against_reference(scene, outcome);
-  outcome.final_frame = section.whole(test_run::frame_of(body), turned);
-  if (observer.on_frame) observer.on_frame(outcome.final_frame);
+  const test_run::Flow flow{.time = [&] { return body.time; },
+                            .unfinished =
+                                [&] {
+                                  if (schedule.follow(body.time)) body.dt = first_dt;
+                                  return schedule.at < schedule.stages.size();
+                                },
+                            .prepare =
+                                [&] {
+                                  const double left = schedule.stage_end() - body.time;
+                                  settings.dt_max =
+                                      left / std::ceil(left / (scene.model.step_scale * largest_dt) - 1e-9);
+                                  settings.fixed_dt = test_run::fixed_step(scene.model, left);
+                                  speed = schedule.speed(body.time);
+                                  section.turn(body, angular_speed(speed));
+                                },
+                            .advance =
+                                [&](Checks& checks, Cost& cost) {
+                                  const StepReport step = implicit_step(body, scene.model.law, settings);
+                                  turned += angular_speed(speed) * step.dt;
+                                  test_run::count_step(body, step, checks, cost);
+                                  return step;
+                                },
+                            .frame = [&] { return section.whole(test_run::frame_of(body), turned); },
+                            .state =
+                                [&](Archive& archive) {
+                                  archive(body, turned, momentum, outcome.series);
+                                  archive(schedule.at, schedule.stage_start, schedule.last_speed);
+                                }};
+  test_run::run_experiment(
+      flow, body, {whole_time(scene), scene.frame_interval, progress_text, /*from_start=*/false}, observer,
+      [&](const StepReport& step) {
+        const Torques t = section.torques(body);
+        const Sample sample = read<Section>(body, scene, t, momentum, speed, step);
+        momentum = t.angular_momentum;
+        return sample;
+      },
+      [&](std::optional<double>) {
+        outcome.results.profile = profile(body, section, scene.model.cell[0]);
+        read_instrument(scene, outcome);
+        check_torques_agree(scene, outcome);
+        check_against_reference(scene, outcome);
+      },
+      outcome);
   return outcome;
 }
 
@@ -182,20 +174,25 @@ auto with_section(const Scene& scene, Use use) {
 
 }  // namespace
 
-Outcome run(const Scene& scene, const Observer& observer) {
+double whole_time(const Scene& scene) {
+  if (scene.speeds.empty()) return scene.duration;
+  return scene.pre_shear_time + static_cast<double>(scene.speeds.size()) * scene.hold_time;
+}
+
+Outcome run(const Scene& scene, const scene::Observer& observer) {
   refuse_what_has_no_engine(scene);
   omp_set_num_threads(scene.threads);
   if (scene.model.space == SpaceKind::cylindrical) return run_with_ends(scene, observer);
   return with_section(scene, [&](const auto& section) { return run_section(scene, section, observer); });
 }
 
-Estimate estimate(const Scene& scene) {
+scene::Estimate estimate(const Scene& scene) {
   refuse_what_has_no_engine(scene);
   if (scene.model.space == SpaceKind::cylindrical) return estimate_with_ends(scene);
   return with_section(scene, [&](const auto& section) {
     auto body = section.body_at_rest(scene);
     activate(body.grid, body.points.x);
-    Estimate e;
+    scene::Estimate e;
     e.points = static_cast<std::int64_t>(body.points.size());
     e.cells_active = body.grid.n_cells();
     e.bytes_per_point =

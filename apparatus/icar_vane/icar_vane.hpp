@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
-#include "apparatus/common/checkpoints.hpp"
+#include "apparatus/common/apparatus.hpp"
 #include "apparatus/common/model.hpp"
+#include "apparatus/run/experiment.hpp"
 #include "libmpm/constitutive/mix.hpp"
 
 namespace tremie::icar_vane {
@@ -100,32 +100,29 @@ struct Results {
   std::vector<ProfilePoint> profile;  ///< at the end
 };
 
-struct Outcome {
-  Status status = Status::completed;
-  Results results;
-  Checks checks;
-  Cost cost;
-  std::vector<Sample> series;
-  Frame final_frame;
-};
+using Outcome = test_run::Record<Results, Sample>;
 
-struct Observer {
-  std::function<void(const Sample&)> on_step;
-  std::function<void(const Frame&)> on_frame;
-  const std::atomic<bool>* interrupted = nullptr;
-  const Checkpoints* checkpoints = nullptr;
-};
+/// Runs the test; as cone::run.
+Outcome run(const Scene& scene, const scene::Observer& observer = {});
 
-struct Estimate {
-  std::int64_t points = 0, cells_active = 0, bytes_per_point = 0;
-  std::int64_t steps = 0, steps_expected = 0;  ///< at most; and where the flow is expected to come to rest
-  double time_expected = 0.0;                  ///< [s] of the test until then
-  double point_step = 0.0;                     ///< CPU of a step by the point, measured [s]
-};
+scene::Estimate estimate(const Scene& scene);
 
-/// Runs the test; as slump_flow::run.
-Outcome run(const Scene& scene, const Observer& observer = {});
+/// Whole time of the schedule [s].
+double whole_time(const Scene& scene);
 
-Estimate estimate(const Scene& scene);
+/// The keys of `apparatus = "icar_vane"`, and the checked values as a scene; throws InputError where several contradict each
+/// other.
+scene::ApparatusKeys keys();
+Scene read_scene(const scene::Values& values);
+
+/// Runs the test and reads it.
+scene::Outcome run_and_read(Scene scene, const scene::RunOptions& options, const scene::Observer& observer);
+
+/// What error bars are for, and what the names of readings mean.
+std::vector<scene::Headline> headlines();
+std::vector<scene::Described> glossary();
+
+/// What the scene carries and what it leaves out, a line each.
+std::vector<std::string> uses(const Scene& scene);
 
 }  // namespace tremie::icar_vane

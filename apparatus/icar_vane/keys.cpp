@@ -1,5 +1,3 @@
-#include "apparatus/icar_vane/keys.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,8 +6,12 @@
 #include <numbers>
 
 #include "apparatus/common/shared_keys.hpp"
+#include "apparatus/icar_vane/icar_vane.hpp"
 
-namespace tremie::scene {
+namespace tremie::icar_vane {
+
+using namespace scene;
+
 namespace {
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
@@ -188,7 +190,7 @@ void settle_ends(Values& values) {
 }
 
 /// Steady flow alone: nothing that a run over time would need.
-void check_steady(const Values& values, const icar_vane::Scene& scene) {
+void check_steady(const Values& values, const Scene& scene) {
   if (!with_ends(values)) return;
   if (scene.mix.thixotropy)
     values.fail("model.space",
@@ -209,7 +211,7 @@ void settle(Values& values) {
 }
 
 /// Cells must resolve the gap, and the points must fit into a computer.
-void check_cells(const Values& values, const icar_vane::Scene& scene) {
+void check_cells(const Values& values, const Scene& scene) {
   const double R = scene.vane.container_radius, gap = R - scene.vane.radius;
   const auto [across, up] = scene.model.cell;
   const bool couette = scene.model.space == SpaceKind::couette;
@@ -252,7 +254,7 @@ double revolutions(double omega) {
   return short_one * two_pi == omega ? short_one : exact;
 }
 
-void read_schedule(const Values& values, icar_vane::Scene& scene) {
+void read_schedule(const Values& values, Scene& scene) {
   scene.rest = values.number("test.rest");
   if (!values.has(speeds_key)) {
     scene.speed = revolutions(values.number("test.speed"));
@@ -268,7 +270,7 @@ void read_schedule(const Values& values, icar_vane::Scene& scene) {
 
 }  // namespace
 
-ApparatusKeys icar_vane_keys() {
+ApparatusKeys keys() {
   ApparatusKeys keys{.name = "icar_vane",
                      .help = "The ICAR vane rheometer: a vane turning in a container of concrete.",
                      .schema = mix_sections(),
@@ -288,8 +290,8 @@ ApparatusKeys icar_vane_keys() {
   return keys;
 }
 
-icar_vane::Scene icar_vane_scene(const Values& values) {
-  icar_vane::Scene scene;
+Scene read_scene(const Values& values) {
+  Scene scene;
   scene.mix = read_mix(values);
   scene.vane = {values.number("vane.radius"),           values.number("vane.height"),
                 values.number("vane.container_radius"), static_cast<int>(values.integer("vane.blades")),
@@ -305,4 +307,4 @@ icar_vane::Scene icar_vane_scene(const Values& values) {
   return scene;
 }
 
-}  // namespace tremie::scene
+}  // namespace tremie::icar_vane

@@ -1,216 +1,470 @@
-#include "apparatus/icar_vane/readings.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
-#include <string>
+#include <numbers>
 
-#include "rheometer/fits/apparent_alpha.hpp"
-#include "rheometer/reference/couette_flow.hpp"
+#include "apparatus/common/flow_readings.hpp"
+#include "apparatus/icar_vane/ends.hpp"
+#include "rheometer/reference/instrument.hpp"
 #include "rheometer/reference/references.hpp"
-#include "rheometer/reference/reiner_riwlin.hpp"
-#include "rheometer/reference/thixotropic_couette.hpp"
 
 namespace tremie::icar_vane {
+
+using namespace scene;
+
 namespace {
 
-constexpr double alpha_window = 5.0;               // at most, where the record is as long [s]
-constexpr double end_average = 0.5;                // over which the torques at the end are averaged [s]
-constexpr double end_share = 0.2;                  // of a test that is shorter than two seconds and a half
-constexpr double agreement = 0.01;                 // of the three torques, once steady
-constexpr double agreement_with_reference = 0.02;  // of the torque at the end, Couette sections
-constexpr double agreement_regularised = 0.05;     // the same where the law is a regularised one
-constexpr double agreement_of_blades = 0.25;       // of blades' torque with a cylinder's, the law regularised
-constexpr double settled = 1.0;  // from then on inertia is balanced, and readings are the concrete's [s]
+constexpr const char* time_label = "time since the vane began to turn (s)";
 
-Instrument instrument_of(const Vane& vane) {
-  Instrument instrument;
-  instrument.vane_radius = vane.radius;
-  instrument.vane_height = vane.height;
-  instrument.container_radius = vane.container_radius;
-  return instrument;
+/// The concrete as the vane meets it.
+struct VaneInput {
+  double yield_stress = 0.0;                            ///< [Pa]
+  double plastic_viscosity = 0.0;                       ///< [Pa s]; not a number for a law that has none
+  double static_yield_stress = 0.0;                     ///< (1 + lambda) tau_0 after the rest [Pa]
+  std::optional<double> flocculation = {}, alpha = {};  ///< lambda after the rest
+};
+
+VaneInput vane_input(const Scene& scene) {
+  VaneInput in;
+  in.yield_stress = in.static_yield_stress = scene.mix.tau_0;
+  const bool bingham = !is_viscous(scene.model.law) || newtonian(scene.model.law) > 0.0;
+  in.plastic_viscosity = bingham ? scene.mix.mu : std::nan("");
+  if (!scene.mix.thixotropy) return in;
+  const Thixotropy& t = *scene.mix.thixotropy;
+  in.flocculation = flocculation_after_rest(t.initial_flocculation, t, scene.mix.tau_0, scene.rest);
+  in.static_yield_stress = (1.0 + *in.flocculation) * scene.mix.tau_0;
+  in.alpha = t.alpha;
+  return in;
 }
 
-/// Mean torque over the last part of every hold of a flow curve.
-std::vector<CurvePoint> flow_curve(const Scene& scene, const std::vector<Sample>& series) {
-  std::vector<CurvePoint> curve;
-  for (std::size_t k = 0; k < scene.speeds.size(); ++k) {
-    const double end = scene.pre_shear_time + static_cast<double>(k + 1) * scene.hold_time;
-    double sum = 0.0, time = 0.0;
-    for (const Sample& s : series) {
-      if (s.time > end * (1.0 + 1e-12) || s.time <= end - scene.average_time) continue;
-      sum += s.torque * s.time_step;
-      time += s.time_step;
-    }
-    if (time > 0.0) curve.push_back({scene.speeds[k], sum / time});
+/// A run as the rows of the table see it.
+struct View {
+  using Sample = icar_vane::Sample;
+  const Scene& scene;
+  const Outcome& run;
+  Status status = run.status;
+  const Results& r = run.results;
+  const std::vector<Sample>& series = run.series;
+  const VaneInput in = vane_input(scene);
+};
+
+constexpr double torques_must_agree = 0.01;  ///< relative to the torque on the blades
+
+/// One row of the comparison: "yield stress, dynamic    54 Pa    57.2 Pa   +5.9 %".
+std::string row(const char* what, double input, std::optional<double> read, const char* unit) {
+  const std::string value = std::isfinite(input) ? fmt::format("{:.4g} {}", input, unit) : "-";
+  const std::string left = fmt::format("{:<26}{:>12}", what, value);
+  if (!read || !std::isfinite(*read)) return left + fmt::format("{:>16}", "-");
+  const std::string right = fmt::format("{}{:>16}", left, fmt::format("{:.4g} {}", *read, unit));
+  return input == 0.0 || !std::isfinite(input)
+             ? right
+             : right + fmt::format("   {:+.1f} %", 100.0 * (*read / input - 1.0));
+}
+
+/// What went in beside what the instrument would report.
+std::vector<std::string> comparison_lines(const View& v) {
+  const auto& [scene, r, in] = std::tie(v.scene, v.r, v.in);
+  std::vector<std::string> lines{fmt::format("{:<26}{:>12}{:>16}", "", "input", "instrument")};
+  if (r.reiner_riwlin) {
+    lines.push_back(row("yield stress", in.yield_stress, r.reiner_riwlin->yield_stress, "Pa"));
+    lines.push_back(
+        row("plastic viscosity", in.plastic_viscosity, r.reiner_riwlin->plastic_viscosity, "Pa.s"));
   }
-  return curve;
+  if (r.static_yield_stress_apparent)
+    lines.push_back(
+        row("apparent at the peak", in.static_yield_stress, r.static_yield_stress_apparent, "Pa"));
+  if (r.dynamic_yield_stress_apparent)
+    lines.push_back(row("apparent at the end", in.yield_stress, r.dynamic_yield_stress_apparent, "Pa"));
+  if (r.dynamic_yield_stress_apparent && scene.mix.thixotropy && scene.rest > 0.0 && scene.speeds.empty())
+    lines.push_back(
+        "                apparent: T/(2 pi r^2 h), with the viscous part and what flocculation is left in "
+        "it; beside it\n"
+        "                the static and the dynamic yield stress that went in. Not an error of the "
+        "computation");
+  if (in.flocculation)
+    lines.push_back(row("flocculation at the start", *in.flocculation, r.flocculation_apparent_start, ""));
+  if (in.alpha) lines.push_back(row("alpha", *in.alpha, r.alpha_apparent, ""));
+  if (r.alpha_apparent)
+    lines.push_back(
+        fmt::format("                apparent alpha over {:.3g} s, with the nominal shear rate {:.4g} 1/s",
+                    r.alpha_window, r.shear_rate_nominal));
+  return lines;
 }
 
-std::optional<ReinerRiwlin> reported_bingham(const std::vector<CurvePoint>& curve,
-                                             const Instrument& instrument) {
-  std::vector<FlowPoint> points;
-  for (const CurvePoint& p : curve) points.push_back({angular_speed(std::abs(p.speed)), std::abs(p.torque)});
-  if (points.size() < 2) return std::nullopt;
-  const Bingham b = bingham_from_flow_curve(points, instrument);
-  return ReinerRiwlin{b.tau_0, b.mu};
+/// Torque on the blades, on the container and from the power, which must agree but for the rate of angular
+/// momentum.
+std::vector<std::string> agreement_lines(const View& v) {
+  const Results& r = v.r;
+  const double momentum = v.series.empty() ? 0.0 : v.series.back().momentum_rate;
+  const double scale = std::abs(r.torque_end) > 0.0 ? std::abs(r.torque_end) : 1.0;
+  const double wall = (r.torque_wall_end + momentum) / scale - r.torque_end / scale;
+  const double power = (r.torque_power_end - r.torque_end) / scale;
+  std::vector<std::string> lines{fmt::format(
+      "on the wall     {:.4g} N.m ({:+.2f} % with the rate of angular momentum)   power/speed {:.4g} "
+      "N.m ({:+.2f} %)",
+      r.torque_wall_end, 100.0 * wall, r.torque_power_end, 100.0 * power)};
+  if (std::max(std::abs(wall), std::abs(power)) > torques_must_agree)
+    lines.push_back(
+        "                the three torques differ by more than 1 %: not steady, or cells too large");
+  return lines;
 }
 
-/// Whether the viscous part is the mix's plastic viscosity, as Reiner-Riwlin's equations have it.
-bool is_bingham(const Scene& scene) {
-  return !is_viscous(scene.model.law) || newtonian(scene.model.law) > 0.0;
+std::vector<std::string> torque_lines(const View& v) {
+  return {fmt::format("torque          {:.4g} N.m at its peak, {:.4g} N.m at the end", v.r.torque_peak,
+                      v.r.torque_end)};
 }
 
-/// Torque at the end between solid cylinders, by the rheometer's references; empty where it takes SUNDIALS
-/// and the build has none.
-std::optional<double> couette_reference(const Scene& scene, const Instrument& instrument) {
-  const double omega = angular_speed(std::abs(scene.speed));
-  Bingham bingham{scene.mix.tau_0, scene.mix.mu};
-  if (!is_bingham(scene) && scene.mix.thixotropy) return std::nullopt;
-  if (!is_bingham(scene))
-    return couette_torque(scene.model.law, scene.mix.tau_0, scene.mix.mu, omega, instrument);
-  if (!scene.mix.thixotropy) return reiner_riwlin(bingham, omega, instrument).torque;
-  CouetteFlow flow;
-  flow.bingham = bingham;
-  flow.thixotropy = *scene.mix.thixotropy;
-  double& lambda = flow.thixotropy.initial_flocculation;
-  lambda = flocculation_after_rest(lambda, flow.thixotropy, scene.mix.tau_0, scene.rest);
-  if (flow.thixotropy.alpha == 0.0) {  // nothing breaks it down: the same everywhere
-    if (!has_gate(flow.thixotropy))
-      lambda = flocculation_after_rest(lambda, flow.thixotropy, scene.mix.tau_0, scene.duration);
-    bingham.tau_0 = static_yield_stress(lambda, bingham.tau_0);
-    return reiner_riwlin(bingham, omega, instrument).torque;
+std::vector<std::string> cylinder_lines(const View& v) {
+  const auto& reference = v.r.torque_couette_reference;
+  if (reference)
+    return {
+        fmt::format("cylinder        {:.4g} N.m for a solid cylinder by the law's Couette flow: the torque "
+                    "is {:.3f} of it",
+                    *reference, v.r.torque_end / *reference)};
+  if (v.scene.with_reference && v.scene.speed != 0.0 && v.scene.speeds.empty() &&
+      !has_integrated_references())
+    return {"cylinder        not known: built without SUNDIALS; apt-get install libsundials-dev"};
+  return {};
+}
+
+std::vector<std::string> end_lines(const View& v) {
+  if (!v.r.end_factor) return {};
+  return {fmt::format(
+      "ends            the torque is {:.4g} times {:.4g} N.m, the plane section's of the same height",
+      *v.r.end_factor, *v.r.torque_plane)};
+}
+
+std::optional<double> if_alpha(const View& v, double value) {
+  return v.r.alpha_apparent ? std::optional(value) : std::nullopt;
+}
+
+using V = const View&;
+using S = const Sample&;
+
+Rows<View> torque_rows() {
+  return {
+      {.name = "torque_peak_N_m",
+       .words = "largest torque on the blades",
+       .value = [](V v) { return number(v.r.torque_peak); },
+       .label = "torque peak",
+       .digits = 3,
+       .answer =
+           [](V v) { return v.r.reiner_riwlin ? std::nullopt : std::optional<std::string>("at its peak"); },
+       .headline = 2,
+       .headline_digits = 4,
+       .measurable = true,
+       .lines = torque_lines},
+      {.name = "torque_end_N_m",
+       .words = "torque on the blades at the end",
+       .value = [](V v) { return number(v.r.torque_end); },
+       .label = "torque at the end",
+       .digits = 3,
+       .answer = [](V) { return std::optional<std::string>("torque at the end"); },
+       .headline = 1,
+       .headline_digits = 4,
+       .measurable = true,
+       .lines = agreement_lines},
+      {.name = "torque_wall_end_N_m",
+       .words = "torque on the container at the end",
+       .value = [](V v) { return number(v.r.torque_wall_end); }},
+      {.name = "torque_power_end_N_m", .words = "dissipated power over speed at the end", .value = [](V v) {
+         return number(v.r.torque_power_end);
+       }}};
+}
+
+Rows<View> instrument_rows() {
+  const auto has_curve = [](V v) { return v.r.reiner_riwlin.has_value(); };
+  return {{.name = "reiner_riwlin.yield_stress_Pa",
+           .words = "yield stress by Reiner-Riwlin, as the instrument reports",
+           .value = [](V v) { return number(v.r.reiner_riwlin->yield_stress); },
+           .applies = has_curve},
+          {.name = "reiner_riwlin.plastic_viscosity_Pa_s",
+           .words = "plastic viscosity by Reiner-Riwlin, as the instrument reports",
+           .value = [](V v) { return number(v.r.reiner_riwlin->plastic_viscosity); },
+           .applies = has_curve},
+          {.name = "flocculation_apparent_start",
+           .words = "flocculation state λ at the start, as read off the torque",
+           .value = [](V v) { return number(v.r.flocculation_apparent_start); }},
+          {.name = "alpha_apparent",
+           .words = "α as read off the decay",
+           .value = [](V v) { return number(v.r.alpha_apparent); }},
+          {.name = "alpha_window_s",
+           .words = "time over which α is read",
+           .value = [](V v) { return number(if_alpha(v, v.r.alpha_window)); }},
+          {.name = "shear_rate_nominal_per_s",
+           .words = "nominal shear rate 2Ω/(1 − r²/R²), by which α is read",
+           .value =
+               [](V v) {
+                 return number(v.scene.speeds.empty() ? std::optional(v.r.shear_rate_nominal) : std::nullopt);
+               }},
+          {.name = "static_yield_stress_apparent_Pa",
+           .words = "T/(2πr²h) at the peak: apparent static yield stress",
+           .value = [](V v) { return number(v.r.static_yield_stress_apparent); }},
+          {.name = "dynamic_yield_stress_apparent_Pa",
+           .words = "T/(2πr²h) at the end: apparent, with viscous part and flocculation left",
+           .value = [](V v) { return number(v.r.dynamic_yield_stress_apparent); }},
+          {.name = "torque_couette_reference_N_m",
+           .words = "torque of a solid cylinder in the same container (Couette flow)",
+           .value = [](V v) { return number(v.r.torque_couette_reference); },
+           .lines = cylinder_lines},
+          {.name = "torque_plane_N_m",
+           .words = "torque of the plane section times the height",
+           .value = [](V v) { return number(v.r.torque_plane); }},
+          {.name = "end_factor",
+           .words = "torque over that of the plane section",
+           .value = [](V v) { return number(v.r.end_factor); },
+           .lines = end_lines}};
+}
+
+/// What went in, to be read beside what the instrument would report.
+Rows<View> input_rows() {
+  return {{.name = "input.yield_stress_Pa",
+           .words = "yield stress that went in",
+           .value = [](V v) { return ResultValue(v.in.yield_stress); },
+           .lines = comparison_lines},
+          {.name = "input.plastic_viscosity_Pa_s",
+           .words = "plastic viscosity that went in",
+           .value = [](V v) { return number(v.in.plastic_viscosity); }},
+          {.name = "input.flocculation_start",
+           .words = "flocculation state λ that went in",
+           .value = [](V v) { return number(v.in.flocculation); }},
+          {.name = "input.static_yield_stress_Pa",
+           .words = "static yield stress that went in",
+           .value = [](V v) { return ResultValue(v.in.static_yield_stress); }},
+          {.name = "input.destructuration", .words = "α that went in", .value = [](V v) {
+             return number(v.in.alpha);
+           }}};
+}
+
+Rows<View> torque_columns() {
+  return {{.name = "speed_rev_per_s", .words = "speed of the vane", .at = [](V, S x) { return x.speed; }},
+          {.name = "torque_N_m", .words = "torque on the blades", .at = [](V, S x) { return x.torque; }},
+          {.name = "torque_wall_N_m", .at = [](V, S x) { return x.torque_wall; }},
+          {.name = "torque_power_N_m", .at = [](V, S x) { return x.torque_power; }},
+          {.name = "momentum_rate_N_m", .at = [](V, S x) { return x.momentum_rate; }}};
+}
+
+const std::vector<Reading<View>>& readings() {
+  static const auto table =
+      table_of<View>(torque_rows(), instrument_rows(), input_rows(), time_column<View>(), torque_columns(),
+                     shear_columns<View>(),
+                     Rows<View>{{.name = "flocculation_apparent",
+                                 .words = "flocculation state λ, as read off the torque",
+                                 .at = [](V, S x) { return or_nan(x.flocculation_apparent); },
+                                 .applies = is_thixotropic<View>}},
+                     step_columns<View>());
+  return table;
+}
+
+using P = ProfilePoint;
+const std::vector<ColumnOf<P>> profile_columns{
+    {"radius_mm", "", [](const P& p) { return p.radius * mm; }},
+    {"velocity_m_per_s", "", [](const P& p) { return p.velocity; }},
+    {"shear_rate_per_s", "", [](const P& p) { return p.shear_rate; }},
+    {"flocculation", "flocculation state λ", [](const P& p) { return or_nan(p.flocculation); }}};
+const std::vector<ColumnOf<CurvePoint>> curve_columns{
+    {"speed_rev_per_s", "", [](const CurvePoint& p) { return std::abs(p.speed); }},
+    {"torque_N_m", "", [](const CurvePoint& p) { return std::abs(p.torque); }}};
+const std::vector<ColumnOf<Sample>> record_columns{
+    {"time_s", "", [](S s) { return s.time; }}, {"torque_N_m", "", [](S s) { return std::abs(s.torque); }}};
+
+ResultTable profile_of(const std::vector<ProfilePoint>& profile) {
+  ResultTable table{"profile.csv", columns_from(profile_columns, profile)};
+  if (std::none_of(profile.begin(), profile.end(), [](const P& p) { return p.flocculation; }))
+    table.columns.pop_back();
+  return table;
+}
+
+/// Share of the torque that may accelerate the concrete in a reading of the record.
+constexpr double steady_enough = 0.02;
+
+/// The record as `tremie fit` reads it: magnitudes, and no reading before the vane has its speed and the concrete
+/// has followed it: a torque that accelerates the concrete is none of its rheology.
+ResultTable record_of(const Scene& scene, const Outcome& raw) {
+  if (!scene.speeds.empty()) {
+    return {"flow_curve.csv", columns_from(curve_columns, raw.results.flow_curve)};
   }
-  if (!has_integrated_references()) return std::nullopt;
-  flow.omega_of_time = [omega](double time) { return omega * start_up(time); };
-  const double times[] = {0.0, scene.duration};
-  return thixotropic_couette(flow, times, instrument).torque.back();
+  const double direction = scene.speed < 0.0 ? -1.0 : 1.0;
+  std::vector<Sample> record;
+  const auto steady = std::find_if(raw.series.begin(), raw.series.end(), [&](const Sample& s) {
+    return s.speed == scene.speed && direction * s.torque > 0.0 &&
+           std::abs(s.momentum_rate) < steady_enough * std::abs(s.torque);
+  });
+  std::copy_if(steady, raw.series.end(), std::back_inserter(record),
+               [&](const Sample& s) { return s.speed == scene.speed && direction * s.torque > 0.0; });
+  return {"torque.csv", columns_from(record_columns, record)};
 }
 
-/// Time over which the torques at the end are averaged [s], clear of the start.
-double averaged_time(const std::vector<Sample>& series) {
-  return std::min(end_average, end_share * series.back().time);
+Chart torque_chart(const Results& r, bool constant_speed) {
+  Chart chart{"torque.svg",
+              "Torque",
+              time_label,
+              "torque (N·m)",
+              {"torque_N_m", "torque_wall_N_m", "torque_power_N_m"},
+              {},
+              {"on the blades", "on the container", "power / speed"}};
+  if (constant_speed && r.torque_couette_reference)
+    chart.references.push_back({"solid cylinder at the end", *r.torque_couette_reference, 0.0});
+  return chart;
 }
 
-/// Mean rate of the angular momentum over so much time before the end [N m].
-double momentum_rate_over(const std::vector<Sample>& series, double window) {
-  double sum = 0.0, time = 0.0;
-  for (std::size_t i = series.size(); i-- > 0 && time < window;) {
-    sum += series[i].momentum_rate * series[i].time_step;
-    time += series[i].time_step;
+Chart profile_chart(const char* file, const char* title, const char* y_label, const char* name) {
+  return {file, title, "radius (mm)", y_label, {name}, {}, {}, "profile.csv"};
+}
+
+std::vector<Chart> charts_of(const Scene& scene, const Results& r) {
+  std::vector<Chart> charts{torque_chart(r, scene.speeds.empty()),
+                            profile_chart("shear_rate_profile.svg", "Shear rate at the end",
+                                          "shear rate (1/s)", "shear_rate_per_s")};
+  if (!scene.speeds.empty())
+    charts.push_back({"flow_curve.svg",
+                      "Flow curve",
+                      "speed (rev/s)",
+                      "torque (N·m)",
+                      {"torque_N_m"},
+                      {},
+                      {},
+                      "flow_curve.csv"});
+  if (!scene.mix.thixotropy) return charts;
+  charts.push_back(profile_chart("flocculation_profile.svg", "Flocculation at the end",
+                                 "flocculation state λ", "flocculation"));
+  charts.push_back({"flocculation.svg",
+                    "Flocculation",
+                    time_label,
+                    "flocculation state λ",
+                    {"flocculation_mean", "flocculation_apparent"},
+                    {},
+                    {"volume mean", "apparent, from the torque"}});
+  return charts;
+}
+
+std::string test_text(const Scene& scene) {
+  return scene.speeds.empty() ? fmt::format("vane at {:g} rev/s", scene.speed)
+                              : fmt::format("vane, flow curve of {} speeds", scene.speeds.size());
+}
+
+/// How the instrument's readings are to be taken.
+std::vector<std::string> remarks_on(const Scene& scene, const Results& r) {
+  std::vector<std::string> remarks;
+  if (r.reiner_riwlin)
+    remarks.push_back(fmt::format(
+        "From this curve an instrument reports a yield stress of {:.4g} Pa and a plastic viscosity of "
+        "{:.4g} Pa·s; {:.4g} Pa and {:.4g} Pa·s went in.",
+        r.reiner_riwlin->yield_stress, r.reiner_riwlin->plastic_viscosity, scene.mix.tau_0, scene.mix.mu));
+  if (scene.mix.thixotropy && scene.rest > 0.0 && scene.speeds.empty())
+    remarks.push_back(
+        "The apparent yield stresses are T/(2πr²h), as the instrument reads them: in rested concrete the one "
+        "at the "
+        "end still holds what flocculation is left there and the viscous part, so it lies far above the "
+        "dynamic "
+        "yield stress that went in. It is what the instrument would say, not an error of the computation.");
+  return remarks;
+}
+
+Outline circle_of(double radius) {
+  Outline circle;
+  for (int i = 0; i <= 96; ++i) {
+    const double a = 2.0 * std::numbers::pi * i / 96.0;
+    circle.push_back({radius * std::cos(a), radius * std::sin(a)});
   }
-  return time > 0.0 ? sum / time : 0.0;
+  return circle;
 }
 
-void average_end(const std::vector<Sample>& series, Results& r) {
-  double time = 0.0;
-  r.torque_end = r.torque_wall_end = r.torque_power_end = 0.0;
-  for (std::size_t i = series.size(); i-- > 0 && time < averaged_time(series);) {
-    const Sample& s = series[i];
-    r.torque_end += s.torque * s.time_step;
-    r.torque_wall_end += s.torque_wall * s.time_step;
-    r.torque_power_end += s.torque_power * s.time_step;
-    time += s.time_step;
+/// Shaft and blades as they stand at the start, the first along x.
+std::vector<Outline> blades_of(const Vane& vane) {
+  std::vector<Outline> outlines{circle_of(vane.shaft_radius)};
+  const double half = 0.5 * vane.blade_thickness;
+  for (int b = 0; b < vane.blades; ++b) {
+    const double a = 2.0 * std::numbers::pi * b / vane.blades, c = std::cos(a), s = std::sin(a);
+    Outline blade;
+    for (const auto& [r, t] :
+         {std::array{0.0, -half}, {vane.radius, -half}, {vane.radius, half}, {0.0, half}, {0.0, -half}})
+      blade.push_back({c * r - s * t, s * r + c * t});
+    outlines.push_back(blade);
   }
-  if (time == 0.0) return;  // of a run whose first step failed
-  for (double* torque : {&r.torque_end, &r.torque_wall_end, &r.torque_power_end}) *torque /= time;
+  return outlines;
 }
 
-/// lambda at the peak and the exponent of its decay from there on.
-void read_decay(Outcome& outcome) {
-  Results& r = outcome.results;
-  std::vector<double> time, lambda;
-  for (const Sample& s : outcome.series)
-    if (s.flocculation_apparent && (!time.empty() || s.torque == r.torque_peak)) {
-      time.push_back(s.time);
-      lambda.push_back(*s.flocculation_apparent);
-    }
-  if (lambda.empty()) return;
-  r.flocculation_apparent_start = lambda.front();
-  const double start = time.front();
-  for (double& t : time) t -= start;
-  r.alpha_window = std::min(alpha_window, time.back());
-  const auto coefficient = exponential_coefficient(time, lambda, r.alpha_window);
-  if (coefficient) r.alpha_apparent = *coefficient / r.shear_rate_nominal;
+/// Blades in the plane have a shape to be seen; a solid cylinder's section is a line.
+std::optional<scene::Stage> stage_of(const Scene& scene, const std::vector<Sample>& series) {
+  if (scene.model.space != SpaceKind::plane)
+    return std::nullopt;  // with ends: no picture, the frames have it
+  scene::Stage stage;
+  stage.up = 1, stage.depth = 2;
+  stage.walls = {circle_of(scene.vane.container_radius)};
+  stage.point_size = scene.model.cell[0] / scene.model.points_per_cell[0];
+  stage.full = true;
+  stage.turning = blades_of(scene.vane);
+  stage.turned = {{0.0, 0.0}};
+  for (const Sample& s : series) {
+    const auto [time, angle] = stage.turned.back();
+    stage.turned.push_back({s.time, angle + angular_speed(s.speed) * (s.time - time)});
+  }
+  return stage;
+}
+
+std::string flow_curve_use(const Scene& scene) {
+  return scene.speeds.empty() ? "flow curve: left out (no test.speeds)"
+                              : fmt::format("flow curve: {} speeds", scene.speeds.size());
+}
+
+/// Faces of the grid stand for shaft and gaps: where they are.
+std::vector<std::string> uses_with_ends(const Scene& scene) {
+  const EndsGrid grid(scene, true);
+  std::vector<std::string> lines{flocculation_use(scene.mix)};
+  lines.push_back(
+      grid.n_thick > 0
+          ? fmt::format("blades: {} of {:g} mm", scene.vane.blades, scene.vane.blade_thickness * mm)
+          : fmt::format("blades: {} without thickness (thinner than half a cell); 3 mm of the "
+                        "ICAR's take 3 % more",
+                        scene.vane.blades));
+  lines.push_back(fmt::format(
+      "ends: {:.3g} mm to the floor, {:.3g} mm of cover, a shaft of {:.3g} mm (faces of the grid)",
+      grid.bottom_gap() * mm, grid.cover() * mm, grid.shaft_radius() * mm));
+  lines.push_back("surface: flat, slips; no vortex, no waves");
+  lines.push_back("inertia: left out, steady flow at each speed");
+  lines.push_back("third dimension: one blade's sector, which repeats");
+  lines.push_back(flow_curve_use(scene));
+  add_model_uses(scene.model, lines);
+  return lines;
 }
 
 }  // namespace
 
-std::optional<double> apparent_flocculation(const Scene& scene, double torque, double speed) {
-  if (!scene.mix.thixotropy || speed == 0.0) return std::nullopt;
-  const Instrument instrument = instrument_of(scene.vane);
-  const double omega = angular_speed(std::abs(speed));
-  const double offset =
-      is_bingham(scene) ? reiner_riwlin({scene.mix.tau_0, scene.mix.mu}, omega, instrument).torque
-                        : couette_torque(scene.model.law, scene.mix.tau_0, scene.mix.mu, omega, instrument);
-  return apparent_lambda(std::abs(torque), offset, scene.mix.tau_0, instrument);
+std::vector<Headline> headlines() { return headlines_of(readings()); }
+std::vector<Described> glossary() {
+  return described(readings(), profile_columns, curve_columns, record_columns);
 }
 
-void read_instrument(const Scene& scene, Outcome& outcome) {
-  Results& r = outcome.results;
-  const Instrument instrument = instrument_of(scene.vane);
-  for (const Sample& s : outcome.series)
-    if (std::abs(s.torque) > std::abs(r.torque_peak)) r.torque_peak = s.torque;
-  average_end(outcome.series, r);
-  r.shear_rate_nominal = newtonian_shear_rate(angular_speed(std::abs(scene.speed)), instrument);
-  r.flow_curve = flow_curve(scene, outcome.series);
-  r.reiner_riwlin = reported_bingham(r.flow_curve, instrument);
-  if (!scene.speeds.empty()) {
-    if (r.reiner_riwlin) r.dynamic_yield_stress_apparent = r.reiner_riwlin->yield_stress;
-    return;
-  }
-  r.static_yield_stress_apparent = shear_stress_at(scene.vane.radius, std::abs(r.torque_peak), instrument);
-  r.dynamic_yield_stress_apparent = shear_stress_at(scene.vane.radius, std::abs(r.torque_end), instrument);
-  if (scene.speed == 0.0) return;
-  if (scene.with_reference) try {
-      const auto torque = couette_reference(scene, instrument);
-      if (torque) r.torque_couette_reference = std::copysign(*torque, scene.speed);
-    } catch (const std::runtime_error& error) {  // the integrator gave up: no reason to lose the run
-      outcome.checks.reasons.push_back(
-          fmt::format("the torque cannot be checked against that of a solid cylinder: {}", error.what()));
-    }
-  read_decay(outcome);
+scene::Outcome run_and_read(Scene scene, const RunOptions& options, const Observer& observer) {
+  scene.with_reference = scene.with_reference && !options.coarser;
+  const Outcome raw = run(scene, observer);
+  scene::Outcome outcome = outcome_of(raw);
+  read_into(readings(), View{scene, raw}, outcome);
+  outcome.asked = asked_text(options.measured.name, test_text(scene), rest_told(scene));
+  outcome.remarks = remarks_on(scene, raw.results);
+  outcome.stage = stage_of(scene, raw.series);
+  outcome.tables = {profile_of(raw.results.profile), record_of(scene, raw)};
+  outcome.charts = charts_of(scene, raw.results);
+  outcome.pictured = false;
+  if (!std::isfinite(raw.results.torque_end))
+    outcome.checks.reasons.push_back("the torque is not a finite number");
+  return outcome;
 }
 
-void check_torques_agree(const Scene& scene, Outcome& outcome) {
-  const Results& r = outcome.results;
-  const double momentum_rate = momentum_rate_over(outcome.series, averaged_time(outcome.series));
-  const bool starting = outcome.series.back().time < settled;
-  if (starting && !scene.speeds.empty()) return;  // a curve is read where each speed is steady
-  // Two balances hold at all times, of angular momentum and, but for the kinetic energy, of power. A torque
-  // read while the vane starts is that of the concrete's inertia as well.
-  const double scale = std::abs(r.torque_end);
-  const double balance = std::abs(r.torque_end - r.torque_wall_end - momentum_rate);
-  const double power = std::abs(r.torque_end - r.torque_power_end);
-  const double inertia = starting ? std::abs(momentum_rate_over(outcome.series, end_average)) : 0.0;
-  const double off = std::max({balance, power, inertia});
-  if (scale > 0.0 && off > agreement * scale)
-    outcome.checks.reasons.push_back(
-        fmt::format("the torques on the blades, on the wall and from the power differ by {:.1f} %: {}",
-                    100.0 * off / scale,
-                    starting ? "the concrete is still being accelerated, a longer test.duration"
-                             : "not steady, or cells too large"));
-}
-
-void check_against_reference(const Scene& scene, Outcome& outcome) {
-  const auto& reference = outcome.results.torque_couette_reference;
-  const Sample& last = outcome.series.back();
-  const bool cylinder = scene.model.space == SpaceKind::couette;
-  if (!reference || last.time < settled) return;
-  const double off = last.torque / outcome.results.end_factor.value_or(1.0) / *reference - 1.0;
-  if (!is_exact(scene.model.law) && std::abs(off) > (cylinder ? agreement_regularised : agreement_of_blades))
-    outcome.checks.reasons.push_back(
-        fmt::format("the torque is {:.0f} % off that of the yield stress itself: at this speed the "
-                    "regularised law does not reach "
-                    "it; model.yield = \"exact\"{}",
-                    100.0 * off, cylinder ? "" : ", or smaller cells"));
-  if (is_exact(scene.model.law) && cylinder && std::abs(off) > agreement_with_reference)
-    outcome.checks.reasons.push_back(fmt::format(
-        "the torque is {:.1f} % off that of the equations without inertia: not steady, or a sheared layer "
-        "that the cells do not resolve",
-        100.0 * off));
+std::vector<std::string> uses(const Scene& scene) {
+  if (scene.model.space == SpaceKind::cylindrical) return uses_with_ends(scene);
+  const bool plane = scene.model.space == SpaceKind::plane;
+  std::vector<std::string> lines{flocculation_use(scene.mix)};
+  lines.push_back(
+      plane ? fmt::format("blades: {} of {:g} mm", scene.vane.blades, scene.vane.blade_thickness * mm)
+            : "blades: left out (model.space = \"couette\"): the vane is a solid cylinder");
+  lines.push_back("end effects above and below the vane: neglected");
+  lines.push_back("third dimension: left out (model.space)");
+  lines.push_back(flow_curve_use(scene));
+  add_model_uses(scene.model, lines);
+  return lines;
 }
 
 }  // namespace tremie::icar_vane

@@ -1,12 +1,14 @@
-#include "apparatus/l_box/keys.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "apparatus/common/shared_keys.hpp"
+#include "apparatus/l_box/l_box.hpp"
 
-namespace tremie::scene {
+namespace tremie::l_box {
+
+using namespace scene;
+
 namespace {
 
 constexpr double most_points = 1e8;
@@ -80,9 +82,9 @@ void settle(Values& values) {
 }
 
 /// Cells must resolve the column and the gate, and the points must fit into a computer.
-void check_cells(const Values& values, const l_box::Scene& scene) {
+void check_cells(const Values& values, const Scene& scene) {
   const auto [across, up] = scene.model.cell;
-  const l_box::Box& box = scene.box;
+  const Box& box = scene.box;
   if (across > box.column_length || up > box.channel_height) {
     values.fail("model.cell",
                 fmt::format("is larger than the column or the gate; allowed: at most [\"{}\", \"{}\"]",
@@ -102,7 +104,7 @@ void check_cells(const Values& values, const l_box::Scene& scene) {
 
 }  // namespace
 
-ApparatusKeys l_box_keys() {
+ApparatusKeys keys() {
   ApparatusKeys keys{.name = "l_box",
                      .help = "The L-box test of EN 12350-10.",
                      .schema = mix_sections("5 MPa"),
@@ -120,8 +122,8 @@ ApparatusKeys l_box_keys() {
   return keys;
 }
 
-l_box::Scene l_box_scene(const Values& values) {
-  l_box::Scene scene;
+Scene read_scene(const Values& values) {
+  Scene scene;
   scene.mix = read_mix(values);
   scene.box = {values.number("box.column_length"), values.number("box.column_height"),
                values.number("box.channel_length"), values.number("box.channel_height"),
@@ -136,4 +138,4 @@ l_box::Scene l_box_scene(const Values& values) {
   return scene;
 }
 
-}  // namespace tremie::scene
+}  // namespace tremie::l_box

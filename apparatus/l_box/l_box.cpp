@@ -22,7 +22,7 @@ double expected_time(const Scene& scene) {
 }
 
 template <class Geometry>
-void count(const Scene& scene, Estimate& e) {
+void count(const Scene& scene, scene::Estimate& e) {
   const auto [h, h_up] = scene.model.cell;
   const auto [n, n_up] = scene.model.points_per_cell;
   double cells = scene.box.column_length * scene.box.column_height / (h * h_up), in_a_cell = n * n_up;
@@ -33,8 +33,8 @@ void count(const Scene& scene, Estimate& e) {
 }
 
 template <class Geometry>
-Estimate estimate_in(const Scene& scene) {
-  Estimate e;
+scene::Estimate estimate_in(const Scene& scene) {
+  scene::Estimate e;
   count<Geometry>(scene, e);
   const StepSettings settings = test_run::step_settings(scene.model);
   const double collapse = 0.5 * std::sqrt(test_run::gravity * scene.box.column_height) /
@@ -60,13 +60,13 @@ double gap_between_bars(const Scene& scene) {
   return (scene.box.width - scene.bars * bar_diameter) / (scene.bars + 1);
 }
 
-Outcome run(const Scene& scene, const Observer& observer) {
+Outcome run(const Scene& scene, const scene::Observer& observer) {
   test_run::refuse_what_has_no_engine(scene.model, "L-box");
   omp_set_num_threads(scene.threads);
   return in_space(scene) ? run_3d(scene, observer) : run_plane(scene, observer);
 }
 
-Estimate estimate(const Scene& scene) {
+scene::Estimate estimate(const Scene& scene) {
   test_run::refuse_what_has_no_engine(scene.model, "L-box");
   return in_space(scene) ? estimate_in<ThreeD>(scene) : estimate_in<PlaneStrain>(scene);
 }

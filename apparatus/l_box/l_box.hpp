@@ -4,12 +4,14 @@
 // gate, and how high it stands at the end of the channel when the gate is lifted. Without bars or, in space,
 // with two or three in front of the gate.
 
-#include <atomic>
-#include <functional>
+#include <array>
 #include <optional>
+#include <string>
+#include <vector>
 
-#include "apparatus/common/checkpoints.hpp"
+#include "apparatus/common/apparatus.hpp"
 #include "apparatus/common/model.hpp"
+#include "apparatus/run/experiment.hpp"
 #include "libmpm/constitutive/mix.hpp"
 
 namespace tremie::l_box {
@@ -70,33 +72,27 @@ struct Results {
   double volume_in_channel = 0.0;              ///< at the end, over the whole width [m^3]
 };
 
-struct Outcome {
-  Status status = Status::completed;
-  Results results;
-  Checks checks;
-  Cost cost;
-  std::vector<Sample> series;  ///< every step, the start included
-  Frame final_frame;
-};
+using Outcome = test_run::Record<Results, Sample>;
 
-struct Observer {
-  std::function<void(const Sample&)> on_step;
-  std::function<void(const Frame&)> on_frame;  ///< at the start, every frame_interval and at the end
-  const std::atomic<bool>* interrupted = nullptr;
-  const Checkpoints* checkpoints = nullptr;
-};
+/// Runs the test; as cone::run.
+Outcome run(const Scene& scene, const scene::Observer& observer = {});
 
-struct Estimate {
-  std::int64_t points = 0, cells_active = 0, bytes_per_point = 0;
-  std::int64_t steps = 0, steps_expected = 0;  ///< at most; and where the flow is expected to come to rest
-  double time_expected = 0.0;                  ///< [s] of the test until then
-  double point_step = 0.0;                     ///< CPU of a step by the point, measured [s]
-};
+scene::Estimate estimate(const Scene& scene);
 
-/// Runs the test; as slump_flow::run.
-Outcome run(const Scene& scene, const Observer& observer = {});
+/// The keys of `apparatus = "l_box"`, and the checked values as a scene; throws InputError where they do not fit each other.
+scene::ApparatusKeys keys();
+Scene read_scene(const scene::Values& values);
 
-Estimate estimate(const Scene& scene);
+/// Runs the test and reads it.
+scene::Outcome run_and_read(const Scene& scene, const scene::RunOptions& options,
+                            const scene::Observer& observer);
+
+/// What error bars are for, and what the names of readings mean.
+std::vector<scene::Headline> headlines();
+std::vector<scene::Described> glossary();
+
+/// What the scene carries and what it leaves out, a line each.
+std::vector<std::string> uses(const Scene& scene);
 
 /// Whether the box is computed in three dimensions.
 bool in_space(const Scene& scene);

@@ -3,6 +3,8 @@
 
 namespace tremie::l_box {
 
-Outcome run_3d(const Scene& scene, const Observer& observer) { return run_in<ThreeD>(scene, observer); }
+Outcome run_3d(const Scene& scene, const scene::Observer& observer) {
+  return run_in<ThreeD>(scene, observer);
+}
 
 }  // namespace tremie::l_box

@@ -3,7 +3,7 @@
 
 namespace tremie::l_box {
 
-Outcome run_plane(const Scene& scene, const Observer& observer) {
+Outcome run_plane(const Scene& scene, const scene::Observer& observer) {
   return run_in<PlaneStrain>(scene, observer);
 }
 

@@ -6,7 +6,7 @@
 
 namespace tremie::l_box {
 
-Outcome run_plane(const Scene& scene, const Observer& observer);
-Outcome run_3d(const Scene& scene, const Observer& observer);
+Outcome run_plane(const Scene& scene, const scene::Observer& observer);
+Outcome run_3d(const Scene& scene, const scene::Observer& observer);
 
 }  // namespace tremie::l_box

@@ -7,10 +7,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "apparatus/l_box/l_box.hpp"
+#include "apparatus/parts/bars.hpp"
 #include "apparatus/run/body_readings.hpp"
 #include "apparatus/run/step_settings.hpp"
 #include "libmpm/particles/seeding.hpp"
@@ -64,51 +64,23 @@ Body<Geometry> filled_column(const Scene& scene) {
   return body;
 }
 
-/// Middles of the bars across the channel, from its middle plane [m]: all gaps, those at the side walls
-/// included, are as wide.
-inline std::vector<double> bar_places(const Scene& scene) {
-  std::vector<double> places;
-  const double step = gap_between_bars(scene) + bar_diameter;
-  for (int i = 0; i < scene.bars; ++i) places.push_back(step * (i - 0.5 * (scene.bars - 1)));
-  return places;
-}
-
 /// Where the plane in the middle of the box is across the grid [m].
 inline double middle_plane(const Scene& scene) {
   return scene.model.space == SpaceKind::half ? 0.0 : 0.5 * computed_width(scene);
 }
 
-/// Whether cells of this size resolve a bar, two to its diameter.
-inline bool resolves_bars(double cell) { return cell <= 0.5 * bar_diameter * (1.0 + 1e-9); }
-
-/// The bars right in front of the gate on cells that do not resolve them.
-inline std::vector<BarPoint<3>> slender_bars(const Scene& scene, const std::array<Axis, 3>& axes) {
-  std::vector<BarPoint<3>> points;
-  for (double place : bar_places(scene))
-    add_bar(axes, {scene.box.column_length + 0.5 * bar_diameter, middle_plane(scene) + place, 0.0}, 2,
-            scene.box.channel_height, bar_diameter, points);
-  std::erase_if(points, [](const BarPoint<3>& p) { return p.x[1] < 0.0; });  // beyond the plane of symmetry
-  return points;
+/// The bars right in front of the gate: all gaps, those at the side walls included, are as wide.
+inline std::vector<parts::Bar> bars_of(const Scene& scene) {
+  std::vector<parts::Bar> bars;
+  const double step = gap_between_bars(scene) + bar_diameter;
+  for (int i = 0; i < scene.bars; ++i)
+    bars.push_back({scene.box.column_length + 0.5 * bar_diameter,
+                    middle_plane(scene) + step * (i - 0.5 * (scene.bars - 1)), bar_diameter,
+                    scene.box.channel_height});
+  return bars;
 }
 
-/// The same on cells that resolve them: cylinders to which the concrete sticks.
-inline void add_bars(const Scene& scene, double spacing, std::vector<BoundaryPoint<3>>& points) {
-  const double R = 0.5 * bar_diameter, middle = middle_plane(scene);
-  const int around = std::max(8, static_cast<int>(std::ceil(2.0 * std::numbers::pi * R / spacing)));
-  const int rows = static_cast<int>(std::ceil(scene.box.channel_height / spacing));
-  for (double place : bar_places(scene))
-    for (int k = 0; k < around; ++k) {
-      const double angle = 2.0 * std::numbers::pi * (k + 0.5) / around;
-      const double y = middle + place + R * std::sin(angle);
-      if (y < 0.0) continue;  // beyond the plane of symmetry
-      for (int i = 0; i < rows; ++i) {
-        BoundaryPoint<3> point;
-        point.x = {scene.box.column_length + R + R * std::cos(angle), y,
-                   (i + 0.5) * scene.box.channel_height / rows};
-        points.push_back(point);
-      }
-    }
-}
+inline bool resolves_bars(double cell) { return parts::resolves_bars(cell, bar_diameter); }
 
 /// The column's front wall above the channel, to which the concrete sticks, and what is left of the gate
 /// below it, along which it slips, half a cell between points; and the bars.
@@ -136,7 +108,8 @@ std::vector<BoundaryPoint<Geometry::dim>> walls_inside(const Scene& scene,
     }
   }
   if constexpr (D == 3)
-    if (resolves_bars(axes[1].h)) add_bars(scene, 0.5 * std::min(axes[1].h, axes[up].h), points);
+    if (resolves_bars(axes[1].h))
+      parts::add_resolved_bars(bars_of(scene), 0.5 * std::min(axes[1].h, axes[up].h), points);
   return points;
 }
 

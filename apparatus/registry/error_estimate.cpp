@@ -148,7 +148,7 @@ std::vector<std::string> error_lines(const Scene& scene, const Outcome& outcome)
       if (bar.name == headline.name)
         lines.push_back(fmt::format("{} {:.{}f} ± {:.{}f} {}", headline.word,
                                     number_in(outcome, bar.name).value_or(0.0), headline.digits, bar.error,
-                                    headline.digits, headline.unit));
+                                    headline.digits, unit_for_people(headline.name)));
   lines.push_back(fmt::format("by {}; {:.2f} s of CPU", outcome.error->basis, outcome.error->cpu));
   return lines;
 }

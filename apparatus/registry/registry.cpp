@@ -96,12 +96,16 @@ const Model& model_of(const Scene& scene) { return model_of(const_cast<Scene&>(s
 
 Outcome run(const Scene& scene, const Observer& observer, bool coarser) {
   const double wall = wall_seconds(), cpu = cpu_seconds();
-  const RunOptions options{scene.measured, scene.output.frames, coarser};
-  Outcome outcome =
-      as_input_error(scene, [&] { return scene.functions->run(scene.test, options, observer); });
+  Observer own = observer;
+  own.all_frames = scene.output.frames;
+  Outcome outcome = as_input_error(scene, [&] {
+    return scene.functions->run(scene.test, {scene.measured, coarser}, own);
+  });
+  outcome.apparatus = scene.apparatus;
   outcome.cost.wall = wall_seconds() - wall;
   outcome.cost.cpu = cpu_seconds() - cpu;
-  outcome.cost.threads = scene.functions->threads(const_cast<Scene&>(scene).test);
+  if (scene.functions->threads)
+    outcome.cost.threads = scene.functions->threads(const_cast<Scene&>(scene).test);
   outcome.cost.peak_rss_bytes = peak_rss_bytes();
   if (outcome.status == Status::failed && outcome.checks.reasons.empty())
     outcome.checks.reasons.push_back("the run did not come to its end");

@@ -20,16 +20,10 @@ std::optional<double> rests_since(const Flow& flow, const StepReport& step, Rest
   return flow.stands_since && flow.free_to_flow() ? flow.stands_since() : std::nullopt;
 }
 
-void show_frame(const Flow& flow, Onlooker& onlooker) {
-  if (!onlooker.on_frame || flow.time() < onlooker.next_frame) return;
-  onlooker.on_frame(flow.frame());
-  onlooker.next_frame = frame_after(onlooker.next_frame, onlooker.frame_interval);
-}
-
 /// The state between two steps: the flow's, the loop's own, and what was counted.
-VisitState state_of(const Flow& flow, Onlooker& onlooker, RestWatch& watch, Checks& checks, Cost& cost) {
+VisitState state_of(const Flow& flow, double& next_frame, RestWatch& watch, Checks& checks, Cost& cost) {
   return [&](Archive& archive) {
-    archive(onlooker.next_frame, watch, checks.unconverged_steps, checks.cells_in_a_step, checks.reasons);
+    archive(next_frame, watch, checks.unconverged_steps, checks.cells_in_a_step, checks.reasons);
     archive(cost.steps, cost.cells_active);
     flow.state(archive);
   };
@@ -37,23 +31,27 @@ VisitState state_of(const Flow& flow, Onlooker& onlooker, RestWatch& watch, Chec
 
 }  // namespace
 
-std::optional<double> run_loop(const Flow& flow, Onlooker onlooker, Status& status, Checks& checks,
-                               Cost& cost) {
+std::optional<double> run_loop(const Flow& flow, const std::function<void(const StepReport&)>& read,
+                               const scene::Observer& observer, double frame_interval, double next_frame,
+                               Status& status, Checks& checks, Cost& cost) {
   RestWatch watch;
   std::optional<double> at_rest;
-  const Checkpoints* checkpoints = flow.state ? onlooker.checkpoints : nullptr;
-  const VisitState state = state_of(flow, onlooker, watch, checks, cost);
+  const Checkpoints* checkpoints = flow.state ? observer.checkpoints : nullptr;
+  const VisitState state = state_of(flow, next_frame, watch, checks, cost);
   if (goes_on(checkpoints)) checkpoints->restore(state);
   while (status == Status::completed && !at_rest && flow.unfinished()) {
     if (checkpoints && checkpoints->due()) checkpoints->keep(state);
     flow.prepare();
     const StepReport step = flow.advance(checks, cost);
     if (gave_up(step, status, checks, flow.time())) break;
-    flow.read(step);
+    read(step);
     at_rest = rests_since(flow, step, watch);
-    if (onlooker.interrupted && *onlooker.interrupted) status = Status::interrupted;
+    if (observer.interrupted && *observer.interrupted) status = Status::interrupted;
     if (flow.gains_energy && flow.gains_energy()) status = Status::failed;
-    show_frame(flow, onlooker);
+    if (observer.on_frame && observer.all_frames && flow.time() >= next_frame) {
+      observer.on_frame(flow.frame());
+      next_frame = frame_after(next_frame, frame_interval);
+    }
   }
   if (checkpoints && status == Status::interrupted && !at_rest && flow.unfinished()) checkpoints->keep(state);
   return at_rest;

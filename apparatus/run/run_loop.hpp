@@ -2,13 +2,10 @@
 
 // The one loop by which every apparatus runs its test, by implicit or explicit steps.
 
-#include <algorithm>
-#include <atomic>
 #include <functional>
 #include <optional>
 
-#include "apparatus/common/checkpoints.hpp"
-#include "apparatus/common/model.hpp"
+#include "apparatus/common/outcome.hpp"
 #include "apparatus/run/frame_times.hpp"
 #include "libmpm/implicit/step.hpp"
 
@@ -37,8 +34,8 @@ struct Flow {
   std::function<void()> prepare;     ///< moves gate, cone or vane for the step to come, and bounds the step
   /// Steps to the next reading: one implicit step, or many explicit ones. Counts them.
   std::function<StepReport(Checks&, Cost&)> advance;
-  std::function<void(const StepReport&)> read;  ///< adds a line to the series and shows it
-  std::function<Frame()> frame;                 ///< the points as they are now
+  std::function<Frame()> frame;            ///< the points as they are now
+  std::function<Frame()> last_frame = {};  ///< the same where the body is not needed any more; may be empty
   /// Speed by which the flow is judged to be at rest [m/s], and whether anything holds it still. Empty: the
   /// test takes its whole time.
   std::function<double(const StepReport&)> speed = {};
@@ -46,21 +43,17 @@ struct Flow {
   /// Since when the readings stand still, as a laboratory would judge it [s]: rest too, where it is not empty.
   std::function<std::optional<double>()> stands_since = {};
   std::function<bool()> gains_energy = {};  ///< more than a stable run can; may be empty
+  std::function<void(bool, Checks&, Cost&)> tell =
+      {};  ///< what the steps themselves were watched for; true: the flow came to rest
   /// All that goes on from one step to the next: body, schedule and series. Empty: the test keeps no checkpoints.
   VisitState state = {};
 };
 
-/// Who looks on. Frames come at `next_frame` and every `frame_interval` after it [s]; 0: chosen.
-struct Onlooker {
-  const std::function<void(const Frame&)>& on_frame;  ///< may be empty
-  const std::atomic<bool>* interrupted = nullptr;
-  double frame_interval = 0.0, next_frame = 0.0;
-  const Checkpoints* checkpoints = nullptr;
-};
-
-/// Runs the flow until its time is over, it is at rest, a step fails or somebody interrupts. Returns when it
-/// came to rest [s]; empty where it did not.
-std::optional<double> run_loop(const Flow& flow, Onlooker onlooker, Status& status, Checks& checks,
-                               Cost& cost);
+/// Runs the flow until its time is over, it is at rest, a step fails or somebody interrupts; `read` adds a line to the series.
+/// Frames come at `next_frame` and every `frame_interval` after it [s]; 0: chosen. Returns when it came to rest [s]; empty
+/// where it did not.
+std::optional<double> run_loop(const Flow& flow, const std::function<void(const StepReport&)>& read,
+                               const scene::Observer& observer, double frame_interval, double next_frame,
+                               Status& status, Checks& checks, Cost& cost);
 
 }  // namespace tremie::test_run

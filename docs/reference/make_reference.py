@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """The reference, from the program itself: make_reference.py PROGRAM [--check].
 
-Writes scenes.md (what `tremie new` prints), commands.md (every command's --help) and results.md (what brief runs leave in summary.json, with the
-words and units that the report uses) beside this file. With --check nothing is
+Writes scenes.md (what `tremie new` prints), commands.md (every command's --help) and results.md (`tremie --readings`: names, units and words of what
+every apparatus reads) beside this file. With --check nothing is
 written: exit 1 where a stored page differs from what the program says. A command that is not in this build has no help: its stored section is kept, unchecked."""
-import json, pathlib, re, subprocess, sys, tempfile
+import pathlib, re, subprocess, sys
 
 program, check = sys.argv[1], "--check" in sys.argv[2:]
 here = pathlib.Path(__file__).resolve().parent
@@ -40,38 +40,21 @@ def command_section(name):
     return [section(f"`tremie {name}`", "text", text)] if text else stored_section(name)
 
 
-def words():
-    """The report's own table of words, and the endings that tell a unit."""
-    text = (here.parent.parent / "apparatus/report/run_files/glossary.cpp").read_text()
-    pairs = re.findall(r'\{"([^"]+)",\s*"([^"]+)"\}', text)
-    return {k: v for k, v in pairs if not k.startswith("_")}, [(k, v) for k, v in pairs if k.startswith("_")]
+def listed_readings():
+    """Every apparatus with its words and its readings, (name, unit, words) each, in the program's order."""
+    apparatus = {}
+    for line in (says("--readings") or "").splitlines():
+        name, reading, unit, words = line.split("\t")
+        if reading:
+            apparatus[name][1].append((reading, "" if unit == "1" else unit, words))
+        else:
+            apparatus[name] = (words, [])
+    return apparatus
 
 
-def flat(results, prefix=""):
-    for name, value in results.items():
-        yield from flat(value, prefix + name + ".") if isinstance(value, dict) else [prefix + name]
-
-
-# A brief scene of every apparatus.
-brief = {"slump_flow": 'mix = "mix_a"\n[test]\nduration = "0.02 s"\n[output]\nframes = false\n',
-         "l_box": 'mix = "mix_a"\n[test]\nduration = "0.02 s"\n[output]\nframes = false\n[model]\ncell = "50 mm"\n',
-         "icar_vane": 'mix = "mix_a"\n[test]\nrest = "60 s"\nduration = "1 s"\n[output]\nframes = false\n',
-         "cell": 'mix = "mix_a"\n[[history]]\nduration = "1 s"\nfrom = "0 1/s"\nto = "1 1/s"\n'}
-
-
-def readings(name):
-    """The names in `results` of a brief run, whatever it is worth."""
-    with tempfile.TemporaryDirectory() as folder:
-        (pathlib.Path(folder) / "scene.toml").write_text(f'apparatus = "{name}"\n' + brief[name])
-        command = "cell" if name == "cell" else "run"
-        subprocess.run([program, command, folder + "/scene.toml", "--out", folder + "/out", "--quiet"], capture_output=True)
-        return list(flat(json.loads((pathlib.Path(folder) / "out/summary.json").read_text())["results"]))
-
-
-def table(name):
-    known, endings = words()
-    row = lambda key: f"| `{key}` | {next((unit for end, unit in endings if key.endswith(end)), '')} | {known.get(key, '')} |"
-    return f"## `results`: {known[name]}\n\n| key | unit | what |\n|---|---|---|\n" + "\n".join(row(key) for key in readings(name)) + "\n"
+def table(words, readings):
+    rows = "\n".join(f"| `{name}` | {unit} | {what} |" for name, unit, what in readings)
+    return f"## `results`: {words}\n\n| key | unit | what |\n|---|---|---|\n{rows}\n"
 
 
 results_head = """# Every field of a result
@@ -103,18 +86,19 @@ A run fills a folder ([which files](../guide/slump_flow.md#what-a-run-leaves)); 
 
 `fit`, `estimate`, `study` and `calibrate` leave files of their own: what is in them is on their pages of the guide. A run that was cut short keeps its state in `.NAME.part/checkpoint` beside its folder, for the very build that wrote it: points, time, step, grid, the solver's stresses and rates, friction, bars' drag, and the apparatus' own series.
 """
+apparatus = listed_readings()
 listed = says("--commands")
 commands = [line.split("\t")[0] for line in listed.splitlines()] if listed else []
 pages = {
     "scenes.md": (
         "# Every key of a scene\n\nWhat `tremie new APPARATUS` prints: every key with its default, a comment and the words it takes. "
         "A value with a dimension is a string with a unit.\n",
-        [section(f"`apparatus = \"{name}\"`", "toml", says("new", name) or "") for name in brief]),
+        [section(f"`apparatus = \"{name}\"`", "toml", says("new", name) or "") for name in apparatus]),
     "commands.md": (
         "# Every command\n\nWhat `tremie COMMAND --help` prints.\n",
         [section("`tremie`", "text", says("--help") or "")]
         + [text for name in commands for text in command_section(name)]),
-    "results.md": (results_head, [table(name) for name in brief]),
+    "results.md": (results_head, [table(*found) for found in apparatus.values()]),
 }
 
 differ = False

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "apparatus/parts/cone/cone_test.hpp"
 #include "apparatus/registry/error_estimate.hpp"
-#include "apparatus/slump_flow/slump_flow.hpp"
 
 namespace tremie::scene {
 namespace {
@@ -61,7 +61,7 @@ TEST(ErrorEstimate, CoarsensCellsAndFixedSteps) {
   Scene scene = coarse_slump();
   model_of(scene).time_step = 1e-3;
   const Scene coarser = coarsened(scene, 1.5);
-  const Model& model = std::any_cast<const slump_flow::Scene&>(coarser.test).model;
+  const Model& model = std::any_cast<const cone::Scene&>(coarser.test).model;
   EXPECT_DOUBLE_EQ(model.cell[0], 0.03);
   EXPECT_DOUBLE_EQ(model.cell[1], 0.015);
   EXPECT_DOUBLE_EQ(model.time_step.value(), 1.5e-3);

@@ -4,7 +4,7 @@
 
 #include <atomic>
 
-#include "apparatus/l_box/series.hpp"
+#include "apparatus/l_box/checks.hpp"
 #include "apparatus/registry/registry.hpp"
 
 namespace tremie {

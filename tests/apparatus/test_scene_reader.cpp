@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <atomic>
 
+#include "apparatus/parts/cone/cone_test.hpp"
 #include "apparatus/registry/registry.hpp"
 #include "apparatus/scene/resolved.hpp"
-#include "apparatus/slump_flow/slump_flow.hpp"
 #include "tests/apparatus/complaint.hpp"
 #include "tests/apparatus/temporary_folder.hpp"
 
@@ -26,9 +26,7 @@ const std::string thixotropic = mix_a + "[mix.thixotropy]\nstructuration_rate = 
 using test::complaint;
 using test::says;
 
-const slump_flow::Scene& slump(const Scene& scene) {
-  return std::any_cast<const slump_flow::Scene&>(scene.test);
-}
+const cone::Scene& slump(const Scene& scene) { return std::any_cast<const cone::Scene&>(scene.test); }
 
 TEST(SceneReader, DefaultsAreTheDocumentedOnes) {
   const Scene scene = read_text(thixotropic, "a.toml");

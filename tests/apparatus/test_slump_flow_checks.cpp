@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
+#include "apparatus/parts/cone/checks.hpp"
 #include "apparatus/registry/registry.hpp"
 #include "apparatus/run/energy_watch.hpp"
 #include "apparatus/run/run_checks.hpp"
-#include "apparatus/slump_flow/checks.hpp"
 
 namespace tremie {
 namespace {
@@ -83,9 +83,9 @@ TEST(SlumpFlowChecks, AFloorWithoutFrictionIsMarkedAsAFreeOneIs) {
 // A fiftieth of the concrete through the cone's wall moves t500 by less than 2 %, a twentieth by 6 % (lift.md).
 TEST(SlumpFlowChecks, ConcreteThatGoesThroughTheConeIsMarked) {
   for (const auto& [through, marked] : {std::pair{0.03, true}, {0.015, false}}) {
-    slump_flow::Outcome outcome;
+    cone::Outcome outcome;
     outcome.results.through_the_cone = through;
-    slump_flow::judge_lift(outcome);
+    cone::judge_lift(outcome);
     EXPECT_EQ(!outcome.checks.reasons.empty(), marked) << through;
   }
 }

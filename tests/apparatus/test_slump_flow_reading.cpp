@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "apparatus/slump_flow/reading.hpp"
+#include "apparatus/parts/cone/spread.hpp"
 
-namespace tremie::slump_flow {
+namespace tremie::cone {
 namespace {
 
 /// Points in rows `s` apart, turned by `angle`, that fill an ellipse of half axes a and b in one layer.
@@ -80,4 +80,4 @@ TEST(SlumpFlowReading, OnlyStrays) {
 }
 
 }  // namespace
-}  // namespace tremie::slump_flow
+}  // namespace tremie::cone

@@ -9,26 +9,26 @@
 #include <cstdlib>
 #include <vector>
 
-#include "apparatus/slump_flow/series.hpp"
+#include "apparatus/parts/cone/series.hpp"
 
 int main(int argc, char** argv) {
   using namespace tremie;
   if (argc < 3) return 2;
   const bool readings = argc > 3;
-  slump_flow::Scene scene;
+  cone::Scene scene;
   scene.mix.tau_0 = 54.0, scene.mix.mu = 35.8;
   scene.lift_speed.reset();
   scene.model.cell = {std::atof(argv[1]), 0.5 * std::atof(argv[1])};
   scene.duration = std::atof(argv[2]);
 
-  ImplicitBody<Axisymmetric> body{slump_flow::filled_cone<Axisymmetric>(scene)};
-  StepSettings settings = slump_flow::step_settings(scene);
-  std::vector<slump_flow::Sample> series;
+  ImplicitBody<Axisymmetric> body{cone::filled_cone<Axisymmetric>(scene)};
+  StepSettings settings = cone::step_settings(scene);
+  std::vector<cone::Sample> series;
   long steps = 0;
   for (; body.time < scene.duration * (1.0 - 1e-12); ++steps) {
     settings.dt_max = std::min(StepSettings{}.dt_max, scene.duration - body.time);
     const StepReport step = implicit_step(body, ExactBingham{}, settings, RigidWall<2>{});
-    if (readings) series.push_back(slump_flow::read(scene, body, step));
+    if (readings) series.push_back(cone::read(scene, body, step));
   }
   std::printf("%ld %zu %g\n", steps, body.points.size(), series.empty() ? 0.0 : series.back().spread);
 }

@@ -6,11 +6,12 @@
 #include <cstdlib>
 #include <string>
 
-#include "apparatus/icar_vane/keys.hpp"
-#include "apparatus/l_box/keys.hpp"
+#include "apparatus/icar_vane/icar_vane.hpp"
+#include "apparatus/l_box/l_box.hpp"
+#include "apparatus/parts/cone/readings.hpp"
 #include "apparatus/scene/load.hpp"
 #include "apparatus/scene/resolved.hpp"
-#include "apparatus/slump_flow/scene.hpp"
+#include "apparatus/slump_flow/slump_flow.hpp"
 
 namespace {
 
@@ -32,13 +33,14 @@ std::string without_comments(const std::string& text) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const std::array<ApparatusKeys, 3> known{slump_flow_keys(), l_box_keys(), icar_vane_keys()};
+  static const std::array<ApparatusKeys, 3> known{tremie::slump_flow::keys(), tremie::l_box::keys(),
+                                                  tremie::icar_vane::keys()};
   const std::string text(reinterpret_cast<const char*>(data), size);
   try {
     const Loaded loaded = load({"fuzzed.toml", {}, text}, known);
-    if (loaded.apparatus == "slump_flow") slump_flow_scene(loaded.values);
-    if (loaded.apparatus == "l_box") l_box_scene(loaded.values);
-    if (loaded.apparatus == "icar_vane") icar_vane_scene(loaded.values);
+    if (loaded.apparatus == "slump_flow") tremie::cone::read_scene(loaded.values);
+    if (loaded.apparatus == "l_box") tremie::l_box::read_scene(loaded.values);
+    if (loaded.apparatus == "icar_vane") tremie::icar_vane::read_scene(loaded.values);
     const std::string resolved = write_resolved(loaded.schema, loaded.values);
     const Loaded again = load({"resolved.toml", {}, resolved}, known);
     if (without_comments(write_resolved(again.schema, again.values)) != without_comments(resolved))

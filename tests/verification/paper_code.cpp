@@ -14,11 +14,11 @@
 #include <map>
 #include <string>
 
-#include "apparatus/slump_flow/cone.hpp"
-#include "apparatus/slump_flow/reading.hpp"
+#include "apparatus/parts/cone/cone.hpp"
+#include "apparatus/parts/cone/spread.hpp"
 #include "libmpm/grid/tiles.hpp"
 
-namespace tremie::slump_flow {
+namespace tremie::cone {
 namespace {
 
 std::map<std::string, double> values;
@@ -323,10 +323,10 @@ void run_keys() {
 }
 
 }  // namespace
-}  // namespace tremie::slump_flow
+}  // namespace tremie::cone
 
 int main(int argc, char** argv) {
-  auto& values = tremie::slump_flow::values;
+  auto& values = tremie::cone::values;
   for (int i = 1; i < argc; ++i) {
     const std::string set = argv[i];
     const auto sign = set.find('=');
@@ -339,5 +339,5 @@ int main(int argc, char** argv) {
     fmt::print("{} ", set);
   }
   fmt::print("| ");
-  tremie::slump_flow::run_keys();
+  tremie::cone::run_keys();
 }

@@ -38,13 +38,13 @@ constexpr std::array<Mixture, 3> mixes = {Mixture{"A", 54, 35.8}, Mixture{"B", 6
                                           Mixture{"C", 130, 30.2}};
 
 struct Run {
-  slump_flow::Outcome outcome;
+  cone::Outcome outcome;
   double cpu = 0.0;
 };
 
 Run run(const Mixture& mix, const Grid& grid, MethodKind method, bool instant, bool particle_shifting,
         double duration) {
-  slump_flow::Scene scene;
+  cone::Scene scene;
   scene.mix.tau_0 = mix.tau_0;
   scene.mix.mu = mix.mu;
   scene.duration = duration;
@@ -54,7 +54,7 @@ Run run(const Mixture& mix, const Grid& grid, MethodKind method, bool instant, b
   scene.model.method = method;
   scene.model.particle_shifting = particle_shifting;
   const std::clock_t start = std::clock();
-  Run r{slump_flow::run(scene), 0.0};
+  Run r{cone::run(scene), 0.0};
   r.cpu = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   return r;
 }

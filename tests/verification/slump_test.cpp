@@ -10,7 +10,7 @@
 namespace tremie {
 namespace {
 
-using namespace slump_flow;
+using namespace cone;
 using verification::at;
 
 // Spread within 1.5 % from 1 s on, centre height within 5 %: the finite elements are good to 2 mm of 445, the

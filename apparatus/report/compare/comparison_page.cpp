@@ -154,7 +154,8 @@ std::string comparison_headline(const Comparison& comparison) {
         std::vector<std::string> values;
         for (std::size_t i = 0; i < row.numbers.size(); ++i)
           values.push_back(row.numbers[i] ? fmt::format("{:.{}f}", *row.numbers[i], headline.digits) : "–");
-        text += fmt::format(": {} {} {}", headline.word, fmt::join(values, " | "), headline.unit);
+        text += fmt::format(": {} {} {}", headline.word, fmt::join(values, " | "),
+                            unit_for_people(headline.name));
       }
     }
   return text;

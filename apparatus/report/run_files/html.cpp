@@ -34,7 +34,8 @@ std::string answer_text(const scene::Outcome& o, const scene::Answer& a) {
   std::string text = a.word.empty() ? "" : a.word + " ";
   text += fmt::format("{:.{}f}", *value, a.digits);
   if (const auto error = error_of(o, a.name)) text += fmt::format(" ± {:.{}f}", *error, a.digits);
-  return a.unit.empty() ? text : text + " " + a.unit;
+  const std::string unit = unit_for_people(a.name);
+  return unit.empty() ? text : text + " " + unit;
 }
 
 Verdict verdict_of(const scene::Outcome& o) {

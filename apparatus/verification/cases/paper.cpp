@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "apparatus/slump_flow/slump_flow.hpp"
+#include "apparatus/parts/cone/cone_test.hpp"
 #include "apparatus/verification/suite.hpp"
 
 namespace tremie::verification {
@@ -21,14 +21,14 @@ constexpr std::array<Mixture, 3> mixtures{{{"A", 54, 35.8, 1.3, 590, 575, 105},
                                            {"B", 61, 29.0, 1.8, 550, 530, 94},
                                            {"C", 130, 30.2, 2.9, 500, 485, 98}}};
 
-slump_flow::Outcome flow(const Mixture& mixture, double rest, double duration) {
-  slump_flow::Scene scene;
+cone::Outcome flow(const Mixture& mixture, double rest, double duration) {
+  cone::Scene scene;
   scene.mix.tau_0 = mixture.tau_0;
   scene.mix.mu = mixture.mu;
   scene.mix.thixotropy = Thixotropy{.A_thix = mixture.A_thix};
   scene.rest = rest;
   scene.duration = duration;
-  return slump_flow::run(scene);
+  return cone::run(scene);
 }
 
 std::string mm(double metres) { return fmt::format("{:.0f}", 1e3 * metres); }

@@ -56,10 +56,10 @@ struct Test {
 
 Run run_of(const Test& test, const Model& model, double across) {
   const double start = cpu_seconds();
-  slump_flow::Scene scene = instant_release(test.tau_0, test.mu, test.duration);
+  cone::Scene scene = instant_release(test.tau_0, test.mu, test.duration);
   scene.model = model;
   scene.model.cell = {1e-3 * across, 0.5e-3 * across};
-  const auto outcome = slump_flow::run(scene);
+  const auto outcome = cone::run(scene);
   Run run{fmt::format("{:g} x {:g} mm", across, 0.5 * across), across, worst_error(outcome, test.reference),
           cpu_seconds() - start};
   if (!outcome.checks.reasons.empty()) run.note = outcome.checks.reasons.front();

@@ -74,10 +74,10 @@ Case slender(Depth depth) {
 
 Run against_finite_elements(const Cell& cell, const Model& scheme) {
   const double start = cpu_seconds();
-  slump_flow::Scene scene = instant_release(130.0, 30.2, 20.0);
+  cone::Scene scene = instant_release(130.0, 30.2, 20.0);
   scene.model = scheme;
   scene.model.cell = {1e-3 * cell[0], 1e-3 * cell[1]};
-  const auto outcome = slump_flow::run(scene);
+  const auto outcome = cone::run(scene);
   const double worst = worst_error(outcome, finite_elements_mix_c);
   return {label_of(cell), size_of(cell), worst, cpu_seconds() - start,
           unconverged(outcome.checks.unconverged_steps)};
@@ -139,7 +139,7 @@ Case rest_balance() {
            .series = {{"implicit", {}}},
            .bounds = {}};
   const double start = cpu_seconds();
-  const auto outcome = slump_flow::run(instant_release(130.0, 30.2, slump_flow::Scene{}.duration));
+  const auto outcome = cone::run(instant_release(130.0, 30.2, cone::Scene{}.duration));
   const Fluid fluid{2400.0, 9.81, 130.0, 30.2};
   const double low = 2.0 * rest_radius(fluid, cone_volume(), plug_normal_stress);
   const double high = 2.0 * rest_radius(fluid, cone_volume(), 0.0);

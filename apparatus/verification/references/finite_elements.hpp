@@ -22,8 +22,8 @@ inline constexpr std::array<SpreadAt, 6> finite_elements_mix_c{
 inline constexpr std::array<SpreadAt, 1> finite_elements_mix_a{{{20, 0.981 * 558.0}}};
 
 /// The cone gone at once, without thixotropy.
-inline slump_flow::Scene instant_release(double tau_0, double mu, double duration) {
-  slump_flow::Scene scene;
+inline cone::Scene instant_release(double tau_0, double mu, double duration) {
+  cone::Scene scene;
   scene.mix.tau_0 = tau_0;
   scene.mix.mu = mu;
   scene.lift_speed.reset();
@@ -32,7 +32,7 @@ inline slump_flow::Scene instant_release(double tau_0, double mu, double duratio
 }
 
 /// Largest relative error of the spread at the reference's times.
-inline double worst_error(const slump_flow::Outcome& outcome, std::span<const SpreadAt> reference) {
+inline double worst_error(const cone::Outcome& outcome, std::span<const SpreadAt> reference) {
   double worst = 0.0;
   for (const auto& [time, mm] : reference)
     worst = std::max(worst, std::abs(spread_at(outcome, time) / mm - 1.0));

@@ -6,7 +6,7 @@
 
 #include <omp.h>
 
-#include "apparatus/slump_flow/reading.hpp"
+#include "apparatus/parts/cone/spread.hpp"
 #include "apparatus/verification/references/bodies.hpp"
 #include "apparatus/verification/references/lubrication.hpp"
 #include "libmpm/implicit/step.hpp"
@@ -55,7 +55,7 @@ inline HuppertFit huppert_decade(double across, double up) {
   while (body.time < 10.0 * start) {
     unconverged += !implicit_step(body, ExactBingham{}, settings).converged;
     x.push_back(std::log(body.time));
-    y.push_back(std::log(0.5 * slump_flow::spread(body.points, across)));
+    y.push_back(std::log(0.5 * cone::spread(body.points, across)));
   }
   // Evenly in log t: each sample weighs what its step covers.
   double w = 0, mx = 0, my = 0, sxx = 0, sxy = 0, worst = 0;

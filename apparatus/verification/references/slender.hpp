@@ -5,14 +5,14 @@
 
 #include <omp.h>
 
-#include "apparatus/slump_flow/reading.hpp"
-#include "apparatus/slump_flow/set_up.hpp"
+#include "apparatus/parts/cone/set_up.hpp"
+#include "apparatus/parts/cone/spread.hpp"
 #include "apparatus/verification/references/bodies.hpp"
 #include "apparatus/verification/references/lubrication.hpp"
 
 namespace tremie::verification {
 
-inline double cone_volume() { return slump_flow::volume({}); }
+inline double cone_volume() { return cone::volume({}); }
 
 /// Published diameters: [s], [mm].
 inline const std::vector<std::pair<int, int>> published_slender{{3, 572},  {6, 619},  {13, 663},
@@ -46,13 +46,13 @@ struct SlenderFlow {
 };
 
 inline SlenderFlow slender_flow(double across, double up) {
-  slump_flow::Scene scene;
+  cone::Scene scene;
   scene.mix = test::concrete(10.0, 35.8);
   scene.lift_speed.reset();
   scene.model.cell = {across, up};
   omp_set_num_threads(1);
-  ImplicitBody<Axisymmetric> body{slump_flow::filled_cone<Axisymmetric>(scene)};
-  StepSettings settings = slump_flow::step_settings(scene);
+  ImplicitBody<Axisymmetric> body{cone::filled_cone<Axisymmetric>(scene)};
+  StepSettings settings = cone::step_settings(scene);
   SlenderFlow flow;
   const auto march = [&](double until) {
     while (body.time < until - 1e-9) {
@@ -67,7 +67,7 @@ inline SlenderFlow slender_flow(double across, double up) {
   for (const auto& [t, mm] : published_slender) {
     spread_layer(fluid, t - body.time, layer);
     march(t);
-    flow.samples.push_back({t, mm, slump_flow::spread(body.points, across), 2.0 * layer.front()});
+    flow.samples.push_back({t, mm, cone::spread(body.points, across), 2.0 * layer.front()});
   }
   return flow;
 }

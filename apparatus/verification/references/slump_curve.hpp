@@ -1,11 +1,11 @@
 #pragma once
 
-#include "apparatus/slump_flow/slump_flow.hpp"
+#include "apparatus/parts/cone/cone_test.hpp"
 
 namespace tremie::verification {
 
 /// A quantity of the curve at a time [s], linear between the steps; the last one after the flow has stopped.
-inline double at(const slump_flow::Outcome& outcome, double time, double slump_flow::Sample::*quantity) {
+inline double at(const cone::Outcome& outcome, double time, double cone::Sample::*quantity) {
   const auto& series = outcome.series;
   for (std::size_t i = 1; i < series.size(); ++i)
     if (series[i].time >= time) {
@@ -16,8 +16,8 @@ inline double at(const slump_flow::Outcome& outcome, double time, double slump_f
 }
 
 /// The spread at a time [mm].
-inline double spread_at(const slump_flow::Outcome& outcome, double time) {
-  return 1e3 * at(outcome, time, &slump_flow::Sample::spread);
+inline double spread_at(const cone::Outcome& outcome, double time) {
+  return 1e3 * at(outcome, time, &cone::Sample::spread);
 }
 
 }  // namespace tremie::verification

@@ -2,9 +2,9 @@
 
 #include <stdexcept>
 
+#include "apparatus/parts/cone/set_up.hpp"
 #include "apparatus/registry/registry.hpp"
 #include "apparatus/slump_flow/apparatus.hpp"
-#include "apparatus/slump_flow/set_up.hpp"
 
 namespace tremie {
 
@@ -13,7 +13,7 @@ const std::vector<scene::Apparatus>& scene::all_apparatus() {
   return all;
 }
 
-slump_flow::Outcome slump_flow::run_explicit(const Scene&, const Observer&) {
+cone::Outcome cone::run_explicit(const Scene&, const Observer&) {
   throw std::invalid_argument(
       "model.scheme: the page has implicit steps alone; give \"implicit\", or run the scene by `tremie run`");
 }

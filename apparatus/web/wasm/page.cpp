@@ -10,11 +10,11 @@
 
 #include "apparatus/estimate/estimate.hpp"
 #include "apparatus/estimate/estimate_json.hpp"
+#include "apparatus/parts/cone/cone_test.hpp"
 #include "apparatus/registry/error_estimate.hpp"
 #include "apparatus/registry/registry.hpp"
 #include "apparatus/report/summary.hpp"
 #include "apparatus/scene/load.hpp"
-#include "apparatus/slump_flow/slump_flow.hpp"
 
 // Written in JavaScript (callbacks.js). Texts are UTF-8 and the callee's to copy.
 extern "C" {
@@ -72,7 +72,7 @@ std::vector<std::string> lines_of(const std::string& text) {
 void run(const char* toml, const char* overrides, bool with_error) {
   scene::Scene scene = scene::read_text(toml, "scene.toml", lines_of(overrides));
   scene.output.frames = true;
-  if (auto* test = std::any_cast<slump_flow::Scene>(&scene.test))
+  if (auto* test = std::any_cast<cone::Scene>(&scene.test))
     test->frame_interval = std::max(page_frame_interval, test->duration / most_frames);
   scene::Observer observer = observer_of_run(0);
   observer.on_frame = [](const Frame& frame) { hand_over(frame); };

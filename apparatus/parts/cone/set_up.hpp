@@ -2,12 +2,12 @@
 
 // The filled cone before its lift, the settings of its steps, and the wall that is lifted.
 
+#include "apparatus/parts/bars.hpp"
+#include "apparatus/parts/cone/cone.hpp"
 #include "apparatus/run/body_readings.hpp"
 #include "apparatus/run/step_settings.hpp"
-#include "apparatus/slump_flow/cone.hpp"
-#include "apparatus/slump_flow/slump_flow.hpp"
 
-namespace tremie::slump_flow {
+namespace tremie::cone {
 
 using test_run::gravity;
 
@@ -41,6 +41,29 @@ Body<Geometry> filled_cone(const Scene& scene) {
   return body;
 }
 
+/// The bars of a ring, none of them on a plane of symmetry.
+inline std::vector<parts::Bar> bars_of(const Ring& ring) {
+  std::vector<parts::Bar> bars;
+  for (int k = 0; k < ring.bars; ++k) {
+    const double angle = 2.0 * std::numbers::pi * (k + 0.5) / ring.bars;
+    bars.push_back({0.5 * ring.diameter * std::cos(angle), 0.5 * ring.diameter * std::sin(angle),
+                    ring.bar_diameter, ring.height});
+  }
+  return bars;
+}
+
+/// Puts the ring of the scene into a body in space; `quarter` has the bars of the first quadrant alone.
+inline void add_ring(const Scene& scene, ImplicitBody<ThreeD>& body) {
+  if (!scene.ring) return;
+  std::vector<parts::Bar> bars = bars_of(*scene.ring);
+  if (is_quarter(scene)) std::erase_if(bars, [](const parts::Bar& b) { return b.x < 0.0 || b.y < 0.0; });
+  const auto [cell, up] = scene.model.cell;
+  if (parts::resolves_bars(cell, scene.ring->bar_diameter))
+    parts::add_resolved_bars(bars, 0.5 * std::min(cell, up), body.boundary);
+  else
+    body.bars = parts::slender_bars(bars, body.grid.axes);
+}
+
 inline StepSettings step_settings(const Scene& scene) {
   StepSettings settings = test_run::step_settings(scene.model);
   // In three dimensions the local error chooses the step once the collapse is over, from short ones on.
@@ -60,7 +83,7 @@ inline void lifted_wall(const Scene& scene, double reach, RigidWall<3>& wall) {
 }
 
 /// The two ways to run it, compiled apart.
-Outcome run_implicit(const Scene& scene, const Observer& observer);
-Outcome run_explicit(const Scene& scene, const Observer& observer);
+Outcome run_implicit(const Scene& scene, const scene::Observer& observer);
+Outcome run_explicit(const Scene& scene, const scene::Observer& observer);
 
-}  // namespace tremie::slump_flow
+}  // namespace tremie::cone

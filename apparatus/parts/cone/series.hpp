@@ -2,15 +2,18 @@
 
 // What is read off the slump flow after every step and at its end.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
+#include "apparatus/parts/cone/set_up.hpp"
+#include "apparatus/parts/cone/spread.hpp"
 #include "apparatus/run/body_readings.hpp"
-#include "apparatus/slump_flow/reading.hpp"
-#include "apparatus/slump_flow/set_up.hpp"
 
-namespace tremie::slump_flow {
+namespace tremie::cone {
 
 inline constexpr double standard_t500 = 0.5;  ///< diameter of the t500 circle [m]
 
@@ -39,17 +42,6 @@ Sample read(const Scene& scene, const Body<Geometry>& body, const StepReport& st
   return s;
 }
 
-inline void read_t500(Outcome& outcome) {
-  const auto& series = outcome.series;
-  for (std::size_t i = 1; i < series.size(); ++i) {
-    const Sample &a = series[i - 1], &b = series[i];
-    if (b.spread < standard_t500) continue;
-    const double share = (standard_t500 - a.spread) / (b.spread - a.spread);
-    outcome.results.t500 = a.time + std::clamp(share, 0.0, 1.0) * (b.time - a.time);
-    return;
-  }
-}
-
 inline void read_results(std::optional<double> stopped_at, Outcome& outcome) {
   const Sample &first = outcome.series.front(), &last = outcome.series.back();
   Results& r = outcome.results;
@@ -62,17 +54,40 @@ inline void read_results(std::optional<double> stopped_at, Outcome& outcome) {
     r.shear_rate_mean_peak = std::max(r.shear_rate_mean_peak, s.shear_rate_mean);
   r.stopped_at = stopped_at;
   if (stopped_at && *r.stopped_at > 0.0) r.mean_velocity = (r.spread - 0.2) / (2.0 * *r.stopped_at);
-  read_t500(outcome);
+  r.t500 = time_to_spread(outcome.series, standard_t500);
 }
 
-/// Adds a line to the series and shows it.
+inline constexpr double beside_the_ring = 0.05;  ///< as far beyond the bars heights are read [m]
+
+/// Mean height of the concrete between two distances from the axis [m].
+inline double mean_height(const Scene& scene, const Points<3>& points, double inner, double outer) {
+  double volume = 0.0;
+  for (std::size_t p = 0; p < points.size(); ++p)
+    if (const double r = std::hypot(points.x[p][0], points.x[p][1]); r >= inner && r < outer)
+      volume += points.volume(p);
+  return (is_quarter(scene) ? 4.0 : 1.0) * volume / (std::numbers::pi * (outer * outer - inner * inner));
+}
+
+/// Mean height inside the ring less that over the 50 mm outside of it [m].
+inline double step_at_the_ring(const Scene& scene, const Points<3>& points) {
+  const double middle = 0.5 * scene.ring->diameter, half = 0.5 * scene.ring->bar_diameter;
+  return mean_height(scene, points, 0.0, middle - half) -
+         mean_height(scene, points, middle + half, middle + half + beside_the_ring);
+}
+
+/// The next line of the series; the share of the concrete that went through a low cone's wall is kept.
 template <class Geometry>
-void record(const Scene& scene, const Body<Geometry>& body, const StepReport& step, const Observer& observer,
-            Outcome& outcome) {
-  const bool low = scene.lift_speed && rim_height(scene, outcome.series.back().time) < scene.model.cell[1];
+Sample next_line(const Scene& scene, const Body<Geometry>& body, const StepReport& step, Outcome& outcome) {
+  const bool low = scene.lift_speed && !outcome.series.empty() &&
+                   rim_height(scene, outcome.series.back().time) < scene.model.cell[1];
   if (low) outcome.results.through_the_cone = share_behind_wall(scene, body.time, body.points);
-  outcome.series.push_back(read(scene, body, step));
-  if (observer.on_step) observer.on_step(outcome.series.back());
+  return read(scene, body, step);
+}
+
+/// How a run is shown.
+inline test_run::Showing<Sample> showing(const Scene& scene) {
+  return {scene.duration, scene.frame_interval,
+          [](const Sample& s) { return fmt::format("spread {:.0f} mm", 1e3 * s.spread); }};
 }
 
 /// Whether the rim has risen clear of the concrete, so that the cone no longer holds it.
@@ -101,4 +116,4 @@ inline bool cone_is_gone(const Scene& scene, double time, const Sample& last) {
   return scene.lift_speed && rim_height(scene, time) > last.height + 0.02;
 }
 
-}  // namespace tremie::slump_flow
+}  // namespace tremie::cone

@@ -8,12 +8,12 @@
 #include <numbers>
 #include <optional>
 
-#include "apparatus/slump_flow/slump_flow.hpp"
+#include "apparatus/parts/cone/cone_test.hpp"
 #include "libmpm/boundary/rigid_wall.hpp"
 #include "libmpm/constitutive/equation_of_state.hpp"
 #include "libmpm/particles/particles.hpp"
 
-namespace tremie::slump_flow {
+namespace tremie::cone {
 
 inline double inner_radius(const Cone& cone, double z) {
   return cone.bottom_radius + (cone.top_radius - cone.bottom_radius) * z / cone.height;
@@ -139,4 +139,4 @@ inline RigidWall<3> revolved(const RigidWall<2>& section) {
   };
 }
 
-}  // namespace tremie::slump_flow
+}  // namespace tremie::cone

@@ -1,11 +1,11 @@
-#include "apparatus/slump_flow/reading.hpp"
+#include "apparatus/parts/cone/spread.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
 
-namespace tremie::slump_flow {
+namespace tremie::cone {
 namespace {
 
 /// A point belongs to the outline when this many others are less than half a cell behind it; fewer are
@@ -149,4 +149,4 @@ double spread(const Points<3>& points, double cell, bool quarter) {
 double centre_height(const Points<2>& points, double reach) { return height_within(points, reach); }
 double centre_height(const Points<3>& points, double reach) { return height_within(points, reach); }
 
-}  // namespace tremie::slump_flow
+}  // namespace tremie::cone

@@ -2,17 +2,14 @@
 
 // The slump-flow test by explicit steps: many short ones between two readings.
 
+#include "apparatus/parts/cone/checks.hpp"
+#include "apparatus/parts/cone/series.hpp"
+#include "apparatus/parts/cone/set_up.hpp"
 #include "apparatus/run/energy_watch.hpp"
-#include "apparatus/run/frames.hpp"
-#include "apparatus/run/run_checks.hpp"
-#include "apparatus/run/run_loop.hpp"
-#include "apparatus/slump_flow/checks.hpp"
-#include "apparatus/slump_flow/series.hpp"
-#include "apparatus/slump_flow/set_up.hpp"
 #include "libmpm/explicit/archived_state.hpp"
 #include "libmpm/explicit/step.hpp"
 
-namespace tremie::slump_flow {
+namespace tremie::cone {
 
 /// Simulated time between two lines of the series [s].
 inline constexpr double reading_interval = 0.02;
@@ -137,17 +134,14 @@ StepReport explicit_steps_until(double until, Body<Geometry>& body, const Law& l
 }
 
 template <class Geometry, class Law>
-Outcome run_explicit_in(const Scene& scene, const Law& law, const Observer& observer) {
+Outcome run_explicit_in(const Scene& scene, const Law& law, const scene::Observer& observer) {
   constexpr int D = Geometry::dim;
   Body<Geometry> body = filled_cone<Geometry>(scene);
   const ExplicitSettings settings = explicit_settings(scene);
-  const double start_mass = test_run::total_mass(body.points);
   RigidWall<D> wall;
   if (scene.lift_speed) lifted_wall(scene, settings.wall_gap + 0.6 * scene.model.cell[0], wall);
 
   Outcome outcome;
-  outcome.series.push_back(read(scene, body, {}));
-  if (observer.on_frame && !goes_on(observer.checkpoints)) observer.on_frame(test_run::frame_of(body));
   test_run::EnergyWatch energy(test_run::energy_of<Geometry>(body.points, body.mix.K));
   auto state = start_explicit(body, law, settings, shape_of<Geometry>(scene.model));
   write_back(state, body);  // what a run that fails at once is read from
@@ -170,19 +164,25 @@ Outcome run_explicit_in(const Scene& scene, const Law& law, const Observer& obse
                 std::max(cost.cells_active, count_active_cells<D>(body.grid.axes, body.points.x));
             return step;
           },
-      .read = [&](const StepReport& step) { record(scene, body, step, observer, outcome); },
       .frame =
           [&] {
             Frame frame = frame_from(body);
             write_back(state, body);
             return frame;
           },
+      .last_frame = [&] { return frame_from(body); },
       .speed = [](const StepReport& step) { return step.max_speed; },
       .free_to_flow = [&] { return clear_of_the_cone(scene, outcome.series.back()); },
       .gains_energy =
           [&] {
             energy.see(test_run::energy_of<Geometry>(body.points, body.mix.K), bool{wall});
             return energy.ran_away();
+          },
+      .tell =
+          [&](bool stopped, Checks& checks, Cost& cost) {
+            limits.tell(cost.steps, checks);
+            if (outcome.status == Status::completed && !stopped) tell_end(scene, body.time, checks);
+            energy.tell(checks);
           },
       .state =
           [&](Archive& archive) {
@@ -191,28 +191,16 @@ Outcome run_explicit_in(const Scene& scene, const Law& law, const Observer& obse
             visit_explicit(archive, body, state);
             if (!walled) wall = {};
           }};
-  const auto stopped_at =
-      test_run::run_loop(flow,
-                         {observer.on_frame, observer.interrupted, scene.frame_interval,
-                          test_run::frame_after(0.0, scene.frame_interval), observer.checkpoints},
-                         outcome.status, outcome.checks, outcome.cost);
-
-  read_results(stopped_at, outcome);
-  limits.tell(outcome.cost.steps, outcome.checks);
-  if (outcome.status == Status::completed && !stopped_at) tell_end(scene, body.time, outcome.checks);
-  energy.tell(outcome.checks);
-  test_run::judge(body, start_mass, outcome.checks, outcome.cost);
-  test_run::judge_volume(outcome.series.front().volume_change, outcome.checks);
-  judge_depth(scene, outcome);
-  judge_cells(scene, outcome);
-  judge_lift(outcome);
-  judge_lift_speed(scene, outcome);
-  judge_opening(scene, outcome);
-  judge_height(scene, outcome);
-  outcome.cost.bytes_per_point = explicit_bytes_per_point<D>(body.points.thixotropic());
-  outcome.final_frame = frame_from(body);
-  if (observer.on_frame) observer.on_frame(outcome.final_frame);
+  test_run::run_experiment(
+      flow, body, showing(scene), observer,
+      [&](const StepReport& step) { return next_line(scene, body, step, outcome); },
+      [&](std::optional<double> stopped_at) {
+        read_results(stopped_at, outcome);
+        add_reasons(scene, outcome);
+        outcome.cost.bytes_per_point = explicit_bytes_per_point<D>(body.points.thixotropic());
+      },
+      outcome);
   return outcome;
 }
 
-}  // namespace tremie::slump_flow
+}  // namespace tremie::cone

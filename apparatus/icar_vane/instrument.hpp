@@ -3,6 +3,7 @@
 // What the instrument would report from the torques, with the tools of the rheometer.
 
 #include <optional>
+#include <string>
 
 #include "apparatus/icar_vane/icar_vane.hpp"
 
@@ -11,6 +12,9 @@ namespace tremie::icar_vane {
 /// lambda that equation (6) gives for a torque at a speed [rev/s], with the torque that the same mix without
 /// flocculation takes as the offset; empty without thixotropy or at rest.
 std::optional<double> apparent_flocculation(const Scene& scene, double torque, double speed);
+
+/// "torque 0.512 N.m": while a run goes on.
+std::string progress_text(const Sample& sample);
 
 /// Fills the results from the series.
 void read_instrument(const Scene& scene, Outcome& outcome);

@@ -1,33 +1,13 @@
 #include <fmt/format.h>
 
 #include "apparatus/common/shared_keys.hpp"
-#include "apparatus/slump_flow/scene.hpp"
+#include "apparatus/parts/cone/readings.hpp"
 
-namespace tremie::scene {
+namespace tremie::cone {
+
+using namespace scene;
+
 namespace {
-
-/// What the paper used, where its text or its code's defaults say so (reference_data/published.toml). 15 mm
-/// cells of 2 points a direction give its 13,000 points.
-constexpr const char* paper_preset = R"([mix]
-youngs_modulus = "0.01 MPa"
-poisson_ratio  = 0.45
-[test]
-duration   = "20 s"
-lift_speed = "15 cm/s"
-[floor]
-contact = "friction"
-[model]
-space           = "full"
-yield           = "papanastasiou"
-regularisation  = "5 s"
-scheme          = "explicit_usf"
-shape           = "gimp"
-pressure        = "cell"
-precision       = "single"
-time_step       = "1e-4 s"
-cell            = "15 mm"
-points_per_cell = 2
-)";
 
 constexpr double most_points = 1e8;
 
@@ -82,15 +62,8 @@ void settle_precision(Values& values) {
                        "is \"single\", which goes with model.transfer = \"apic\" alone");
 }
 
-void settle(Values& values) {
-  settle_model(values);
-  settle_precision(values);
-  settle_mix(values);
-  settle_floor(values);
-}
-
 /// Cells must resolve the cone, and the points must fit into a computer.
-void check_cells(const Values& values, const slump_flow::Scene& scene) {
+void check_cells(const Values& values, const Scene& scene) {
   const auto [across, up] = scene.model.cell;
   if (across > scene.cone.bottom_radius || up > scene.cone.height) {
     values.fail("model.cell", fmt::format("is larger than the cone; allowed: at most [\"{}\", \"{}\"]",
@@ -113,23 +86,17 @@ void check_cells(const Values& values, const slump_flow::Scene& scene) {
 
 }  // namespace
 
-ApparatusKeys slump_flow_keys() {
-  ApparatusKeys keys{.name = "slump_flow",
-                     .help = "The slump-flow test of EN 12350-8.",
-                     .schema = mix_sections(),
-                     .presets = {{"paper", paper_preset}},
-                     .settle = settle};
-  keys.schema.push_back(cone_section());
-  keys.schema.push_back(test_section());
-  keys.schema.push_back(measured_section());
-  keys.schema.push_back(floor_section());
-  keys.schema.push_back(model_section({"axisymmetric", "quarter", "full"}));
-  keys.schema.push_back(output_section());
-  return keys;
+void settle(Values& values) {
+  settle_model(values);
+  settle_precision(values);
+  settle_mix(values);
+  settle_floor(values);
 }
 
-slump_flow::Scene slump_flow_scene(const Values& values) {
-  slump_flow::Scene scene;
+Schema sections() { return {cone_section(), test_section()}; }
+
+Scene read_scene(const Values& values) {
+  Scene scene;
   scene.mix = read_mix(values);
   scene.cone = {values.number("cone.top_radius"), values.number("cone.bottom_radius"),
                 values.number("cone.height")};
@@ -143,4 +110,4 @@ slump_flow::Scene slump_flow_scene(const Values& values) {
   return scene;
 }
 
-}  // namespace tremie::scene
+}  // namespace tremie::cone

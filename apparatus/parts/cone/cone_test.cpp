@@ -1,4 +1,4 @@
-#include "apparatus/slump_flow/slump_flow.hpp"
+#include "apparatus/parts/cone/cone_test.hpp"
 
 #include <omp.h>
 
@@ -6,10 +6,11 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "apparatus/slump_flow/explicit_run.hpp"
-#include "apparatus/slump_flow/set_up.hpp"
+#include "apparatus/parts/cone/explicit_run.hpp"
+#include "apparatus/parts/cone/set_up.hpp"
+#include "apparatus/run/passing.hpp"
 
-namespace tremie::slump_flow {
+namespace tremie::cone {
 namespace {
 
 bool is_explicit(const Model& model) { return model.scheme != SchemeKind::implicit; }
@@ -34,7 +35,7 @@ double cells_of(const Scene& scene) {
 }
 
 template <class Geometry>
-void count(const Scene& scene, Estimate& e) {
+void count(const Scene& scene, scene::Estimate& e) {
   const auto [n, n_up] = scene.model.points_per_cell;
   const double cells = cells_of(scene), in_a_cell = std::pow(n, Geometry::dim - 1) * n_up;
   test_run::count_points(
@@ -106,15 +107,15 @@ double cpu_of_a_point(const Scene& scene) {
 
 }  // namespace
 
-Outcome run(const Scene& scene, const Observer& observer) {
+Outcome run(const Scene& scene, const scene::Observer& observer) {
   refuse_what_has_no_engine(scene);
   omp_set_num_threads(scene.threads);
   return is_explicit(scene.model) ? run_explicit(scene, observer) : run_implicit(scene, observer);
 }
 
-Estimate estimate(const Scene& scene) {
+scene::Estimate estimate(const Scene& scene) {
   refuse_what_has_no_engine(scene);
-  Estimate e;
+  scene::Estimate e;
   if (scene.model.space == SpaceKind::axisymmetric)
     count<Axisymmetric>(scene, e);
   else
@@ -142,6 +143,10 @@ Estimate estimate(const Scene& scene) {
   return e;
 }
 
+std::optional<double> time_to_spread(const std::vector<Sample>& series, double diameter) {
+  return test_run::time_of_passing(series, &Sample::spread, diameter);
+}
+
 std::string spread_class(double spread) {
   const long mm = 10 * std::lround(100.0 * spread);
   if (mm >= 550 && mm <= 650) return "SF1";
@@ -150,4 +155,4 @@ std::string spread_class(double spread) {
   return "";
 }
 
-}  // namespace tremie::slump_flow
+}  // namespace tremie::cone

@@ -4,7 +4,7 @@
 
 #include "libmpm/particles/particles.hpp"
 
-namespace tremie::slump_flow {
+namespace tremie::cone {
 
 /// Twice the outermost point's radius [m].
 double spread_of_outermost_point(const Points<2>& points);
@@ -24,4 +24,4 @@ double spread_of_outermost_point(const Points<3>& points);
 double spread(const Points<3>& points, double cell, bool quarter);
 double centre_height(const Points<3>& points, double radius);
 
-}  // namespace tremie::slump_flow
+}  // namespace tremie::cone

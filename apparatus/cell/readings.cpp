@@ -1,0 +1,147 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "apparatus/cell/cell.hpp"
+#include "apparatus/common/outcome_parts.hpp"
+#include "rheometer/reference/references.hpp"
+
+namespace tremie::cell {
+
+namespace {
+
+using scene::number;
+using scene::or_nan;
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+/// A run as the rows of the table see it.
+struct View {
+  using Sample = CellSample;
+  const Scene& scene;
+  const CellResult& r;
+  const std::vector<CellSample>& series = r.samples;
+};
+
+/// The largest of the stresses [Pa]; empty where no sample has one.
+std::optional<double> largest_stress(const View& v) {
+  std::optional<double> largest;
+  for (const CellSample& s : v.series)
+    if (s.shear_stress) largest = std::max(largest.value_or(*s.shear_stress), *s.shear_stress);
+  return largest;
+}
+
+std::string shown(std::optional<double> value, const char* unit) {
+  return value ? fmt::format("{:.4g}{}", *value, unit) : "does not apply";
+}
+
+std::vector<std::string> stress_lines(const View& v) {
+  const CellSample& last = v.series.back();
+  return {"largest stress       " + shown(largest_stress(v), " Pa"),
+          "stress at the end    " + shown(last.shear_stress, " Pa"),
+          "flocculation         " + shown(last.flocculation, ""),
+          "largest error        " + shown(v.r.flocculation_error_max, " of lambda against CVODE"),
+          "hysteresis area      " + shown(v.r.hysteresis_area, " Pa/s")};
+}
+
+std::vector<std::string> comparison_lines(const View& v) {
+  if (!v.scene.cell.mix.thixotropy || has_integrated_references()) return {};
+  return {"no comparison        built without SUNDIALS: apt-get install libsundials-dev"};
+}
+
+const std::vector<scene::Reading<View>>& readings() {
+  using V = const View&;
+  using S = const CellSample&;
+  static const std::vector<scene::Reading<View>> table{
+      {.name = "stress_max_Pa",
+       .words = "largest shear stress",
+       .value = [](V v) { return number(largest_stress(v)); },
+       .digits = 1,
+       .answer = [](V) { return std::optional<std::string>("largest stress"); },
+       .lines = stress_lines},
+      {.name = "stress_end_Pa",
+       .words = "shear stress at the end",
+       .value = [](V v) { return number(v.series.back().shear_stress); },
+       .digits = 1,
+       .answer = [](V) { return std::optional<std::string>("at the end"); }},
+      {.name = "flocculation_end",
+       .words = "flocculation state λ at the end",
+       .value = [](V v) { return number(v.series.back().flocculation); }},
+      {.name = "hysteresis_area_Pa_per_s",
+       .words = "area of the hysteresis loop",
+       .value = [](V v) { return number(v.r.hysteresis_area); }},
+      {.name = "flocculation_error_max",
+       .words = "largest difference of λ from CVODE",
+       .value = [](V v) { return number(v.r.flocculation_error_max); },
+       .lines = comparison_lines},
+      {.name = "time_s", .words = "time since the start of the test", .at = [](V, S s) { return s.time; }},
+      {.name = "shear_rate_per_s", .at = [](V, S s) { return s.shear_rate; }},
+      {.name = "shear_stress_Pa", .at = [](V, S s) { return or_nan(s.shear_stress); }},
+      {.name = "flocculation",
+       .words = "flocculation state λ",
+       .at = [](V, S s) { return or_nan(s.flocculation); }},
+      {.name = "flocculation_reference", .words = "flocculation state λ by CVODE", .at = [](V, S s) {
+         return or_nan(s.flocculation_reference);
+       }}};
+  return table;
+}
+
+/// A reason where the update of the flocculation state is off its reference.
+std::string update_is_off(const View& v) {
+  double largest = 0.0;
+  for (const CellSample& s : v.series) largest = std::max(largest, s.flocculation_reference.value_or(0.0));
+  const auto& error = v.r.flocculation_error_max;
+  if (!error || !(*error > 0.01 * std::max(largest, 1e-6))) return {};
+  return fmt::format(
+      "the flocculation's update is {:.2g} off CVODE, more than 1 % of its largest value: a "
+      "smaller model.time_step",
+      *error);
+}
+
+std::vector<scene::Chart> charts_of(const View& v) {
+  std::vector<scene::Chart> charts;
+  const std::string name = v.scene.name + ": ";
+  if (largest_stress(v))
+    charts = {
+        {"flow_curve.svg",
+         name + "flow curve",
+         "shear rate (1/s)",
+         "shear stress (Pa)",
+         {"shear_stress_Pa"},
+         {},
+         {},
+         "",
+         "shear_rate_per_s"},
+        {"stress.svg", name + "shear stress", "time (s)", "shear stress (Pa)", {"shear_stress_Pa"}, {}}};
+  if (v.scene.cell.mix.thixotropy)
+    charts.push_back({"flocculation.svg",
+                      name + "flocculation",
+                      "time (s)",
+                      "flocculation state λ",
+                      {"flocculation"},
+                      {}});
+  return charts;
+}
+
+}  // namespace
+
+std::vector<scene::Described> glossary() { return described(readings()); }
+
+scene::Outcome outcome(const Scene& scene, const CellResult& result) {
+  const View view{scene, result};
+  scene::Outcome o;
+  o.apparatus = "cell";
+  read_into(readings(), view, o);
+  o.asked = scene.name + ", one material cell";
+  o.checks.volume_change = o.checks.mass_error = o.checks.max_speed_end = none;  // a cell has none
+  scene::add_reasons<View>({update_is_off}, view, o.checks.reasons);
+  o.cost.steps = result.steps;
+  o.cost.points = 1;
+  o.cost.simulated = result.samples.back().time;
+  o.charts = charts_of(view);
+  return o;
+}
+
+}  // namespace tremie::cell

@@ -1,0 +1,200 @@
+// The J-ring: the cone is lifted inside a ring of bars, and the spread and the step that the bars make are read. The spread
+// without the ring comes from a second run of the same scene.
+
+#include "apparatus/j_ring/apparatus.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "apparatus/common/shared_keys.hpp"
+#include "apparatus/parts/bars.hpp"
+#include "apparatus/parts/cone/readings.hpp"
+
+namespace tremie::j_ring {
+
+using namespace scene;
+
+namespace {
+
+Section ring_section() {
+  return {
+      .name = "ring",
+      .help =
+          "Bars on a circle about the cone; the defaults are EN 12350-12's narrow gaps (wide ones: 12 bars).",
+      .keys = {{.name = "bars", .kind = Kind::integer, .range = between(4, 64), .fallback = "16"},
+               {.name = "bar_diameter", .range = positive, .fallback = "18 mm"},
+               {.name = "diameter",
+                .range = positive,
+                .fallback = "300 mm",
+                .help = "of the circle through the bars' middles"}}};
+}
+
+void settle(Values& values) {
+  cone::settle(values);
+  if (values.word("model.scheme") != "implicit")
+    values.fail("model.scheme", "explicit steps do not know bars; allowed: \"implicit\"");
+  if (values.word("model.method") == "newton")
+    values.fail("model.method", "\"newton\" does not know bars; allowed: \"auto\" or \"admm\"");
+  const auto bars = values.integer("ring.bars");
+  if (values.word("model.space") == "quarter" && bars % 4 != 0)
+    values.fail(
+        "ring.bars",
+        fmt::format("{} bars do not repeat in each quadrant; allowed in a quarter: a multiple of 4", bars));
+}
+
+ApparatusKeys keys() {
+  ApparatusKeys keys{.name = "j_ring",
+                     .help = "The J-ring test of EN 12350-12.",
+                     .schema = mix_sections(),
+                     .presets = {},
+                     .settle = settle};
+  for (const Section& section : cone::sections()) keys.schema.push_back(section);
+  keys.schema.push_back(ring_section());
+  keys.schema.push_back(floor_section());
+  keys.schema.push_back(model_section({"quarter", "full"}));
+  keys.schema.push_back(output_section());
+  return keys;
+}
+
+/// The bars must stand clear of the cone and of each other.
+void check_ring(const Values& values, const cone::Scene& scene) {
+  const cone::Ring& ring = *scene.ring;
+  const double inside = ring.diameter - ring.bar_diameter, foot = 2.0 * scene.cone.bottom_radius;
+  if (inside <= foot)
+    values.fail("ring.diameter",
+                fmt::format("the bars stand in the cone; allowed: more than \"{}\", its foot and a bar",
+                            write_quantity(foot + ring.bar_diameter, Dimension::length)));
+  const double apart = ring.diameter * std::sin(3.141592653589793 / ring.bars);
+  if (apart <= ring.bar_diameter)
+    values.fail("ring.bar_diameter", fmt::format("the bars touch each other; allowed: less than \"{}\"",
+                                                 write_quantity(apart, Dimension::length)));
+}
+
+cone::Scene read_scene(const Values& values) {
+  cone::Scene scene = cone::read_scene(values);
+  scene.ring = cone::Ring{.bars = static_cast<int>(values.integer("ring.bars")),
+                          .bar_diameter = values.number("ring.bar_diameter"),
+                          .diameter = values.number("ring.diameter")};
+  check_ring(values, scene);
+  return scene;
+}
+
+/// A run with the ring beside one without.
+struct View : cone::View {
+  const cone::Outcome& plain;
+};
+
+std::optional<double> spread_lost(const View& v) {
+  if (v.status != Status::completed || v.plain.status != Status::completed) return std::nullopt;
+  return v.plain.results.spread - v.r.spread;
+}
+
+const std::vector<Reading<View>>& readings() {
+  using V = const View&;
+  using S = const cone::Sample&;
+  static const auto table = [] {
+    Reading<View> t500 = cone::time_row<View>("t500_s", "t500, time to a diameter of 500 mm", "t500",
+                                              [](V v) { return number(v.r.t500); });
+    t500.headline = 3;
+    return table_of<View>(
+        time_column<View>(),
+        Rows<View>{cone::spread_row<View>(),
+                   t500,
+                   {.name = "step_mm",
+                    .words = "step, mean height inside the ring less that over 50 mm outside of it",
+                    .value = [](V v) { return number(v.r.step, mm); },
+                    .label = "step",
+                    .digits = 1,
+                    .answer = [](V) { return std::optional<std::string>("step"); },
+                    .headline = 2,
+                    .headline_digits = 1,
+                    .measurable = true},
+                   {.name = "spread_lost_mm",
+                    .words = "spread without the ring less that with it",
+                    .value = [](V v) { return number(spread_lost(v), mm); },
+                    .label = "spread lost",
+                    .none = [](V) { return std::string("not known: a run did not come to its end"); },
+                    .measurable = true},
+                   {.name = "height_mm",
+                    .words = "height at the centre",
+                    .value = [](V v) { return number(v.r.height, mm); },
+                    .at = [](V, S s) { return s.height * mm; }}},
+        stopped_row<View>(), flocculation_rows<View>(), motion_columns<View>(), step_columns<View>());
+  }();
+  return table;
+}
+
+/// The fastest that the concrete came through the bars: half of the spread's rate beyond the ring [m/s].
+double speed_at_the_bars(const View& v) {
+  double speed = 0.0;
+  for (std::size_t i = 1; i < v.series.size(); ++i)
+    if (v.series[i].spread > v.scene.ring->diameter && v.series[i].time > v.series[i - 1].time)
+      speed = std::max(speed, 0.5 * (v.series[i].spread - v.series[i - 1].spread) /
+                                  (v.series[i].time - v.series[i - 1].time));
+  return speed;
+}
+
+std::string inertia_at_the_bars(const View& v) {
+  return parts::bars_with_inertia(v.scene.mix, v.scene.model.law, speed_at_the_bars(v),
+                                  v.scene.ring->bar_diameter);
+}
+std::string wide_cells_at_the_bars(const View& v) {
+  return parts::cells_between_bars(v.scene.model.cell[0], v.scene.ring->bar_diameter);
+}
+
+/// The same scene without the ring; its progress is shown, its frames are nobody's.
+cone::Outcome run_without_ring(cone::Scene scene, const Observer& observer) {
+  scene.ring.reset();
+  return cone::run(
+      scene, {.on_progress = observer.on_progress, .on_frame = {}, .interrupted = observer.interrupted});
+}
+
+Outcome run(const cone::Scene& scene, const RunOptions& options, const Observer& observer) {
+  const cone::Outcome plain = run_without_ring(scene, observer), raw = cone::run(scene, observer);
+  const View view{{scene, raw}, plain};
+  Outcome outcome = outcome_of(raw);
+  read_into(readings(), view, outcome);
+  add_reasons<View>({inertia_at_the_bars, wide_cells_at_the_bars}, view, outcome.checks.reasons);
+  for (const std::string& reason : plain.checks.reasons)
+    outcome.checks.reasons.push_back("without the ring: " + reason);
+  outcome.asked = asked_text(options.measured.name, "J-ring", rest_told(scene));
+  outcome.moving_at_end = !raw.results.stopped_at;
+  if (raw.results.spread < scene.ring->diameter && !outcome.moving_at_end)
+    outcome.remarks.push_back(
+        "The concrete stopped before it reached the bars: the ring took nothing from it.");
+  outcome.remarks.push_back(
+      "The bars are a drag on a fluid: no stone can block them. What concrete loses by blocking is more than "
+      "this.");
+  outcome.stage = cone::stage_of(scene);
+  outcome.charts = cone::charts_of(scene, {});
+  return outcome;
+}
+
+std::vector<std::string> uses(const cone::Scene& scene) {
+  std::vector<std::string> lines = cone::uses(scene);
+  const bool resolved = parts::resolves_bars(scene.model.cell[0], scene.ring->bar_diameter);
+  lines.push_back(fmt::format("ring: {} bars of {:g} mm, {}; a second run without them", scene.ring->bars,
+                              mm * scene.ring->bar_diameter, resolved ? "resolved" : "by their drag"));
+  return lines;
+}
+
+/// Twice the steps: with the ring and without.
+Estimate estimate(const cone::Scene& scene) {
+  Estimate e = cone::estimate(scene);
+  e.steps *= 2, e.steps_expected *= 2, e.time_expected *= 2.0;
+  return e;
+}
+
+}  // namespace
+
+Apparatus apparatus() {
+  return make_apparatus<cone::Scene>({.keys = keys(),
+                                      .words = "J-ring",
+                                      .headlines = headlines_of(readings()),
+                                      .glossary = described(readings())},
+                                     read_scene, uses, run, estimate);
+}
+
+}  // namespace tremie::j_ring

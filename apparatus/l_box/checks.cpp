@@ -1,0 +1,115 @@
+#include "apparatus/l_box/checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "apparatus/common/readings.hpp"
+#include "apparatus/l_box/reading.hpp"
+
+namespace tremie::l_box {
+namespace {
+
+/// The last line of the series that is at least standing_lasts old; the end of the series where there is none.
+std::vector<Sample>::const_iterator line_before(const std::vector<Sample>& series) {
+  const auto old = std::find_if(series.rbegin(), series.rend(), [&](const Sample& s) {
+    return s.time <= series.back().time - standing_lasts;
+  });
+  return old == series.rend() ? series.end() : std::prev(old.base());
+}
+
+/// What H1 exceeds H2 by in a bed of depth h at rest, `length` between the two, where it flowed as far as its yield
+/// stress lets it: floor and side walls hold tau_0 (1 + 2 h/W) of rho g h dh/dx, and the bars their own [m].
+double drop_at_rest(const Scene& scene, double h, double length) {
+  const double floor_and_walls = (1.0 / h + (scene.side_walls_slip ? 0.0 : 2.0 / scene.box.width)) * length;
+  const double bars = bar_yield_drag * scene.bars * bar_diameter / scene.box.width;
+  return scene.mix.tau_0 / (scene.mix.density * test_run::gravity) * (floor_and_walls + bars);
+}
+
+/// The fastest that the front was [m/s].
+double fastest_front(const std::vector<Sample>& series) {
+  double speed = 0.0;
+  for (std::size_t i = 1; i < series.size(); ++i)
+    if (series[i].time > series[i - 1].time)
+      speed =
+          std::max(speed, (series[i].front - series[i - 1].front) / (series[i].time - series[i - 1].time));
+  return speed;
+}
+
+std::string inertia_at_the_bars(const Judged& j) {
+  if (j.scene.bars == 0) return {};
+  return parts::bars_with_inertia(j.scene.mix, j.scene.model.law, fastest_front(j.run.series), bar_diameter);
+}
+
+/// The drag of a bar between cells that resolve it and those for which it was measured; and a gap wants two cells.
+std::string wide_cells_at_the_bars(const Judged& j) {
+  return j.scene.bars > 0 ? parts::cells_between_bars(j.scene.model.cell[0], bar_diameter) : std::string{};
+}
+
+/// Depths and how far they reach are the grid's where a few cells make them: below these the passing ratio is
+/// up to 40 % off (lbox_cells.md).
+constexpr double least_behind_the_gate = 3.5, least_at_the_end = 1.0, least_along = 3.0;  // [cells]
+
+std::string few_cells(const Judged& j) {
+  const auto [across, up] = j.scene.model.cell;
+  const Results& r = j.run.results;
+  const char* mend = ": a smaller model.cell";
+  if (r.h1 < least_behind_the_gate * up)
+    return fmt::format("the concrete behind the gate is {:.2g} cells deep, less than {:.2g}{}", r.h1 / up,
+                       least_behind_the_gate, mend);
+  if (r.h2 && *r.h2 < least_at_the_end * up)
+    return fmt::format("the concrete at the channel's end is thinner than a cell, {:.3g} mm{}", 1e3 * *r.h2,
+                       mend);
+  if (j.scene.box.column_length < least_along * across)
+    return fmt::format("the column is {:.2g} cells long, less than {:.2g}{}",
+                       j.scene.box.column_length / across, least_along, mend);
+  return {};
+}
+
+/// In space a thin bed of a fluid mix may level beyond what its yield stress lets it, on cells with few points, or stop
+/// before cells that fast flow left half full have been mended (lbox_bars.md): at 50 Pa the drop is 1.16 times what the
+/// yield stress holds, with bars and without, at 20 Pa 1.37 and 1.63 times, and the ratio 0.07 and 0.15 too small.
+std::string wrong_level(const Judged& j) {
+  constexpr double least = 0.6, most = 1.3;
+  const Results& r = j.run.results;
+  if (j.run.status != Status::completed || !r.h2 || !in_space(j.scene)) return {};
+  const Stretch gate = behind_the_gate(j.scene.box), end = at_the_end(j.scene.box);
+  const double length = 0.5 * (end.low + end.high - gate.low - gate.high);
+  const double right = drop_at_rest(j.scene, 0.5 * (r.h1 + *r.h2), length);
+  const double drop = r.h1 - *r.h2;
+  const bool stopped_early = r.stopped_at && drop > most * right;
+  if (drop >= least * right && !stopped_early) return {};
+  return fmt::format(
+      "the bed {} H1 - H2 = {:.2g} mm, and its yield stress holds {:.2g} mm: {}model.space = "
+      "\"plane_with_side_walls\" tells such fluid mixes better",
+      stopped_early ? "stopped at" : "has levelled to", 1e3 * drop, 1e3 * right,
+      stopped_early ? "cells at the channel's end are not full; " : "");
+}
+
+}  // namespace
+
+std::optional<double> stands_since(const std::vector<Sample>& series) {
+  const auto old = line_before(series);
+  if (old == series.end()) return std::nullopt;
+  const auto moved = [](double a, double b) { return std::abs(a - b) > standing_within; };
+  for (auto s = old; s != series.end(); ++s)
+    if (moved(s->h1, old->h1) || moved(s->front, old->front) || s->h2.has_value() != old->h2.has_value() ||
+        (s->h2 && moved(*s->h2, *old->h2)))
+      return std::nullopt;
+  return old->time;
+}
+
+std::optional<double> ratio_change(const std::vector<Sample>& series) {
+  const auto old = line_before(series);
+  const Sample& last = series.back();
+  if (old == series.end() || !old->h2 || !last.h2 || old->h1 <= 0.0 || last.h1 <= 0.0) return std::nullopt;
+  return (*last.h2 / last.h1 - *old->h2 / old->h1) / (last.time - old->time);
+}
+
+void add_reasons(const Scene& scene, Outcome& outcome) {
+  scene::add_reasons<Judged>({inertia_at_the_bars, wide_cells_at_the_bars, few_cells, wrong_level},
+                             {scene, outcome}, outcome.checks.reasons);
+}
+
+}  // namespace tremie::l_box

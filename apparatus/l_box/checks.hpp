@@ -1,0 +1,31 @@
+#pragma once
+
+// When an L-box stands, how its ratio still changes, and why a result is not to be trusted.
+
+#include <optional>
+#include <vector>
+
+#include "apparatus/l_box/l_box.hpp"
+
+namespace tremie::l_box {
+
+/// A box stands where its depths and its front have moved by less than this for so long: what a person with a rule
+/// sees. Films on the walls in space drain for as long as one looks.
+inline constexpr double standing_within = 1e-3, standing_lasts = 30.0;  // [m], [s]
+
+/// Since when the box stands [s]; empty while it does not.
+std::optional<double> stands_since(const std::vector<Sample>& series);
+
+/// Change of H2/H1 over the last standing_lasts [1/s]; empty where there was none that long ago.
+std::optional<double> ratio_change(const std::vector<Sample>& series);
+
+/// A run and its scene, as the checks look at them.
+struct Judged {
+  const Scene& scene;
+  const Outcome& run;
+};
+
+/// Adds the reasons of all checks.
+void add_reasons(const Scene& scene, Outcome& outcome);
+
+}  // namespace tremie::l_box

@@ -1,0 +1,70 @@
+#pragma once
+
+// An experiment from its first line to its last frame: what every apparatus does around the loop.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apparatus/common/outcome.hpp"
+#include "apparatus/run/frames.hpp"
+#include "apparatus/run/run_checks.hpp"
+#include "apparatus/run/run_loop.hpp"
+#include "apparatus/run/step_settings.hpp"
+
+namespace tremie::test_run {
+
+/// What an apparatus' own run hands back, in SI units. SampleOfRun: a line of the series, with its `time` and `time_step` [s].
+template <class ResultsOfRun, class SampleOfRun>
+struct Record {
+  using Sample = SampleOfRun;
+  Status status = Status::completed;
+  ResultsOfRun results = {};
+  Checks checks = {};
+  Cost cost = {};
+  std::vector<Sample> series =
+      {};  ///< every step; the start included where the test has something to read then
+  Frame final_frame = {};
+};
+
+/// How long an experiment takes at most and who sees what of it.
+template <class Sample>
+struct Showing {
+  double duration = 0.0, frame_interval = 0.0;  ///< [s]; interval 0: chosen (frame_times.hpp)
+  std::string (*progress)(const Sample&);       ///< "spread 412 mm"
+  bool from_start = true;  ///< whether the series and the frames begin before the first step
+};
+
+/// Runs the flow. `read(step)` makes a line of the series, `finish(stopped_at)` reads the results at the end, from the body too,
+/// and adds the apparatus' own reasons to those that are judged here.
+template <class Geometry, class RecordOfRun, class Read, class Finish>
+void run_experiment(const Flow& flow, Body<Geometry>& body,
+                    const Showing<typename RecordOfRun::Sample>& showing, const scene::Observer& observer,
+                    Read read, Finish finish, RecordOfRun& record) {
+  const double start_mass = total_mass(body.points), start_volume_change = volume_change(body.points);
+  if (showing.from_start) {
+    record.series.push_back(read(StepReport{}));
+    if (observer.on_frame && observer.all_frames && !goes_on(observer.checkpoints))
+      observer.on_frame(flow.frame());
+  }
+  const auto read_and_show = [&](const StepReport& step) {
+    const auto& sample = record.series.emplace_back(read(step));
+    if (observer.on_progress)
+      observer.on_progress({sample.time, showing.duration, sample.time_step, showing.progress(sample)});
+  };
+  const auto stopped_at = run_loop(flow, read_and_show, observer, showing.frame_interval,
+                                   showing.from_start ? frame_after(0.0, showing.frame_interval) : 0.0,
+                                   record.status, record.checks, record.cost);
+  if (record.series.empty()) record.series.emplace_back();  // the first step failed
+  if (flow.tell) flow.tell(stopped_at.has_value(), record.checks, record.cost);
+  judge(body, start_mass, record.checks, record.cost);
+  if (showing.from_start) judge_volume(start_volume_change, record.checks);
+  finish(stopped_at);
+  record.final_frame = flow.last_frame ? flow.last_frame() : flow.frame();
+  if (observer.on_frame) observer.on_frame(record.final_frame);
+}
+
+/// Whether the schedule of a flow of this duration has time left [s].
+inline bool has_time_left(double time, double duration) { return time < duration * (1.0 - 1e-12); }
+
+}  // namespace tremie::test_run
