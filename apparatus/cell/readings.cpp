@@ -66,23 +66,19 @@ const std::vector<scene::Reading<View>>& readings() {
        .value = [](V v) { return number(v.series.back().shear_stress); },
        .digits = 1,
        .answer = [](V) { return std::optional<std::string>("at the end"); }},
-      {.name = "flocculation_end",
-       .words = "flocculation state λ at the end",
-       .value = [](V v) { return number(v.series.back().flocculation); }},
-      {.name = "hysteresis_area_Pa_per_s",
-       .words = "area of the hysteresis loop",
-       .value = [](V v) { return number(v.r.hysteresis_area); }},
+      {"flocculation_end", "flocculation state λ at the end",
+       [](V v) { return number(v.series.back().flocculation); }},
+      {"hysteresis_area_Pa_per_s", "area of the hysteresis loop",
+       [](V v) { return number(v.r.hysteresis_area); }},
       {.name = "flocculation_error_max",
        .words = "largest difference of λ from CVODE",
        .value = [](V v) { return number(v.r.flocculation_error_max); },
        .lines = comparison_lines},
-      {.name = "time_s", .words = "time since the start of the test", .at = [](V, S s) { return s.time; }},
-      {.name = "shear_rate_per_s", .at = [](V, S s) { return s.shear_rate; }},
-      {.name = "shear_stress_Pa", .at = [](V, S s) { return or_nan(s.shear_stress); }},
-      {.name = "flocculation",
-       .words = "flocculation state λ",
-       .at = [](V, S s) { return or_nan(s.flocculation); }},
-      {.name = "flocculation_reference", .words = "flocculation state λ by CVODE", .at = [](V, S s) {
+      {"time_s", "time since the start of the test", {}, [](V, S s) { return s.time; }},
+      {"shear_rate_per_s", "", {}, [](V, S s) { return s.shear_rate; }},
+      {"shear_stress_Pa", "", {}, [](V, S s) { return or_nan(s.shear_stress); }},
+      {"flocculation", "flocculation state λ", {}, [](V, S s) { return or_nan(s.flocculation); }},
+      {"flocculation_reference", "flocculation state λ by CVODE", {}, [](V, S s) {
          return or_nan(s.flocculation_reference);
        }}};
   return table;

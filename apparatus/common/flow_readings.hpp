@@ -23,9 +23,8 @@ using Rows = std::vector<Reading<View>>;
 
 template <class View>
 Rows<View> time_column() {
-  return {{.name = "time_s",
-           .words = "time since the start of the test",
-           .at = [](const View&, const auto& s) { return s.time; }}};
+  return {
+      {"time_s", "time since the start of the test", {}, [](const View&, const auto& s) { return s.time; }}};
 }
 
 template <class View>
@@ -35,9 +34,10 @@ bool is_thixotropic(const View& v) {
 
 template <class View>
 Rows<View> shear_columns() {
-  return {{.name = "shear_rate_mean_per_s",
-           .words = "shear rate, volume mean",
-           .at = [](const View&, const auto& s) { return s.shear_rate_mean; }},
+  return {{"shear_rate_mean_per_s",
+           "shear rate, volume mean",
+           {},
+           [](const View&, const auto& s) { return s.shear_rate_mean; }},
           {.name = "flocculation_mean",
            .words = "flocculation state λ, volume mean",
            .at = [](const View&, const auto& s) { return or_nan(s.flocculation_mean); },
@@ -47,21 +47,21 @@ Rows<View> shear_columns() {
 /// Of a flow of points: largest speed, shear rate, flocculation, volume.
 template <class View>
 Rows<View> motion_columns() {
-  return table_of<View>(Rows<View>{{.name = "max_speed_m_per_s",
-                                    .words = "largest speed",
-                                    .at = [](const View&, const auto& s) { return s.max_speed; }}},
-                        shear_columns<View>(),
-                        Rows<View>{{.name = "volume_change",
-                                    .words = "change of volume, ΣV/V0 − 1",
-                                    .at = [](const View&, const auto& s) { return s.volume_change; }}});
+  return table_of<View>(
+      Rows<View>{
+          {"max_speed_m_per_s", "largest speed", {}, [](const View&, const auto& s) { return s.max_speed; }}},
+      shear_columns<View>(),
+      Rows<View>{{"volume_change", "change of volume, ΣV/V0 − 1", {}, [](const View&, const auto& s) {
+                    return s.volume_change;
+                  }}});
 }
 
 template <class View>
 Rows<View> step_columns() {
-  return {{.name = "time_step_s", .at = [](const View&, const auto& s) { return s.time_step; }},
-          {.name = "iterations",
-           .words = "iterations of the yield method in the step",
-           .at = [](const View&, const auto& s) { return static_cast<double>(s.iterations); }}};
+  return {{"time_step_s", "", {}, [](const View&, const auto& s) { return s.time_step; }},
+          {"iterations", "iterations of the yield method in the step", {}, [](const View&, const auto& s) {
+             return static_cast<double>(s.iterations);
+           }}};
 }
 
 template <class View>
@@ -83,9 +83,8 @@ Rows<View> flocculation_rows() {
                  return flocculation_lines(v.series.front().flocculation_mean,
                                            v.series.back().flocculation_mean);
                }},
-          {.name = "flocculation_mean_end",
-           .words = "flocculation state λ at the end, mean",
-           .value = [](const View& v) { return number(v.series.back().flocculation_mean); }}};
+          {"flocculation_mean_end", "flocculation state λ at the end, mean",
+           [](const View& v) { return number(v.series.back().flocculation_mean); }}};
 }
 
 /// "not reached yet" of a run that ended early, "never reached" of another.

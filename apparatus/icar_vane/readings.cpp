@@ -165,12 +165,10 @@ Rows<View> torque_rows() {
        .headline_digits = 4,
        .measurable = true,
        .lines = agreement_lines},
-      {.name = "torque_wall_end_N_m",
-       .words = "torque on the container at the end",
-       .value = [](V v) { return number(v.r.torque_wall_end); }},
-      {.name = "torque_power_end_N_m", .words = "dissipated power over speed at the end", .value = [](V v) {
-         return number(v.r.torque_power_end);
-       }}};
+      {"torque_wall_end_N_m", "torque on the container at the end",
+       [](V v) { return number(v.r.torque_wall_end); }},
+      {"torque_power_end_N_m", "dissipated power over speed at the end",
+       [](V v) { return number(v.r.torque_power_end); }}};
 }
 
 Rows<View> instrument_rows() {
@@ -183,34 +181,26 @@ Rows<View> instrument_rows() {
            .words = "plastic viscosity by Reiner-Riwlin, as the instrument reports",
            .value = [](V v) { return number(v.r.reiner_riwlin->plastic_viscosity); },
            .applies = has_curve},
-          {.name = "flocculation_apparent_start",
-           .words = "flocculation state λ at the start, as read off the torque",
-           .value = [](V v) { return number(v.r.flocculation_apparent_start); }},
-          {.name = "alpha_apparent",
-           .words = "α as read off the decay",
-           .value = [](V v) { return number(v.r.alpha_apparent); }},
-          {.name = "alpha_window_s",
-           .words = "time over which α is read",
-           .value = [](V v) { return number(if_alpha(v, v.r.alpha_window)); }},
-          {.name = "shear_rate_nominal_per_s",
-           .words = "nominal shear rate 2Ω/(1 − r²/R²), by which α is read",
-           .value =
-               [](V v) {
-                 return number(v.scene.speeds.empty() ? std::optional(v.r.shear_rate_nominal) : std::nullopt);
-               }},
-          {.name = "static_yield_stress_apparent_Pa",
-           .words = "T/(2πr²h) at the peak: apparent static yield stress",
-           .value = [](V v) { return number(v.r.static_yield_stress_apparent); }},
-          {.name = "dynamic_yield_stress_apparent_Pa",
-           .words = "T/(2πr²h) at the end: apparent, with viscous part and flocculation left",
-           .value = [](V v) { return number(v.r.dynamic_yield_stress_apparent); }},
+          {"flocculation_apparent_start", "flocculation state λ at the start, as read off the torque",
+           [](V v) { return number(v.r.flocculation_apparent_start); }},
+          {"alpha_apparent", "α as read off the decay", [](V v) { return number(v.r.alpha_apparent); }},
+          {"alpha_window_s", "time over which α is read",
+           [](V v) { return number(if_alpha(v, v.r.alpha_window)); }},
+          {"shear_rate_nominal_per_s", "nominal shear rate 2Ω/(1 − r²/R²), by which α is read",
+           [](V v) {
+             return number(v.scene.speeds.empty() ? std::optional(v.r.shear_rate_nominal) : std::nullopt);
+           }},
+          {"static_yield_stress_apparent_Pa", "T/(2πr²h) at the peak: apparent static yield stress",
+           [](V v) { return number(v.r.static_yield_stress_apparent); }},
+          {"dynamic_yield_stress_apparent_Pa",
+           "T/(2πr²h) at the end: apparent, with viscous part and flocculation left",
+           [](V v) { return number(v.r.dynamic_yield_stress_apparent); }},
           {.name = "torque_couette_reference_N_m",
            .words = "torque of a solid cylinder in the same container (Couette flow)",
            .value = [](V v) { return number(v.r.torque_couette_reference); },
            .lines = cylinder_lines},
-          {.name = "torque_plane_N_m",
-           .words = "torque of the plane section times the height",
-           .value = [](V v) { return number(v.r.torque_plane); }},
+          {"torque_plane_N_m", "torque of the plane section times the height",
+           [](V v) { return number(v.r.torque_plane); }},
           {.name = "end_factor",
            .words = "torque over that of the plane section",
            .value = [](V v) { return number(v.r.end_factor); },
@@ -223,26 +213,21 @@ Rows<View> input_rows() {
            .words = "yield stress that went in",
            .value = [](V v) { return ResultValue(v.in.yield_stress); },
            .lines = comparison_lines},
-          {.name = "input.plastic_viscosity_Pa_s",
-           .words = "plastic viscosity that went in",
-           .value = [](V v) { return number(v.in.plastic_viscosity); }},
-          {.name = "input.flocculation_start",
-           .words = "flocculation state λ that went in",
-           .value = [](V v) { return number(v.in.flocculation); }},
-          {.name = "input.static_yield_stress_Pa",
-           .words = "static yield stress that went in",
-           .value = [](V v) { return ResultValue(v.in.static_yield_stress); }},
-          {.name = "input.destructuration", .words = "α that went in", .value = [](V v) {
-             return number(v.in.alpha);
-           }}};
+          {"input.plastic_viscosity_Pa_s", "plastic viscosity that went in",
+           [](V v) { return number(v.in.plastic_viscosity); }},
+          {"input.flocculation_start", "flocculation state λ that went in",
+           [](V v) { return number(v.in.flocculation); }},
+          {"input.static_yield_stress_Pa", "static yield stress that went in",
+           [](V v) { return ResultValue(v.in.static_yield_stress); }},
+          {"input.destructuration", "α that went in", [](V v) { return number(v.in.alpha); }}};
 }
 
 Rows<View> torque_columns() {
-  return {{.name = "speed_rev_per_s", .words = "speed of the vane", .at = [](V, S x) { return x.speed; }},
-          {.name = "torque_N_m", .words = "torque on the blades", .at = [](V, S x) { return x.torque; }},
-          {.name = "torque_wall_N_m", .at = [](V, S x) { return x.torque_wall; }},
-          {.name = "torque_power_N_m", .at = [](V, S x) { return x.torque_power; }},
-          {.name = "momentum_rate_N_m", .at = [](V, S x) { return x.momentum_rate; }}};
+  return {{"speed_rev_per_s", "speed of the vane", {}, [](V, S x) { return x.speed; }},
+          {"torque_N_m", "torque on the blades", {}, [](V, S x) { return x.torque; }},
+          {"torque_wall_N_m", "", {}, [](V, S x) { return x.torque_wall; }},
+          {"torque_power_N_m", "", {}, [](V, S x) { return x.torque_power; }},
+          {"momentum_rate_N_m", "", {}, [](V, S x) { return x.momentum_rate; }}};
 }
 
 const std::vector<Reading<View>>& readings() {

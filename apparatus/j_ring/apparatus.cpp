@@ -117,10 +117,8 @@ const std::vector<Reading<View>>& readings() {
                     .label = "spread lost",
                     .none = [](V) { return std::string("not known: a run did not come to its end"); },
                     .measurable = true},
-                   {.name = "height_mm",
-                    .words = "height at the centre",
-                    .value = [](V v) { return number(v.r.height, mm); },
-                    .at = [](V, S s) { return s.height * mm; }}},
+                   {"height_mm", "height at the centre", [](V v) { return number(v.r.height, mm); },
+                    [](V, S s) { return s.height * mm; }}},
         stopped_row<View>(), flocculation_rows<View>(), motion_columns<View>(), step_columns<View>());
   }();
   return table;

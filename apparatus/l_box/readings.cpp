@@ -96,9 +96,7 @@ Reading<View> time_row(const char* name, const char* words, const char* label,
 Rows<View> depth_rows() {
   using V = const View&;
   using S = const Sample&;
-  return {{.name = "front_mm",
-           .words = "distance of the front from the gate",
-           .at = [](V, S s) { return s.front * mm; }},
+  return {{"front_mm", "distance of the front from the gate", {}, [](V, S s) { return s.front * mm; }},
           {.name = "h1_mm",
            .words = "H1, depth behind the gate",
            .value = [](V v) { return number(v.r.h1, mm); },
@@ -136,9 +134,8 @@ Rows<View> ratio_rows() {
        .headline_digits = 3,
        .measurable = true,
        .lines = [](V v) { return std::vector{ratio_line(v)}; }},
-      {.name = "passing_ratio_change_per_min",
-       .words = "change of the passing ratio over the last 30 s, a minute",
-       .value = [](V v) { return number(v.r.ratio_change, 60.0); }},
+      {"passing_ratio_change_per_min", "change of the passing ratio over the last 30 s, a minute",
+       [](V v) { return number(v.r.ratio_change, 60.0); }},
       time_row("t200_s", "t200, front 200 mm from the gate", "t200", [](V v) { return number(v.r.t200); }),
       t400,
       {.name = "class_en12350_10",
@@ -159,9 +156,8 @@ const std::vector<Reading<View>>& readings() {
                         return std::vector{
                             fmt::format("in the channel  {:.2f} l", v.r.volume_in_channel * 1e3)};
                       }},
-                 {.name = "bars",
-                  .words = "bars in front of the gate",
-                  .value = [](V v) { return number(static_cast<double>(v.scene.bars)); }}},
+                 {"bars", "bars in front of the gate",
+                  [](V v) { return number(static_cast<double>(v.scene.bars)); }}},
       motion_columns<View>(), step_columns<View>());
   return table;
 }
