@@ -164,7 +164,7 @@ void print_readings() {
     for (const scene::Described& reading : apparatus.glossary)
       if (reading.is_result)
         fmt::print("{}\t{}\t{}\t{}\n", apparatus.keys.name, reading.name, report::unit_of(reading.name),
-                   report::words_of(reading.name));
+                   report::words_of(reading.name, apparatus.keys.name));
   }
 }
 

@@ -21,9 +21,9 @@ constexpr std::array<std::string_view, 9> about_the_method{
     "spread_max_point_mm", "time_step_s",     "iterations",        "volume_change",   "kinetic_energy_J",
     "max_speed_m_per_s",   "torque_wall_N_m", "momentum_rate_N_m", "torque_power_N_m"};
 
-std::string with_unit(const std::string& name) {
+std::string with_unit(const std::string& name, const std::string& apparatus) {
   const std::string unit = unit_for_people(name);
-  return words_of(name) + (unit.empty() ? "" : " (" + unit + ")");
+  return words_of(name, apparatus) + (unit.empty() ? "" : " (" + unit + ")");
 }
 
 const scene::Column* find_column(const std::vector<scene::Column>& columns, const std::string& name) {
@@ -42,7 +42,11 @@ const FileColumns* find_table(const RunResult& run, const std::string& file) {
 /// Column `y` over column `x` of the file, a curve a run; nothing where no run has it.
 void add_overlay(const Comparison& comparison, const std::string& file, const std::string& x,
                  const std::string& y, Page& page) {
-  LineChart chart{.title = words_of(y), .x_label = with_unit(x), .y_label = with_unit(y), .curves = {}};
+  const std::string& apparatus = comparison.runs.front().apparatus;
+  LineChart chart{.title = words_of(y, apparatus),
+                  .x_label = with_unit(x, apparatus),
+                  .y_label = with_unit(y, apparatus),
+                  .curves = {}};
   for (const auto& run : comparison.runs) {
     Curve curve{.label = run.name, .x = {}, .y = {}};
     if (const auto* table = find_table(run, file))
@@ -94,9 +98,9 @@ std::string difference_text(const ComparedRow& row) {
   return row.error ? text + " ± " + person_number(*row.error, row.key) : text;
 }
 
-std::string heading(const std::string& key) {
+std::string heading(const std::string& key, const std::string& apparatus) {
   const std::string unit = unit_for_people(key);
-  return unit.empty() ? words_of(key) : words_of(key) + ", " + unit;
+  return unit.empty() ? words_of(key, apparatus) : words_of(key, apparatus) + ", " + unit;
 }
 
 GridTable scene_table(const Comparison& comparison) {
@@ -115,7 +119,7 @@ GridTable result_table(const Comparison& comparison) {
   for (const auto& run : comparison.runs) table.columns.push_back(run.name);
   table.columns.push_back(comparison.runs.size() == 2 ? "difference" : "largest difference");
   for (const auto& row : comparison.results) {
-    table.rows.push_back({heading(row.key)});
+    table.rows.push_back({heading(row.key, comparison.runs.front().apparatus)});
     for (std::size_t i = 0; i < row.texts.size(); ++i) table.rows.back().push_back(cell_text(row, i));
     table.rows.back().push_back(difference_text(row));
   }

@@ -10,26 +10,37 @@
 namespace tremie::report {
 namespace {
 
-/// What no apparatus has for itself: its name, and the fields of frames.
-std::map<std::string, std::string> all_words() {
-  std::map<std::string, std::string> words{
-      {"position", "places of the points"},        {"velocity", "velocities of the points"},
-      {"volume", "volumes of the points"},         {"pressure", "pressures of the points"},
-      {"shear_rate", "shear rates of the points"}, {"flocculation", "flocculation state λ"}};
-  for (const auto& apparatus : scene::all_apparatus()) {
-    words[apparatus.keys.name] = apparatus.words;
-    for (const auto& reading : apparatus.glossary)
-      if (!reading.words.empty()) words[reading.name] = reading.words;
-  }
+using Words = std::map<std::string, std::string>;
+
+/// What no apparatus has for itself: the names of all, and the fields of frames.
+Words common_words() {
+  Words words{{"position", "places of the points"},        {"velocity", "velocities of the points"},
+              {"volume", "volumes of the points"},         {"pressure", "pressures of the points"},
+              {"shear_rate", "shear rates of the points"}, {"flocculation", "flocculation state λ"}};
+  for (const auto& apparatus : scene::all_apparatus()) words[apparatus.keys.name] = apparatus.words;
   return words;
+}
+
+/// The words of each apparatus; under no name those of all, where the first apparatus that has a name gives its words.
+std::map<std::string, Words> all_words() {
+  std::map<std::string, Words> all{{"", common_words()}};
+  for (const auto& apparatus : scene::all_apparatus())
+    for (const auto& reading : apparatus.glossary)
+      if (!reading.words.empty()) {
+        all[apparatus.keys.name].emplace(reading.name, reading.words);
+        all[""].emplace(reading.name, reading.words);
+      }
+  return all;
 }
 
 }  // namespace
 
-std::string words_of(const std::string& name) {
-  static const std::map<std::string, std::string> words = all_words();
-  const auto found = words.find(name);
-  return found == words.end() ? scene::words_from_name(name) : found->second;
+std::string words_of(const std::string& name, const std::string& apparatus) {
+  static const std::map<std::string, Words> all = all_words();
+  for (const std::string& of : {apparatus, std::string()})
+    if (const auto words = all.find(of); words != all.end())
+      if (const auto found = words->second.find(name); found != words->second.end()) return found->second;
+  return scene::words_from_name(name);
 }
 
 std::string person_number(double value, const std::string& name) {

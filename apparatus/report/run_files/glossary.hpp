@@ -8,8 +8,8 @@
 
 namespace tremie::report {
 
-/// "spread_mm": "slump flow, mean diameter". A name that is not known comes back with blanks, without its unit.
-std::string words_of(const std::string& name);
+/// "spread_mm": "slump flow, mean diameter", as the apparatus has it where it is given. A name that is not known comes back with blanks, without its unit.
+std::string words_of(const std::string& name, const std::string& apparatus = {});
 
 using scene::unit_for_people;
 using scene::unit_of;

@@ -55,11 +55,11 @@ Verdict verdict_of(const scene::Outcome& o) {
 }
 
 /// How the errors were found, with the results' keys in words.
-std::string basis_in_words(const scene::ErrorEstimate& error) {
+std::string basis_in_words(const scene::ErrorEstimate& error, const std::string& apparatus) {
   std::string text = error.basis;
   for (const auto& bar : error.bars)
     if (const std::size_t at = text.find(bar.name + ":"); at != std::string::npos)
-      text.replace(at, bar.name.size(), words_of(bar.name));
+      text.replace(at, bar.name.size(), words_of(bar.name, apparatus));
   return text;
 }
 
@@ -68,7 +68,8 @@ Trust trust_of(const scene::Outcome& o) {
   Trust trust{c.reasons.empty() && o.status == Status::completed, {}, c.reasons};
   const bool has_cells = std::isfinite(c.volume_change);  // a material cell has none
   if (o.error && !o.error->bars.empty())
-    trust.text = fmt::format("The error of cells and steps is the ± above ({}). ", basis_in_words(*o.error));
+    trust.text = fmt::format("The error of cells and steps is the ± above ({}). ",
+                             basis_in_words(*o.error, o.apparatus));
   else if (has_cells)
     trust.text = "The error of cells and steps was not estimated; --with-error does. ";
   if (has_cells)
@@ -114,7 +115,8 @@ void add_rows(const scene::Outcome& o, const std::vector<scene::Result>& results
     if (const auto error = error_of(o, name); error && prefix.empty())
       text += " ± " + scene::rounded(*error, 2);
     const bool number = std::holds_alternative<double>(value);
-    table.rows.push_back({words_of(prefix + name), text, number ? unit_for_people(name) : "", prefix + name});
+    table.rows.push_back(
+        {words_of(prefix + name, o.apparatus), text, number ? unit_for_people(name) : "", prefix + name});
   }
 }
 

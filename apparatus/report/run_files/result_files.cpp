@@ -61,12 +61,13 @@ void write_frame_h5(io::Hdf5File& h5, const std::string& group, const Frame& fra
 }
 
 /// Columns of one length over the first of them.
-void write_columns_h5(io::Hdf5File& h5, const std::string& group, const std::vector<scene::Column>& columns) {
+void write_columns_h5(io::Hdf5File& h5, const std::string& group, const std::vector<scene::Column>& columns,
+                      const std::string& apparatus) {
   h5.group(group);
   std::vector<std::string> along;
   for (const auto& column : columns) {
     const std::string path = group + "/" + column.name;
-    h5.array(path, column.values, 1, unit_of(column.name), words_of(column.name));
+    h5.array(path, column.values, 1, unit_of(column.name), words_of(column.name, apparatus));
     h5.attribute(path, "source", std::string(computed_source));
     if (&column != &columns.front()) along.push_back(path);
   }
@@ -173,10 +174,10 @@ void ResultFiles::write_frame(const Frame& frame) {
 void ResultFiles::write_results_h5(const scene::Outcome& outcome) {
   h5_.attribute("/", "apparatus", outcome.apparatus);
   h5_.attribute("/", "status", std::string(status_name(outcome.status)));
-  write_columns_h5(h5_, "/series", outcome.series);
+  write_columns_h5(h5_, "/series", outcome.series, outcome.apparatus);
   for (const auto& table : outcome.tables)
     write_columns_h5(h5_, fmt::format("/{}", std::filesystem::path(table.file).stem().string()),
-                     table.columns);
+                     table.columns, outcome.apparatus);
   if (outcome.error) write_errors_h5(h5_, *outcome.error);
   write_results(h5_, "/results", outcome.results);
   h5_.close();
