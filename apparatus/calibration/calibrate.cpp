@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 
 #include "apparatus/calibration/chains.hpp"
@@ -226,11 +227,8 @@ void report_readings(State& s) {
   }
 }
 
-/// The chance of a chi square of n degrees of freedom above x (Wilson and Hilferty).
-double chance_above(double x, double n) {
-  const double z = (std::cbrt(x / n) - (1.0 - 2.0 / (9.0 * n))) / std::sqrt(2.0 / (9.0 * n));
-  return 0.5 * std::erfc(z / std::sqrt(2.0));
-}
+/// The chance of a chi square of n degrees of freedom above x.
+double chance_above(double x, double n) { return cdf(complement(boost::math::chi_squared(n), x)); }
 
 void report_contradictions(State& s) {
   const ReadingReport* worst = nullptr;

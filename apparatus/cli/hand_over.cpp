@@ -24,7 +24,7 @@ int hand_over(char** argv) {
   fmt::print(
       stderr,
       "tremie: {} is not there: fit, study, verify and calibrate are in that program, beside tremie. It is "
-      "built where libsundials-dev and libceres-dev are installed (README.md, the test line)\n",
+      "built where libsundials-dev, libceres-dev and libboost-dev are installed (README.md, the test line)\n",
       program.string());
   return bad_input;
 }

@@ -16,6 +16,12 @@ const ResultValue* find_result(const Outcome& outcome, const std::string& name) 
   return found == outcome.results.end() ? nullptr : &found->value;
 }
 
+std::optional<double> find_number(const Outcome& outcome, const std::string& name) {
+  const ResultValue* value = find_result(outcome, name);
+  const double* number = value ? std::get_if<double>(value) : nullptr;
+  return number ? std::optional(*number) : std::nullopt;
+}
+
 const std::vector<Column>& columns_of(const Chart& chart, const Outcome& outcome) {
   static const std::vector<Column> none;
   if (chart.table.empty()) return outcome.series;

@@ -133,6 +133,8 @@ struct Outcome {
 
 /// The value of a result by its name; nullptr where there is none.
 const ResultValue* find_result(const Outcome& outcome, const std::string& name);
+/// The number of a result by its name; empty where there is none.
+std::optional<double> find_number(const Outcome& outcome, const std::string& name);
 
 /// The columns that a chart draws from; empty where the outcome has no such table.
 const std::vector<Column>& columns_of(const Chart& chart, const Outcome& outcome);

@@ -3,16 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <limits>
-#include <sstream>
+#include <iterator>
 #include <stdexcept>
+
+#include "rheometer/records/number_rows.hpp"
 
 namespace tremie::estimate {
 namespace {
-
-double number_or_nan(const std::string& field) {
-  return field.empty() ? std::numeric_limits<double>::quiet_NaN() : std::stod(field);
-}
 
 /// Appends what is larger than all before it; false where `value` goes back to the first.
 void add_node(std::vector<double>& nodes, double value) {
@@ -38,19 +35,14 @@ SlumpTable read_slump_table(const std::filesystem::path& file) {
   std::ifstream stream(file);
   if (!stream) throw std::runtime_error("cannot read " + file.string());
   SlumpTable table;
-  std::string line;
-  while (std::getline(stream, line)) {
-    if (line.empty() || line[0] == '#' || line.starts_with("yield_stress")) continue;
-    std::istringstream fields(line + ",");
-    std::string tau_0, mu, spread, t500;
-    std::getline(fields, tau_0, ',');
-    std::getline(fields, mu, ',');
-    std::getline(fields, spread, ',');
-    std::getline(fields, t500, ',');
-    add_node(table.tau_0, std::stod(tau_0));
-    add_node(table.mu, std::stod(mu));
-    table.spread.push_back(1e-3 * number_or_nan(spread));
-    table.t500.push_back(number_or_nan(t500));
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  for (const auto& row :
+       number_rows(text, file.string(), "yield_stress_Pa,plastic_viscosity_Pa_s,spread_mm,t500_s",
+                   [](const auto& r) { return r[0] > 0.0 && r[1] > 0.0; })) {
+    add_node(table.tau_0, row[0]);
+    add_node(table.mu, row[1]);
+    table.spread.push_back(1e-3 * row[2]);
+    table.t500.push_back(row[3]);
   }
   if (table.tau_0.size() < 2 || table.mu.size() < 2 ||
       table.spread.size() != table.tau_0.size() * table.mu.size())

@@ -23,12 +23,6 @@ Coarsening coarsening_of(const Scene& scene) {
   return line ? Coarsening{2.0, 3.0} : Coarsening{};
 }
 
-std::optional<double> number_in(const Outcome& outcome, const std::string& name) {
-  const auto* value = find_result(outcome, name);
-  if (const auto* number = value ? std::get_if<double>(value) : nullptr) return *number;
-  return {};
-}
-
 /// The order p of f = f_0 + c h^p over h, m h and c h: (c^p - m^p)/(m^p - 1) = ratio, growing with p.
 double order_from(double ratio, const Coarsening& by) {
   double low = 0.01, high = 20.0;
@@ -94,8 +88,8 @@ ErrorEstimate estimate_error(const Scene& scene, const Outcome& outcome, const O
       return estimate;
     }
     for (const Headline& headline : scene.functions->headlines) {
-      const auto f = number_in(outcome, headline.name), m = number_in(middle, headline.name),
-                 c = number_in(coarse, headline.name);
+      const auto f = find_number(outcome, headline.name), m = find_number(middle, headline.name),
+                 c = find_number(coarse, headline.name);
       if (!f || !m || !c) continue;
       const Extrapolation e = extrapolate(*f, *m, *c, by);
       estimate.bars.push_back({headline.name, e.error});
@@ -118,7 +112,7 @@ Choice choose_cells(const Scene& scene, double accuracy, const Observer& observe
   const auto headline = scene.functions->headlines.front();
   std::array<double, 3> value{};
   for (std::size_t i = 0; i < 3; ++i) {
-    const auto number = number_in(pilots[i], headline.name);
+    const auto number = find_number(pilots[i], headline.name);
     if (!number)
       throw InputError(fmt::format("--accuracy: coarser cells give no {}: set model.cell", headline.word));
     value[i] = *number;
@@ -147,7 +141,7 @@ std::vector<std::string> error_lines(const Scene& scene, const Outcome& outcome)
     for (const Headline& headline : scene.functions->headlines)
       if (bar.name == headline.name)
         lines.push_back(fmt::format("{} {:.{}f} ± {:.{}f} {}", headline.word,
-                                    number_in(outcome, bar.name).value_or(0.0), headline.digits, bar.error,
+                                    find_number(outcome, bar.name).value_or(0.0), headline.digits, bar.error,
                                     headline.digits, unit_for_people(headline.name)));
   lines.push_back(fmt::format("by {}; {:.2f} s of CPU", outcome.error->basis, outcome.error->cpu));
   return lines;

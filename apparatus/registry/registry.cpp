@@ -1,13 +1,10 @@
 #include "apparatus/registry/registry.hpp"
 
-#include <sys/resource.h>
-
 #include <algorithm>
-#include <chrono>
-#include <ctime>
 #include <stdexcept>
 
 #include "apparatus/run/free_processors.hpp"
+#include "apparatus/run/stopwatch.hpp"
 #include "apparatus/run/threads.hpp"
 #include "apparatus/scene/resolved.hpp"
 
@@ -39,22 +36,6 @@ Scene build(Loaded loaded) {
   for (const auto& [key, value] : loaded.values.entries)
     if (loaded.values.given(key)) scene.places[key] = describe(value.origin);
   return scene;
-}
-
-double cpu_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-double wall_seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-std::int64_t peak_rss_bytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return std::int64_t{usage.ru_maxrss} * 1024;
 }
 
 /// An apparatus says with std::invalid_argument that it cannot run what the scene asks for, "key: reason":
@@ -95,18 +76,16 @@ Model& model_of(Scene& scene) { return scene.functions->model(scene.test); }
 const Model& model_of(const Scene& scene) { return model_of(const_cast<Scene&>(scene)); }
 
 Outcome run(const Scene& scene, const Observer& observer, bool coarser) {
-  const double wall = wall_seconds(), cpu = cpu_seconds();
+  const Stopwatch watch;
   Observer own = observer;
   own.all_frames = scene.output.frames;
   Outcome outcome = as_input_error(scene, [&] {
     return scene.functions->run(scene.test, {scene.measured, coarser}, own);
   });
   outcome.apparatus = scene.apparatus;
-  outcome.cost.wall = wall_seconds() - wall;
-  outcome.cost.cpu = cpu_seconds() - cpu;
+  watch.stop(outcome.cost);
   if (scene.functions->threads)
     outcome.cost.threads = scene.functions->threads(const_cast<Scene&>(scene).test);
-  outcome.cost.peak_rss_bytes = peak_rss_bytes();
   if (outcome.status == Status::failed && outcome.checks.reasons.empty())
     outcome.checks.reasons.push_back("the run did not come to its end");
   return outcome;

@@ -21,9 +21,8 @@ fs::path picture_program() {
 std::vector<std::string> arguments_for(const scene::Outcome& outcome, const std::string& vtp) {
   std::vector<std::string> arguments{vtp, "shape.png"};
   if (outcome.axisymmetric) arguments.push_back("--axisymmetric");
-  const auto* spread = scene::find_result(outcome, "spread_mm");
-  if (const auto* value = spread ? std::get_if<double>(spread) : nullptr)
-    arguments.insert(arguments.end(), {"--spread", fmt::format("{:.1f}", *value)});
+  if (const auto spread = scene::find_number(outcome, "spread_mm"))
+    arguments.insert(arguments.end(), {"--spread", fmt::format("{:.1f}", *spread)});
   return arguments;
 }
 

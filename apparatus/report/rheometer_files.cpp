@@ -1,9 +1,5 @@
 #include "apparatus/report/rheometer_files.hpp"
 
-#include <sys/resource.h>
-
-#include <chrono>
-#include <ctime>
 #include <nlohmann/json.hpp>
 
 #include "apparatus/report/process.hpp"
@@ -11,20 +7,6 @@
 #include "libmpm/io/write_error.hpp"
 
 namespace tremie::cli {
-
-namespace {
-
-double cpu_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-double wall_seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-}  // namespace
 
 nlohmann::ordered_json summary_of(const scene::Outcome& outcome) {
   auto json = nlohmann::ordered_json::parse(report::summary_json(outcome));
@@ -36,16 +18,6 @@ nlohmann::ordered_json summary_of(const scene::Outcome& outcome) {
   if (outcome.cost.points == 0)
     for (const char* key : {"steps", "points", "simulated_s"}) json["cost"][key] = nullptr;
   return json;
-}
-
-Stopwatch::Stopwatch() : cpu_(cpu_seconds()), wall_(wall_seconds()) {}
-
-void Stopwatch::stop(Cost& cost) const {
-  cost.cpu = cpu_seconds() - cpu_;
-  cost.wall = wall_seconds() - wall_;
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  cost.peak_rss_bytes = std::int64_t{usage.ru_maxrss} * 1024;
 }
 
 HeldInterrupts::HeldInterrupts() {

@@ -16,16 +16,6 @@ namespace tremie::cli {
 /// lost, cells).
 nlohmann::ordered_json summary_of(const scene::Outcome& outcome);
 
-/// CPU time of this process [s], wall clock [s], largest memory [bytes]: for Cost.
-class Stopwatch {
- public:
-  Stopwatch();
-  void stop(Cost& cost) const;
-
- private:
-  double cpu_, wall_;
-};
-
 /// While it lives, an interrupt waits: files are written to their end, or their folder taken away, in less
 /// than a second or two. It ends the program where the hold ends.
 class HeldInterrupts {

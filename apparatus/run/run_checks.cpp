@@ -1,7 +1,8 @@
 #include "apparatus/run/run_checks.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -77,11 +78,9 @@ void judge_volume(double at_start, Checks& checks) {
   constexpr double slow = 1e-2;  // [m/s]
   const double most = 3.0 * std::abs(at_start) + 5e-3;
   if (checks.max_speed_end > slow || !(std::abs(checks.volume_change) > most)) return;
-  char text[160];
-  std::snprintf(text, sizeof text,
-                "the concrete's volume changed by %+.2g %%; its weight can account for %.2g %%",
-                100.0 * checks.volume_change, 100.0 * most);
-  checks.reasons.push_back(text);
+  checks.reasons.push_back(
+      fmt::format("the concrete's volume changed by {:+.2g} %; its weight can account for {:.2g} %",
+                  100.0 * checks.volume_change, 100.0 * most));
 }
 
 #define TREMIE_CHECKS_IN(Geometry)                                                                 \

@@ -4,14 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <vector>
+
+#include "rheometer/records/number_text.hpp"
 
 namespace tremie::scene {
 namespace {
@@ -40,23 +39,6 @@ std::string_view trimmed(std::string_view text) {
   const auto first = text.find_first_not_of(" \t");
   if (first == std::string_view::npos) return {};
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
-/// Reads the number that leads a text; the count of its characters, 0 where there is none that can be held.
-std::size_t read_number(std::string_view text, double& number) {
-#ifdef __cpp_lib_to_chars
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc{} ? static_cast<std::size_t>(end - text.data()) : 0;
-#else  // libc++ before version 20 reads whole numbers alone
-  const std::string_view digits = text.substr(text.starts_with('-') ? 1 : 0);
-  if (digits.empty() || digits.starts_with("0x") || digits.starts_with("0X")) return 0;
-  if (std::string_view(" \t+-").find(digits.front()) != std::string_view::npos) return 0;
-  const std::string copy(text);
-  char* end = nullptr;
-  errno = 0;
-  number = std::strtod(copy.c_str(), &end);
-  return errno == ERANGE ? 0 : static_cast<std::size_t>(end - copy.c_str());
-#endif
 }
 
 /// A unit and the numbers that are usual in it at a site or in a laboratory, up to the next.

@@ -43,7 +43,7 @@ std::string text_of(double number, const Key& about) {
   return scene::write_number(number);
 }
 
-double number_of(const scene::Node& node, const std::string& key, const Key& about) {
+double number_in_si(const scene::Node& node, const std::string& key, const Key& about) {
   if (const auto* text = std::get_if<std::string>(&node.value)) {
     if (about.kind != Kind::quantity) complain(node, key, "\"" + *text + "\" is a string; write a number");
     try {
@@ -93,7 +93,7 @@ Level read_level(const std::string& key, const scene::Node& node, const Key& abo
                fmt::format("\"{}\" is not allowed (nearest: \"{}\")", word, scene::nearest(word, allowed)));
     return {none, word};
   }
-  const double number = number_of(node, key, about);
+  const double number = number_in_si(node, key, about);
   check_range(node, key, about, number);
   return {number, text_of(number, about)};
 }
@@ -104,8 +104,8 @@ void read_range(const scene::Node& range, Factor& factor) {
   if (factor.about.kind == Kind::choice || factor.about.kind == Kind::text ||
       factor.about.kind == Kind::boolean)
     complain(range, factor.key, "takes words; give values = [...] in place of a range");
-  factor.low = number_of((*ends)[0], factor.key, factor.about);
-  factor.high = number_of((*ends)[1], factor.key, factor.about);
+  factor.low = number_in_si((*ends)[0], factor.key, factor.about);
+  factor.high = number_in_si((*ends)[1], factor.key, factor.about);
   check_range((*ends)[0], factor.key, factor.about, factor.low);
   check_range((*ends)[1], factor.key, factor.about, factor.high);
   if (!(factor.low < factor.high))

@@ -11,11 +11,8 @@
 namespace tremie::validation {
 namespace {
 
-double number_of(const scene::Scene& scene, const std::string& name, bool coarser) {
-  const auto outcome = scene::run(scene, {}, coarser);
-  const auto* value = scene::find_result(outcome, name);
-  const auto* number = value ? std::get_if<double>(value) : nullptr;
-  return number ? *number : NAN;
+double result_of(const scene::Scene& scene, const std::string& name, bool coarser) {
+  return scene::find_number(scene::run(scene, {}, coarser), name).value_or(NAN);
 }
 
 std::string read_one(const Ask& ask) {
@@ -23,9 +20,9 @@ std::string read_one(const Ask& ask) {
   scene::set_threads(scene, 1);
   scene.output.frames = false;
   const scene::Coarsening by;
-  const double fine = number_of(scene, ask.result, false);
-  const double middle = number_of(scene::coarsened(scene, by.middle), ask.result, true);
-  const double coarse = number_of(scene::coarsened(scene, by.coarse), ask.result, true);
+  const double fine = result_of(scene, ask.result, false);
+  const double middle = result_of(scene::coarsened(scene, by.middle), ask.result, true);
+  const double coarse = result_of(scene::coarsened(scene, by.coarse), ask.result, true);
   return nlohmann::json{fine, scene::extrapolate(fine, middle, coarse).error}.dump();
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <limits>
 
 namespace tremie::verification {
@@ -16,12 +15,6 @@ double observed_order(const Series& series) {
   }
   if (n < 2.0) return std::numeric_limits<double>::quiet_NaN();
   return (n * sxy - sx * sy) / (n * sxx - sx * sx);
-}
-
-double cpu_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
 bool all_kept(const std::vector<CaseGroup>& groups) {

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "apparatus/run/stopwatch.hpp"
+
 namespace tremie::verification {
 
 /// One solution at one resolution.
@@ -64,9 +66,6 @@ enum class Depth { quick, full };
 
 /// Least-squares slope of log error over log h; not-a-number below two errors that are not zero.
 double observed_order(const Series& series);
-
-/// CPU seconds of this process.
-double cpu_seconds();
 
 /// Whether every bound of every case is kept.
 bool all_kept(const std::vector<CaseGroup>& groups);

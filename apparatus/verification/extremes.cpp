@@ -69,12 +69,6 @@ std::string set(const std::string& key, double value, const std::string& unit) {
   return unit.empty() ? fmt::format("{}={:g}", key, value) : fmt::format("{}={:g} {}", key, value, unit);
 }
 
-std::optional<double> number_of(const scene::Outcome& outcome, const std::string& name) {
-  const auto* value = scene::find_result(outcome, name);
-  if (const auto* number = value ? std::get_if<double>(value) : nullptr) return *number;
-  return {};
-}
-
 /// Largest value of a column of the series; not-a-number stands for no value there.
 double largest(const scene::Outcome& outcome, const std::string& column) {
   double result = std::nan("");
@@ -88,7 +82,7 @@ double largest(const scene::Outcome& outcome, const std::string& column) {
 /// up to what its own weight compresses, mass, and a concrete too stiff to yield under its weight keeps its
 /// shape.
 std::string against_slump(const scene::Outcome& o, double tau_y, double K, double cell) {
-  const auto spread = number_of(o, "spread_mm");
+  const auto spread = scene::find_number(o, "spread_mm");
   if (!spread) return "no spread";
   if (*spread < 150.0) return fmt::format("the spread of {:.0f} mm is less than the cone", *spread);
   const double available = rho * cone_volume * g * cone_centroid;
@@ -222,7 +216,7 @@ void add_space(std::vector<Extreme>& all) {
 
 /// The torque lies between those of the mix without and with all of its flocculation, by Reiner-Riwlin.
 std::string against_torque(const scene::Outcome& o, const Bingham& bingham, double lambda, double speed) {
-  const auto torque = number_of(o, "torque_end_N_m");
+  const auto torque = scene::find_number(o, "torque_end_N_m");
   if (!torque) return "no torque";
   const double omega = angular_speed(std::abs(speed));
   const double low = reiner_riwlin(bingham, omega).torque;
@@ -269,7 +263,7 @@ std::string against_cell(const scene::Outcome& o, double tau_y, double mu, doubl
   const double stress = largest(o, "shear_stress_Pa");
   if (!(stress <= (mu * rate + tau_y) * (1.0 + 1e-9)))
     return fmt::format("{:.6g} Pa, more than {:.6g}", stress, mu * rate + tau_y);
-  const auto error = number_of(o, "flocculation_error_max");
+  const auto error = scene::find_number(o, "flocculation_error_max");
   if (error && *error > 0.01 * std::max(tau_y / 54.0, 1.0)) return fmt::format("λ is {:.2g} off", *error);
   return {};
 }
@@ -340,7 +334,7 @@ Verdict judge(const Extreme& extreme, double limit) {
   try {
     bool too_slow = false;
     const scene::Outcome outcome = run_scene(extreme, limit, too_slow);
-    if (!extreme.reading.empty()) verdict.reading = number_of(outcome, extreme.reading);
+    if (!extreme.reading.empty()) verdict.reading = scene::find_number(outcome, extreme.reading);
     if (too_slow) {
       verdict.ending = Ending::too_slow;
     } else if (!outcome.checks.reasons.empty()) {

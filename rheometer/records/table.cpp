@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <optional>
 
+#include "rheometer/records/number_text.hpp"
 #include "rheometer/records/torque_record.hpp"
 
 namespace tremie {
@@ -135,14 +135,13 @@ double number(std::string_view field, bool decimal_comma, const std::string& nam
     s = {buffer, s.size()};
   }
   if (!s.empty() && s.front() == '+') s.remove_prefix(1);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(s.data(), s.data() + s.size(), value);
-  if (error != std::errc() || end != s.data() + s.size() || !std::isfinite(value)) {
+  const std::optional<double> value = parse_number(s);
+  if (!value || !std::isfinite(*value)) {
     const std::string shown(trimmed(field).substr(0, 40));
     fail(name, line, position,
          shown.empty() ? "no value; a number is needed here" : "'" + shown + "' is not a number");
   }
-  return value;
+  return *value;
 }
 
 }  // namespace

@@ -6,26 +6,17 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "rheometer/records/number_rows.hpp"
 #include "rheometer/reference/reiner_riwlin.hpp"
 #include "rheometer/vane/table.hpp"
 
 namespace tremie {
 
 BladeTable blade_table(const std::string& csv, const std::string& name) {
-  std::istringstream in(csv);
-  std::string line;
   BladeTable table;
-  for (int number = 1; std::getline(in, line); ++number) {
-    if (line.empty() || line.front() == '#' || line.starts_with("container_over_radius")) continue;
-    double container = 0.0, bingham = 0.0, factor = 0.0;
-    char first = 0, second = 0;
-    std::istringstream fields(line);
-    const bool read(fields >> container >> first >> bingham >> second >> factor);
-    if (!read || first != ',' || second != ',' || !(container > 1.0 && bingham >= 0.0 && factor > 0.0))
-      throw std::invalid_argument(name + ":" + std::to_string(number) +
-                                  ": expected container_over_radius,bingham_number,blade_factor");
-    table[detail::rounded(container)][std::log1p(bingham)] = factor;
-  }
+  for (const auto& row : number_rows(csv, name, "container_over_radius,bingham_number,blade_factor",
+                                     [](const auto& r) { return r[0] > 1.0 && r[1] >= 0.0 && r[2] > 0.0; }))
+    table[detail::rounded(row[0])][std::log1p(row[1])] = row[2];
   if (table.empty()) throw std::invalid_argument(name + ": holds no row");
   return table;
 }

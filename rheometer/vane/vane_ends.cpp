@@ -7,6 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "rheometer/records/number_rows.hpp"
 #include "rheometer/vane/table.hpp"
 
 namespace tremie {
@@ -20,21 +21,11 @@ using Row = std::map<double, Curve>;     // container_over_radius -> curve
 
 /// Radius over height -> row: the ends' share of the torque is in proportion to it.
 std::map<double, Row> table_of(const std::string& csv, const std::string& name) {
-  std::istringstream in(csv);
-  std::string line;
   std::map<double, Row> table;
-  for (int number = 1; std::getline(in, line); ++number) {
-    if (line.empty() || line.front() == '#' || line.starts_with("height_over_radius")) continue;
-    double h = 0.0, c = 0.0, bingham = 0.0, f = 0.0;
-    char first = 0, second = 0, third = 0;
-    std::istringstream fields(line);
-    const bool read(fields >> h >> first >> c >> second >> bingham >> third >> f);
-    if (!read || first != ',' || second != ',' || third != ',' || !(h > 0.0 && bingham >= 0.0) || !(f >= 1.0))
-      throw std::invalid_argument(
-          name + ":" + std::to_string(number) +
-          ": expected height_over_radius,container_over_radius,bingham_number,end_factor");
-    table[rounded(1.0 / h)][rounded(c)][std::log1p(bingham)] = f;
-  }
+  for (const auto& row :
+       number_rows(csv, name, "height_over_radius,container_over_radius,bingham_number,end_factor",
+                   [](const auto& r) { return r[0] > 0.0 && r[2] >= 0.0 && r[3] >= 1.0; }))
+    table[rounded(1.0 / row[0])][rounded(row[1])][std::log1p(row[2])] = row[3];
   return table;
 }
 

@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <ctime>
 #include <fstream>
 #include <functional>
 #include <iostream>
@@ -16,6 +15,7 @@
 #include <optional>
 
 #include "apparatus/registry/registry.hpp"
+#include "apparatus/run/stopwatch.hpp"
 #include "rheometer/reference/instrument.hpp"
 #include "rheometer/reference/reiner_riwlin.hpp"
 #include "tests/hostile/finite.hpp"
@@ -32,12 +32,6 @@ constexpr double cone_volume = 5.498e-3, box_volume = 0.1 * 0.2 * column_height;
 constexpr double cone_energy = rho * cone_volume * g * 0.1018;  // its volume and the height of its centre
 constexpr double most_cpu = 2.0;                                // [s]; what takes longer is not judged
 
-double cpu_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 std::optional<scene::Outcome> run(const std::string& text, const std::vector<std::string>& overrides = {}) {
   const auto scene = scene::read_text(text, "random.toml", overrides);
   std::atomic<bool> stop{false};
@@ -51,9 +45,7 @@ std::optional<scene::Outcome> run(const std::string& text, const std::vector<std
 }
 
 double number_of(const scene::Outcome& outcome, const std::string& name) {
-  const auto* value = scene::find_result(outcome, name);
-  const auto* number = value ? std::get_if<double>(value) : nullptr;
-  return number ? *number : std::nan("");
+  return scene::find_number(outcome, name).value_or(std::nan(""));
 }
 
 double largest(const scene::Outcome& outcome, const std::string& column) {

@@ -1,8 +1,8 @@
 #include "apparatus/cli/run/keeper.hpp"
 
 #include <algorithm>
-#include <ctime>
 
+#include "apparatus/run/stopwatch.hpp"
 #include "libmpm/io/write_error.hpp"
 
 namespace tremie::cli {
@@ -12,12 +12,6 @@ namespace {
 constexpr double least_share = 100.0;
 
 double seconds(std::chrono::steady_clock::duration d) { return std::chrono::duration<double>(d).count(); }
-
-double cpu_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 }  // namespace
 

@@ -139,9 +139,9 @@ int verify(const Options& options) {
     }
     fmt::print(screen, "rung {}: {}\n", step.number, step.what);
     std::fflush(screen);
-    const double start = verification::cpu_seconds();
+    const double start = cpu_seconds();
     groups.push_back(step.run(depth));
-    cpu.push_back(verification::cpu_seconds() - start);
+    cpu.push_back(cpu_seconds() - start);
     const bool kept = verification::all_kept({groups.back()});
     fmt::print(screen, "        {} in {:.1f} s of CPU\n", kept ? "all bounds kept" : "a bound is broken",
                cpu.back());

@@ -107,7 +107,8 @@ py::dict fit_record(const TorqueRecord& record, FitInput input) {
 }
 #else
 py::dict fit_record(const TorqueRecord&, const FitInput&) {
-  throw std::runtime_error("fit: not in this build, which lacks libceres-dev or libsundials-dev");
+  throw std::runtime_error(
+      "fit: not in this build, which lacks libceres-dev, libboost-dev or libsundials-dev");
 }
 #endif
 

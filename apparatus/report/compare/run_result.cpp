@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -13,6 +12,7 @@
 #include "apparatus/scene/document.hpp"
 #include "apparatus/scene/input_error.hpp"
 #include "apparatus/scene/units.hpp"
+#include "rheometer/records/number_text.hpp"
 
 namespace tremie::report {
 namespace {
@@ -109,9 +109,7 @@ std::vector<scene::Column> read_columns(const fs::path& file) {
     std::istringstream row(line);
     for (auto& column : columns) {
       if (!std::getline(row, field, ',')) field.clear();
-      char* end = nullptr;
-      const double value = std::strtod(field.c_str(), &end);
-      column.values.push_back(!field.empty() && *end == '\0' ? value : std::nan(""));
+      column.values.push_back(parse_number(field).value_or(std::nan("")));
     }
   }
   return columns;

@@ -133,7 +133,7 @@ std::string fit_html(const FitReport& fit) {
   add_flow_curve(fit, page);
   add_flocculation(fit, page);
   add_residuals(fit, page);
-  NumberTable table{"Parameters, with their 95 % intervals", {}};
+  ValueTable table{"Parameters, with their 95 % intervals", {}};
   for (const FitParameter& p : fit.parameters)
     table.rows.push_back({p.words, value_text(p), p.value ? p.unit : "", p.key});
   page.numbers = {table};

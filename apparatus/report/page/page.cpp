@@ -31,7 +31,7 @@ std::string figure_html(const Figure& figure) {
   return fmt::format("<figure id=\"{}\">{}{}</figure>\n", escaped(figure.id), figure.svg, caption);
 }
 
-std::string numbers_html(const NumberTable& table) {
+std::string numbers_html(const ValueTable& table) {
   std::string text = fmt::format("<section><h2>{}</h2>\n<table>\n", escaped(table.caption));
   for (const NumberRow& row : table.rows) {
     const std::string key =
@@ -67,7 +67,7 @@ std::string words_html(const std::vector<std::string>& words) {
 
 std::string made_html(const std::vector<Fact>& made) {
   if (made.empty()) return {};
-  NumberTable table{"How it was made", {}};
+  ValueTable table{"How it was made", {}};
   std::string text = "<section><h2>How it was made</h2>\n<table>\n";
   for (const Fact& fact : made)
     text += fmt::format("<tr><td>{}</td><td>{}</td></tr>\n", escaped(fact.what), escaped(fact.value));
@@ -91,7 +91,7 @@ std::string body_of(const Page& page) {
   text += "</div>\n";
   for (const GridTable& table : page.grids) text += grid_html(table);
   text += "<div class=\"tables\">\n";
-  for (const NumberTable& table : page.numbers) text += numbers_html(table);
+  for (const ValueTable& table : page.numbers) text += numbers_html(table);
   text += words_html(page.words) + made_html(page.made) + "</div>\n";
   return text + scene_html(page);
 }

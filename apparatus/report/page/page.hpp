@@ -18,7 +18,7 @@ struct NumberRow {
 };
 
 /// Numbers below each other.
-struct NumberTable {
+struct ValueTable {
   std::string caption;
   std::vector<NumberRow> rows;
 };
@@ -63,7 +63,7 @@ struct Page {
   std::vector<std::string> remarks;  ///< paragraphs that a reader needs, few
   std::optional<MovingPicture> moving;
   std::vector<Figure> figures;
-  std::vector<NumberTable> numbers;
+  std::vector<ValueTable> numbers;
   std::vector<GridTable> grids;
   std::vector<std::string> words;  ///< what a word means: "λ: …", a line each
   std::vector<Fact> made;

@@ -15,12 +15,6 @@
 namespace tremie::report {
 namespace {
 
-std::optional<double> number_in(const scene::Outcome& o, const std::string& name) {
-  const auto* value = scene::find_result(o, name);
-  const auto* number = value ? std::get_if<double>(value) : nullptr;
-  return number ? std::optional(*number) : std::nullopt;
-}
-
 std::optional<double> error_of(const scene::Outcome& o, const std::string& name) {
   if (o.error)
     for (const auto& bar : o.error->bars)
@@ -29,7 +23,7 @@ std::optional<double> error_of(const scene::Outcome& o, const std::string& name)
 }
 
 std::string answer_text(const scene::Outcome& o, const scene::Answer& a) {
-  const auto value = number_in(o, a.name);
+  const auto value = scene::find_number(o, a.name);
   if (!value) return {};
   std::string text = a.word.empty() ? "" : a.word + " ";
   text += fmt::format("{:.{}f}", *value, a.digits);
@@ -102,7 +96,7 @@ std::string words_for_none(const scene::Outcome& o, const std::string& name) {
 }
 
 void add_rows(const scene::Outcome& o, const std::vector<scene::Result>& results, const std::string& prefix,
-              NumberTable& table) {
+              ValueTable& table) {
   for (const auto& [name, value] : results) {
     if (const auto* below = std::get_if<std::vector<scene::Result>>(&value)) {
       add_rows(o, *below, prefix + name + ".", table);
@@ -120,7 +114,7 @@ void add_rows(const scene::Outcome& o, const std::vector<scene::Result>& results
   }
 }
 
-NumberTable cost_table(const Cost& c) {
+ValueTable cost_table(const Cost& c) {
   return {"What it cost",
           {{"processor time", scene::rounded(c.cpu, 3), "s", "cpu_s"},
            {"by the clock", scene::rounded(c.wall, 3), "s", "wall_s"},
@@ -142,7 +136,7 @@ void add_shape(const scene::Outcome& o, const MovingPicture& moving, Page& page)
                           static_cast<double>(std::max<std::size_t>(moving.frames.back().places.size(), 1));
   shape.point_size *= std::sqrt(std::clamp(left_out, 1.0, 4.0));
   for (const auto& p : moving.frames.back().places) shape.places.push_back({p[0], p[1]});
-  if (!o.stage->plan.empty()) shape.plan_diameter = 1e-3 * number_in(o, o.stage->plan).value_or(0.0);
+  if (!o.stage->plan.empty()) shape.plan_diameter = 1e-3 * scene::find_number(o, o.stage->plan).value_or(0.0);
   page.figures.push_back({"shape", "The concrete at the end, from the computed points.", shape_svg(shape)});
 }
 
@@ -222,7 +216,7 @@ std::string report_html(const scene::Outcome& o, const std::string& resolved, co
     if (const LineChart drawn = line_chart(chart, o); can_be_drawn(drawn))
       page.figures.push_back({chart.file.substr(0, chart.file.find('.')), "", chart_svg(drawn)});
   if (moving.frames.size() > 1) page.moving = thinned(moving, 40, 2500);
-  NumberTable results{"Results", {}};
+  ValueTable results{"Results", {}};
   add_rows(o, o.results, "", results);
   page.numbers = {results, cost_table(o.cost)};
   page.words = {

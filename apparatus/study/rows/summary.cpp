@@ -91,7 +91,7 @@ void write_whole(const fs::path& file, const std::string& text) {
 std::vector<std::string> write_results(const Definition& study, const Design& design,
                                        const Collected& collected, const std::vector<ResultIndices>& indices,
                                        const std::string& note, const fs::path& folder,
-                                       const cli::Stopwatch& watch) {
+                                       const Stopwatch& watch) {
   write_whole(folder / "study.csv", study_csv(study, design, collected));
   const fs::path h5 = folder / fmt::format(".study.{}.part", getpid());
   write_study_h5(h5, study, design, collected);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "apparatus/report/rheometer_files.hpp"
+#include "apparatus/run/stopwatch.hpp"
 #include "apparatus/study/rows/files.hpp"
 #include "apparatus/study/rows/indices.hpp"
 
@@ -16,7 +17,7 @@ namespace tremie::study {
 std::vector<std::string> write_results(const Definition& study, const Design& design,
                                        const Collected& collected, const std::vector<ResultIndices>& indices,
                                        const std::string& note, const std::filesystem::path& folder,
-                                       const cli::Stopwatch& watch);
+                                       const Stopwatch& watch);
 
 /// A file that a reader never meets half written.
 void write_whole(const std::filesystem::path& file, const std::string& text);

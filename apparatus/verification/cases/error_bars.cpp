@@ -39,9 +39,7 @@ std::vector<Trial> trials(Depth depth) {
 }
 
 double reading_of(const scene::Outcome& outcome, const std::string& name) {
-  const auto* value = scene::find_result(outcome, name);
-  const auto* number = value ? std::get_if<double>(value) : nullptr;
-  return number ? *number : std::nan("");
+  return scene::find_number(outcome, name).value_or(std::nan(""));
 }
 
 }  // namespace
