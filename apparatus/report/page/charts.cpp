@@ -11,7 +11,7 @@
 namespace tremie::report {
 namespace {
 
-constexpr double width = 480, left = 66, right = 14, bottom = 52, title_height = 22, entry_height = 18;
+constexpr double left = 66, right = 14, bottom = 52, title_height = 22, entry_height = 18;
 constexpr std::size_t most_points = 600;  ///< of a curve: more than the chart has dots
 constexpr std::array colours{"#0067a5", "#c25400", "#00785a", "#9a4f8a"};
 
@@ -223,7 +223,7 @@ std::string patches_svg(const LineChart& chart, const Axis& x, const Axis& y) {
 }
 
 /// A title that is too long for its place is set smaller and further to the left.
-std::string title_svg(const std::string& title) {
+std::string title_svg(const std::string& title, double width) {
   constexpr double letter = 0.6, size = 15.0;  // width of a letter over the size of the font
   const double wanted = letter * size * static_cast<double>(title.size());
   const double from = wanted > width - left - right ? 8.0 : left;
@@ -285,8 +285,8 @@ std::string legend(const std::vector<Entry>& entries) {
 }
 
 /// A long legend makes the chart higher, and leaves the curves their place.
-double height_of(std::size_t entries) {
-  return 330.0 + entry_height * static_cast<double>(entries > 4 ? entries - 4 : 0);
+double height_of(const LineChart& chart, std::size_t entries) {
+  return chart.height + entry_height * static_cast<double>(entries > 4 ? entries - 4 : 0);
 }
 
 void include_all(const LineChart& chart, Axis& x, Axis& y) {
@@ -302,15 +302,15 @@ void include_all(const LineChart& chart, Axis& x, Axis& y) {
   for (const EndBar& bar : chart.bars) add({bar.y - bar.half, bar.y + bar.half}, y);
 }
 
-/// All of a chart, from (0, 0) to (width, `height`).
+/// All of a chart, from (0, 0) to (its width, `height`).
 std::string panel(const LineChart& chart, const std::vector<Entry>& entries, double height) {
   const double top = title_height + entry_height * static_cast<double>(entries.size()) + 12;
-  Axis x{.log = chart.log_x, .from = left, .to = width - right};
+  Axis x{.log = chart.log_x, .from = left, .to = chart.width - right};
   Axis y{.log = chart.log_y, .from = height - bottom, .to = top};
   include_all(chart, x, y);
   if (chart.log_x || !(x.high > x.low)) widen(x, false);
   widen(y, chart.y_from_zero);
-  std::string text = title_svg(chart.title) + legend(entries);
+  std::string text = title_svg(chart.title, chart.width) + legend(entries);
   for (const Band& band : chart.bands) text += band_svg(band, x, y);
   for (const Range& range : chart.ranges) text += range_svg(range, x, y);
   for (const Level& level : chart.levels) text += level_svg(level, x, y);
@@ -322,7 +322,7 @@ std::string panel(const LineChart& chart, const std::vector<Entry>& entries, dou
   return text;
 }
 
-std::string svg_element(const std::string& title, double height, const std::string& size,
+std::string svg_element(const std::string& title, double width, double height, const std::string& size,
                         const std::string& content) {
   return fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\"{} role=\"img\" aria-label=\"{}\" "
@@ -350,22 +350,23 @@ bool can_be_drawn(const LineChart& chart) {
 
 std::string chart_svg(const LineChart& chart) {
   const auto entries = entries_of(chart);
-  const double height = height_of(entries.size());
-  return svg_element(chart.title, height, "", panel(chart, entries, height));
+  const double height = height_of(chart, entries.size());
+  return svg_element(chart.title, chart.width, height, "", panel(chart, entries, height));
 }
 
 std::string svg_file(const std::vector<LineChart>& charts) {
   constexpr double scale = 1.25;  // of a chart that no page makes wider or narrower
   std::string content, title;
-  double y = 6.0;
+  double y = 6.0, width = 0.0;
   for (const LineChart& chart : charts) {
     const auto entries = entries_of(chart);
-    const double height = height_of(entries.size());
+    const double height = height_of(chart, entries.size());
     content += fmt::format("<g transform=\"translate(0 {:.1f})\">{}</g>", y, panel(chart, entries, height));
     title += (title.empty() ? "" : "; ") + chart.title;
-    y += height + 12.0;
+    y += height + 12.0, width = std::max(width, chart.width);
   }
-  return svg_element(title, y, fmt::format(" width=\"{:.0f}\" height=\"{:.0f}\"", scale * width, scale * y),
+  return svg_element(title, width, y,
+                     fmt::format(" width=\"{:.0f}\" height=\"{:.0f}\"", scale * width, scale * y),
                      fmt::format("<rect fill=\"#fff\" width=\"{}\" height=\"{}\"/>{}", width, y, content));
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Charts as SVG, in the report's style: one width, text that a phone shows in 11 px, colours that colour-blind
+// Charts as SVG, in the report's style: text that a phone shows in 11 px, colours that colour-blind
 // readers tell apart. Standing alone they are light; in a page they follow its colours.
 
 #include <string>
@@ -64,6 +64,7 @@ struct LineChart {
   std::vector<Note> notes = {};
   bool log_x = false, log_y = false;
   bool y_from_zero = false;
+  double width = 480.0, height = 330.0;  ///< letters are 15 high; a long legend adds to the height
 };
 
 /// Whether some curve has two finite points.
