@@ -11,7 +11,7 @@
 namespace tremie::report {
 namespace {
 
-constexpr double left = 66, right = 14, bottom = 52, title_height = 22, entry_height = 18;
+constexpr double left = 70, right = 14, bottom = 52, title_height = 22, entry_height = 18;
 constexpr std::size_t most_points = 600;  ///< of a curve: more than the chart has dots
 constexpr std::array colours{"#0067a5", "#c25400", "#00785a", "#9a4f8a"};
 
@@ -35,7 +35,8 @@ struct Axis {
 void widen(Axis& axis, bool from_zero) {
   if (axis.low > axis.high) axis.low = 0.0, axis.high = 1.0;
   if (axis.log) {
-    axis.low /= 1.15, axis.high *= 1.15;
+    const double room = std::max(1.15, std::pow(axis.high / axis.low, 0.04));
+    axis.low /= room, axis.high *= room;
     return;
   }
   const bool positive = axis.low >= 0.0;
@@ -96,7 +97,7 @@ std::string grid_and_axes(const LineChart& chart, const Axis& x, const Axis& y) 
   line("axis", "#56616b", x.from, y.from, x.to, y.from);
   text += text_at(0.5 * (x.from + x.to), y.from + bottom - 10, "middle", chart.x_label);
   return text +
-         fmt::format("<text transform=\"translate(15 {:.1f}) rotate(-90)\" text-anchor=\"middle\">{}</text>",
+         fmt::format("<text transform=\"translate(13 {:.1f}) rotate(-90)\" text-anchor=\"middle\">{}</text>",
                      0.5 * (y.from + y.to), escaped(chart.y_label));
 }
 
@@ -354,16 +355,19 @@ std::string chart_svg(const LineChart& chart) {
   return svg_element(chart.title, chart.width, height, "", panel(chart, entries, height));
 }
 
-std::string svg_file(const std::vector<LineChart>& charts) {
+std::string svg_file(const std::vector<LineChart>& charts, std::size_t columns) {
   constexpr double scale = 1.25;  // of a chart that no page makes wider or narrower
   std::string content, title;
-  double y = 6.0, width = 0.0;
-  for (const LineChart& chart : charts) {
-    const auto entries = entries_of(chart);
-    const double height = height_of(chart, entries.size());
-    content += fmt::format("<g transform=\"translate(0 {:.1f})\">{}</g>", y, panel(chart, entries, height));
-    title += (title.empty() ? "" : "; ") + chart.title;
-    y += height + 12.0, width = std::max(width, chart.width);
+  double y = 6.0, width = 0.0, row_height = 0.0;
+  for (std::size_t i = 0; i < charts.size(); ++i) {
+    const auto entries = entries_of(charts[i]);
+    const double height = height_of(charts[i], entries.size()),
+                 x = static_cast<double>(i % columns) * charts[i].width;
+    content += fmt::format("<g transform=\"translate({:.1f} {:.1f})\">{}</g>", x, y,
+                           panel(charts[i], entries, height));
+    title += (title.empty() ? "" : "; ") + charts[i].title;
+    width = std::max(width, x + charts[i].width), row_height = std::max(row_height, height + 12.0);
+    if ((i + 1) % columns == 0 || i + 1 == charts.size()) y += row_height, row_height = 0.0;
   }
   return svg_element(title, width, y,
                      fmt::format(" width=\"{:.0f}\" height=\"{:.0f}\"", scale * width, scale * y),

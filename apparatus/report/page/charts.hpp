@@ -73,8 +73,8 @@ bool can_be_drawn(const LineChart& chart);
 /// One <svg> element. Values that are not finite are left out.
 std::string chart_svg(const LineChart& chart);
 
-/// Charts below each other on white, as one file.
-std::string svg_file(const std::vector<LineChart>& charts);
+/// Charts on white as one file, row by row in so many columns of one width.
+std::string svg_file(const std::vector<LineChart>& charts, std::size_t columns = 1);
 
 /// Bars of several series over names, 0 to 1, each with half of its error: shares of a variance.
 struct BarChart {

@@ -1,4 +1,4 @@
-// Rung 10: stiff and extreme scenes.
+// Case 10: stiff and extreme scenes.
 
 #include "apparatus/verification/extremes.hpp"
 
@@ -37,7 +37,7 @@ std::string in_a_table(std::string text) {
 
 }  // namespace
 
-CaseGroup extremes_cases(Depth depth) {
+Case extremes_case(Depth depth) {
   const double limit = depth == Depth::full ? 120.0 : 2.0;
   std::vector<Extreme> cases = extremes();
   if (depth == Depth::quick) {  // every seventh
