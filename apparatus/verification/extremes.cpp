@@ -352,7 +352,7 @@ Verdict judge(const Extreme& extreme, double limit) {
     if (too_slow) {
       verdict.ending = Ending::too_slow;
     } else if (!outcome.checks.reasons.empty()) {
-      verdict.ending = Ending::marked;
+      verdict.ending = Ending::flagged;
       verdict.why = outcome.checks.reasons.front();
     } else if (outcome.status != Status::completed) {
       verdict.ending = Ending::silent_wrong;

@@ -16,9 +16,9 @@ template <class Law, class Profile>
 Run profile_error(const Flow& flow, const Law& law, YieldMethod method, int cells, const Profile& profile) {
   const double start = cpu_seconds();
   bool converged = false;
-  const auto places = film::steady_state(flow, law, method, cells, converged);
+  const auto samples = film::steady_state(flow, law, method, cells, converged);
   const double cpu = cpu_seconds() - start;
-  return {fmt::format("{} cells", cells), film::height / cells, film::relative_error(places, profile), cpu,
+  return {fmt::format("{} cells", cells), film::height / cells, film::relative_error(samples, profile), cpu,
           converged ? "" : "not converged"};
 }
 
@@ -71,10 +71,10 @@ Run explicit_error(const Flow& flow, const Law& law, const ExplicitSettings& set
   bool failed = false;
   while (body.time < (flow.film ? 2.5 : 0.8)) failed |= explicit_step(body, law, settings, state).failed;
   write_back(state, body);
-  std::vector<film::Place> places;
+  std::vector<film::Sample> samples;
   for (std::size_t p = 0; p < body.points.size(); ++p)
-    places.push_back({body.points.x[p][1], body.points.v[p][0], 0.0, body.points.volume(p)});
-  return {fmt::format("{} cells", cells), h, film::relative_error(places, profile), cpu_seconds() - start,
+    samples.push_back({body.points.x[p][1], body.points.v[p][0], 0.0, body.points.volume(p)});
+  return {fmt::format("{} cells", cells), h, film::relative_error(samples, profile), cpu_seconds() - start,
           failed ? "failed" : ""};
 }
 

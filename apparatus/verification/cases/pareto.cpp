@@ -84,7 +84,7 @@ Problem measured(const Test& test, Depth depth) {
   return one;
 }
 
-/// The smallest error within a budget of CPU time, marked runs left out.
+/// The smallest error within a budget of CPU time, runs with a note left out.
 struct Best {
   double error = HUGE_VAL;
   std::string who = "none";
