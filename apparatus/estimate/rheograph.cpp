@@ -2,126 +2,99 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "apparatus/report/page/charts.hpp"
 
 namespace tremie::estimate {
 namespace {
 
-constexpr double left = 5.0, right = 250.0, low = 10.0, high = 600.0;  ///< Pa s, Pa
 constexpr std::array spreads{0.40, 0.45, 0.50, 0.55, 0.60, 0.65, 0.70, 0.75};
 constexpr std::array times{0.5, 1.0, 2.0, 3.0, 5.0, 10.0, 20.0};
 /// Slump flows that the sources of the paper accept for tremie concrete [m].
 constexpr double least_accepted = 0.45, most_accepted = 0.65;
 
-const char* const blue = "#0072b2";
-const char* const orange = "#d55e00";
+enum Colour { blue, orange, green, purple };  // of the charts' palette
 
 /// Where `wanted` lies between two values, on the logarithm of x.
 double crossing(double x0, double x1, double y0, double y1, double wanted) {
   return x0 * std::pow(x1 / x0, (wanted - y0) / (y1 - y0));
 }
 
-std::string data(const char* name, const Line& line) {
-  std::string text = fmt::format("${} << EOD\n", name);
-  for (const auto& [mu, tau_0] : line) text += fmt::format("{:.5g} {:.5g}\n", mu, tau_0);
-  return text + "EOD\n";
+/// The point of a line that is nearest to a viscosity, or else to a yield stress.
+std::pair<double, double> label_place(const Line& line, std::optional<double> mu, double tau_0) {
+  const auto off = [&](const auto& p) {
+    return std::abs(mu ? std::log(p.first / *mu) : std::log(p.second / tau_0));
+  };
+  return *std::min_element(line.begin(), line.end(),
+                           [&](const auto& a, const auto& b) { return off(a) < off(b); });
 }
 
-/// The point of a line inside of the frame that is nearest to a viscosity, or else to a yield stress.
-std::optional<std::pair<double, double>> label_place(const Line& line, std::optional<double> mu,
-                                                     double tau_0) {
-  std::optional<std::pair<double, double>> best;
-  double least = INFINITY;
-  for (const auto& [x, y] : line) {
-    if (x < 1.03 * left || x > 0.95 * right || y < 1.1 * low || y > 0.93 * high) continue;
-    const double off = std::abs(mu ? std::log(x / *mu) : std::log(y / tau_0));
-    if (off < least) best = {x, y}, least = off;
-  }
-  return best;
-}
-
-std::string label(const std::string& text, std::pair<double, double> at, const char* colour) {
-  return fmt::format("set label '{}' at {:.5g},{:.5g} center front boxed textcolor rgb '{}' font ',11'\n",
-                     text, at.first, at.second, colour);
-}
-
-/// Both edges of the shaded range, the upper one backwards. Where the lower one ends, no mix of the table is fluid
+/// Where a contour lies over a viscosity; the table's lowest yield stress where it has ended: no mix of the table is fluid
 /// enough to leave the range.
-Line accepted_range(const SlumpTable& table) {
-  Line edge = spread_contour(table, most_accepted);
-  if (edge.empty() || edge.back().first < table.mu.back())
-    edge.emplace_back(table.mu.back(), table.tau_0.front());
-  const Line upper = spread_contour(table, least_accepted);
-  edge.insert(edge.end(), upper.rbegin(), upper.rend());
-  return edge;
+double height_at(const Line& line, double mu, const SlumpTable& table) {
+  const auto found = std::find_if(line.begin(), line.end(), [&](const auto& p) { return p.first == mu; });
+  return found == line.end() ? table.tau_0.front() : found->second;
 }
 
-std::string head(const SlumpTable& table, const std::string& file) {
-  const bool svg = file.ends_with(".svg");
-  std::string text = svg ? "set terminal svg size 980,720 font 'sans,13' background rgb 'white'\n"
-                         : "set terminal pdfcairo size 29.7cm,21cm font 'sans,13'\n";
-  std::string quoted;
-  for (const char c : file) quoted.append(c == '\'' ? 2 : 1, c);
-  text += fmt::format("set output '{}'\nset logscale xy\nset xrange [{}:{}]\nset yrange [{}:{}]\n", quoted,
-                      left, right, low, high);
-  text +=
-      "set style textbox opaque noborder fillcolor rgb 'white' margins 0.5,0.3\n"
-      "set xlabel 'plastic viscosity μ in Pa·s'\nset ylabel 'yield stress τ_0 in Pa'\n"
-      "set xtics (5,10,20,30,50,100,200)\nset ytics (10,20,30,50,100,200,300,500)\n"
-      "set grid linecolor rgb '#e6e6e6'\nset key inside top right vertical Left reverse samplen 2 spacing "
-      "1.15\n";
-  return text + fmt::format(
-                    "set title 'Slump flow and t_{{500}} of fresh concrete, {:.0f} kg/m^3: exact Bingham, "
-                    "no slip, cone lifted at 15 cm/s'\n",
-                    table.density);
-}
-
-std::string title_of(bool first, const char* text) {
-  return first ? fmt::format("title '{}'", text) : std::string("notitle");
-}
-
-void add_contours(const SlumpTable& table, std::string& blocks, std::string& plots) {
-  for (std::size_t i = 0; i < spreads.size(); ++i) {
-    const Line line = spread_contour(table, spreads[i]);
-    const std::string name = fmt::format("s{}", i);
-    blocks += data(name.c_str(), line);
-    if (const auto at = label_place(line, 170.0, 0.0))
-      blocks += label(fmt::format("{:.0f} mm", 1e3 * spreads[i]), *at, blue);
-    plots += fmt::format(", ${} using 1:2 with lines linewidth 2 linecolor rgb '{}' {}", name, blue,
-                         title_of(i == 0, "slump flow"));
+report::Band accepted_range(const SlumpTable& table) {
+  const Line low = spread_contour(table, most_accepted), high = spread_contour(table, least_accepted);
+  report::Band band{"450 to 650 mm: accepted for tremie concrete", table.mu, {}, {}};
+  for (const double mu : table.mu) {
+    band.low.push_back(height_at(low, mu, table));
+    band.high.push_back(height_at(high, mu, table));
   }
-  for (std::size_t i = 0; i < times.size(); ++i) {
-    const Line line = t500_contour(table, times[i]);
-    const std::string name = fmt::format("t{}", i);
-    blocks += data(name.c_str(), line);
-    if (const auto at = label_place(line, {}, 25.0))
-      blocks += label(fmt::format("{:g} s", times[i]), *at, orange);
-    plots += fmt::format(", ${} using 1:2 with lines linewidth 2 dashtype 2 linecolor rgb '{}' {}", name,
-                         orange, title_of(i == 0, "t_{500}"));
-  }
+  return band;
 }
 
-void add_mixes(const std::vector<NamedMix>& mixes, std::string& blocks, std::string& plots) {
-  if (mixes.empty()) return;
-  Line points;
+/// `words` stands at `at`; `label` is in the legend.
+void add_contour(const Line& line, const std::string& words, std::pair<double, double> at, const char* label,
+                 Colour colour, report::LineChart& chart) {
+  report::Curve curve{.label = label,
+                      .x = {},
+                      .y = {},
+                      .mark = colour == blue ? report::Mark::line : report::Mark::dashed,
+                      .colour = colour};
+  for (const auto& [mu, tau_0] : line) curve.x.push_back(mu), curve.y.push_back(tau_0);
+  chart.curves.push_back(std::move(curve));
+  chart.notes.push_back({words, at.first, at.second, colour});
+}
+
+void add_contours(const SlumpTable& table, report::LineChart& chart) {
+  for (const double spread : spreads)
+    if (const Line line = spread_contour(table, spread); !line.empty())
+      add_contour(line, fmt::format("{:.0f} mm", 1e3 * spread), label_place(line, 150.0, 0.0),
+                  spread == spreads.front() ? "slump flow" : "", blue, chart);
+  for (const double t500 : times)
+    if (const Line line = t500_contour(table, t500); !line.empty())
+      add_contour(line, fmt::format("{:g} s", t500), label_place(line, {}, 20.0),
+                  t500 == times.front() ? "t500" : "", orange, chart);
+}
+
+void add_mixes(const std::vector<NamedMix>& mixes, report::LineChart& chart) {
+  report::Curve points{
+      .label = "published mixes", .x = {}, .y = {}, .mark = report::Mark::points, .colour = green};
   for (const NamedMix& mix : mixes) {
-    points.emplace_back(mix.mu, mix.tau_0);
-    blocks += fmt::format("set label '{}' at {:.5g},{:.5g} left front offset 0.9,0.5 font ',13'\n", mix.name,
-                          mix.mu, mix.tau_0);
+    points.x.push_back(mix.mu), points.y.push_back(mix.tau_0);
+    chart.notes.push_back({mix.name, mix.mu, 1.15 * mix.tau_0, green});
   }
-  blocks += data("mixes", points);
-  plots +=
-      ", $mixes using 1:2 with points pointtype 7 pointsize 1.1 linecolor rgb 'black' title 'Mixes A to C'";
+  if (!mixes.empty()) chart.curves.push_back(std::move(points));
 }
 
-void add_estimate(const Estimate& e, std::string& blocks, std::string& plots) {
+/// A point with the interval of either parameter.
+void add_estimate(const Estimate& e, report::LineChart& chart) {
   if (!e.tau_0 || !e.mu) return;
-  blocks += fmt::format("$estimate << EOD\n{:.5g} {:.5g} {:.5g} {:.5g} {:.5g} {:.5g}\nEOD\n", e.mu->value,
-                        e.tau_0->value, e.mu->low, e.mu->high, e.tau_0->low, e.tau_0->high);
-  plots +=
-      ", $estimate using 1:2:3:4:5:6 with xyerrorbars linewidth 2.5 pointtype 5 pointsize 0.8 linecolor rgb "
-      "'#009e73' title 'measured, with 95 %'";
+  chart.curves.push_back({"measured, with 95 %",
+                          {e.mu->value},
+                          {e.tau_0->value},
+                          report::Mark::points,
+                          {e.tau_0->low},
+                          {e.tau_0->high},
+                          purple});
+  chart.curves.push_back(
+      {.label = "", .x = {e.mu->low, e.mu->high}, .y = {e.tau_0->value, e.tau_0->value}, .colour = purple});
 }
 
 }  // namespace
@@ -154,17 +127,25 @@ Line t500_contour(const SlumpTable& table, double t500) {
   return line;
 }
 
-std::string rheograph_script(const SlumpTable& table, const std::vector<NamedMix>& mixes,
-                             const std::optional<Estimate>& estimate, const std::string& file) {
-  std::string blocks = data("accepted", accepted_range(table));
-  std::string plots =
-      "plot $accepted using 1:2 with filledcurves closed fillcolor rgb '#dceaf4' title '450 to 650 mm: "
-      "accepted for "
-      "tremie concrete'";
-  add_contours(table, blocks, plots);
-  add_mixes(mixes, blocks, plots);
-  if (estimate) add_estimate(*estimate, blocks, plots);
-  return head(table, file) + blocks + plots + "\n";
+std::string rheograph_svg(const SlumpTable& table, const std::vector<NamedMix>& mixes,
+                          const std::optional<Estimate>& estimate) {
+  report::LineChart chart{
+      .title = fmt::format(
+          "Slump flow and t500 of fresh concrete, {:.0f} kg/m³: exact Bingham, no slip, cone lifted "
+          "at 15 cm/s",
+          table.density),
+      .x_label = "plastic viscosity μ (Pa·s)",
+      .y_label = "yield stress τ₀ (Pa)",
+      .curves = {},
+      .bands = {accepted_range(table)},
+      .log_x = true,
+      .log_y = true,
+      .width = 720,
+      .height = 560};
+  add_contours(table, chart);
+  add_mixes(mixes, chart);
+  if (estimate) add_estimate(*estimate, chart);
+  return report::svg_file({chart});
 }
 
 }  // namespace tremie::estimate

@@ -23,9 +23,9 @@ Line spread_contour(const SlumpTable& table, double spread);
 /// Where the table's t500 is `t500` [s]: a mu for each node of tau_0 that has one.
 Line t500_contour(const SlumpTable& table, double t500);
 
-/// A gnuplot script that draws the table at its density into `file` (.svg, else PDF): contours, the slump flows that
-/// are accepted for tremie concrete shaded, mixes, and an estimate with its intervals.
-std::string rheograph_script(const SlumpTable& table, const std::vector<NamedMix>& mixes,
-                             const std::optional<Estimate>& estimate, const std::string& file);
+/// The table at its density as a chart: contours, the slump flows that are accepted for tremie concrete shaded, mixes, and
+/// an estimate with its intervals.
+std::string rheograph_svg(const SlumpTable& table, const std::vector<NamedMix>& mixes,
+                          const std::optional<Estimate>& estimate);
 
 }  // namespace tremie::estimate

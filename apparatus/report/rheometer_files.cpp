@@ -2,14 +2,12 @@
 
 #include <nlohmann/json.hpp>
 
-#include "apparatus/report/process.hpp"
 #include "apparatus/report/summary.hpp"
-#include "libmpm/io/write_error.hpp"
 
 namespace tremie::cli {
 
 nlohmann::ordered_json summary_of(const scene::Outcome& outcome) {
-  auto json = nlohmann::ordered_json::parse(report::summary_json(outcome));
+  auto json = report::run_summary(outcome);
   auto& checks = json["checks"];
   for (const char* key : {"volume_change", "mass_error", "unconverged_steps", "points_lost",
                           "max_speed_end_m_per_s", "stability_limit_exceeded"})
@@ -28,15 +26,5 @@ HeldInterrupts::HeldInterrupts() {
 }
 
 HeldInterrupts::~HeldInterrupts() { sigprocmask(SIG_SETMASK, &before_, nullptr); }
-
-std::string draw(const std::filesystem::path& folder, const std::string& script) {
-  const auto gnuplot = report::find_program("gnuplot");
-  if (gnuplot.empty()) return "gnuplot is not installed: no charts";
-  const auto file = folder / ".chart.gp";
-  io::write_text(file, script);
-  const auto code = report::run_program(gnuplot, {file.filename().string()}, folder);
-  std::filesystem::remove(file);
-  return code == 0 ? "" : "gnuplot failed: charts are missing or not complete";
-}
 
 }  // namespace tremie::cli

@@ -4,9 +4,7 @@
 
 #include <signal.h>
 
-#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
-#include <string>
 
 #include "apparatus/common/outcome.hpp"
 
@@ -28,8 +26,5 @@ class HeldInterrupts {
  private:
   sigset_t before_;
 };
-
-/// Runs a gnuplot script in the folder. A note for a person where it could not.
-std::string draw(const std::filesystem::path& folder, const std::string& script);
 
 }  // namespace tremie::cli

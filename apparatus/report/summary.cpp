@@ -73,7 +73,7 @@ const char* status_name(Status status) {
   return "failed";
 }
 
-std::string summary_json(const scene::Outcome& outcome) {
+Json run_summary(const scene::Outcome& outcome) {
   Json json;
   json["schema"] = 1;
   json["tremie"] = {{"version", version}, {"commit", commit}, {"compiler", compiler}};
@@ -83,8 +83,10 @@ std::string summary_json(const scene::Outcome& outcome) {
   json["checks"] = checks_json(outcome.checks);
   json["cost"] = cost_json(outcome.cost);
   if (outcome.error) json["error"] = error_json(*outcome.error);
-  return json.dump(2) + "\n";
+  return json;
 }
+
+std::string summary_json(const scene::Outcome& outcome) { return run_summary(outcome).dump(2) + "\n"; }
 
 std::string columns_csv(const std::vector<scene::Column>& series) {
   std::string text;

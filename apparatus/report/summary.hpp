@@ -1,10 +1,14 @@
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "apparatus/common/outcome.hpp"
 
 namespace tremie::report {
+
+/// What summary.json holds.
+nlohmann::ordered_json run_summary(const scene::Outcome& outcome);
 
 /// summary.json.
 std::string summary_json(const scene::Outcome& outcome);

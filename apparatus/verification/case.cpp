@@ -17,13 +17,13 @@ double observed_order(const Series& series) {
   return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
-bool all_kept(const std::vector<CaseGroup>& groups) {
-  const auto kept = [](const auto& one) {
-    return std::all_of(one.bounds.begin(), one.bounds.end(), [](const Bound& b) { return b.kept(); });
+bool all_kept(const std::vector<Case>& cases) {
+  const auto kept = [](const auto& part) {
+    return std::all_of(part.bounds.begin(), part.bounds.end(), [](const Bound& b) { return b.kept(); });
   };
-  return std::all_of(groups.begin(), groups.end(), [&](const CaseGroup& group) {
-    return std::all_of(group.cases.begin(), group.cases.end(), kept) &&
-           std::all_of(group.tables.begin(), group.tables.end(), kept);
+  return std::all_of(cases.begin(), cases.end(), [&](const Case& one) {
+    return std::all_of(one.problems.begin(), one.problems.end(), kept) &&
+           std::all_of(one.tables.begin(), one.tables.end(), kept);
   });
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// What a rung of the verification ladder measures: plain data, filled by the rungs and written by
+// What a verification case measures: plain data, filled by the cases and written by
 // apparatus/verification/document.
 
 #include <optional>
@@ -35,7 +35,7 @@ struct Bound {
 };
 
 /// An equation, its reference and what was measured against it.
-struct Case {
+struct Problem {
   std::string name;  ///< also of its files: "film_exact"
   std::string title;
   std::string equation;
@@ -55,10 +55,10 @@ struct Table {
   std::vector<Bound> bounds = {};
 };
 
-struct CaseGroup {
+struct Case {
   int number = 0;
   std::string title;
-  std::vector<Case> cases;
+  std::vector<Problem> problems;
   std::vector<Table> tables = {};
 };
 
@@ -68,6 +68,6 @@ enum class Depth { quick, full };
 double observed_order(const Series& series);
 
 /// Whether every bound of every case is kept.
-bool all_kept(const std::vector<CaseGroup>& groups);
+bool all_kept(const std::vector<Case>& cases);
 
 }  // namespace tremie::verification

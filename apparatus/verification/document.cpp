@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
-#include "apparatus/report/process.hpp"
+#include "apparatus/report/page/charts.hpp"
 #include "apparatus/verification/references/study_output.hpp"
 #include "libmpm/io/write_error.hpp"
 
@@ -15,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string stem_of(const CaseGroup& group) { return fmt::format("rung_{}", group.number); }
+std::string stem_of(const Case& c) { return fmt::format("case_{}", c.number); }
 
 std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.2e}", value) : "—"; }
 
@@ -33,7 +32,7 @@ std::string bounds_table(const std::vector<Bound>& bounds) {
   return text + "\n";
 }
 
-std::string case_section(const Case& one) {
+std::string problem_section(const Problem& one) {
   std::string text = fmt::format("### {}\n\n{}. Reference: {}. Error: {}.\n\n", one.title, one.equation,
                                  one.reference, one.norm);
   text += "| scheme | resolution | error | CPU s | order | |\n|---|---|---|---|---|---|\n";
@@ -60,17 +59,9 @@ std::string table_section(const Table& table) {
   return text + "\n" + bounds_table(table.bounds);
 }
 
-/// Whether the chart has anything to show: two runs of some series.
-bool can_be_drawn(const CaseGroup& group) {
-  for (const Case& one : group.cases)
-    for (const Series& s : one.series)
-      if (s.runs.size() > 1) return true;
-  return false;
-}
-
-std::string csv_of(const CaseGroup& group) {
+std::string csv_of(const Case& c) {
   std::string text = "case,scheme,resolution,h,error,cpu_s,note\n";
-  for (const Case& one : group.cases)
+  for (const Problem& one : c.problems)
     for (const Series& s : one.series)
       for (const Run& run : s.runs)
         text += fmt::format("{},\"{}\",\"{}\",{:g},{:.6e},{:.6g},\"{}\"\n", one.name, s.scheme, run.label,
@@ -78,60 +69,30 @@ std::string csv_of(const CaseGroup& group) {
   return text;
 }
 
-/// A gnuplot string in single quotes, taken as it is.
-std::string quoted(const std::string& text) {
-  std::string result;
-  for (const char c : text) result.append(c == '\'' ? 2 : 1, c);
-  return fmt::format("'{}' noenhanced", result);
-}
-
-std::string chart_of(const CaseGroup& group) {
-  std::vector<const Case*> drawn;
-  for (const Case& one : group.cases)
-    if (std::any_of(one.series.begin(), one.series.end(), [](const Series& s) { return s.runs.size() > 1; }))
-      drawn.push_back(&one);
-  const std::size_t columns = std::min<std::size_t>(2, drawn.size()), rows = (drawn.size() + 1) / 2;
-  std::string text = fmt::format(
-      "set terminal svg size {},{} font 'sans,13' background rgb 'white'\nset output '{}.svg'\n"
-      "set logscale xy\nset format x '10^{{%L}}'\nset format y '10^{{%L}}'\nset grid linecolor rgb "
-      "'#dddddd'\n"
-      "set xlabel 'CPU time in s'\nset key outside bottom center horizontal\nset multiplot layout {},{}\n",
-      620 * columns, 460 * rows, stem_of(group), rows, columns);
-  constexpr std::array colours{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"};
-  for (const Case* one : drawn) {
-    std::string plots;
-    for (std::size_t i = 0; i < one->series.size(); ++i) {
-      text += fmt::format("$d{} << EOD\n", i);
-      for (const Run& run : one->series[i].runs)
-        if (run.error > 0.0) text += fmt::format("{:.6g} {:.6g}\n", std::max(run.cpu, 1e-9), run.error);
-      text += "EOD\n";
-      if (std::none_of(one->series[i].runs.begin(), one->series[i].runs.end(),
-                       [](const Run& run) { return run.error > 0.0; }))
-        continue;
-      plots += fmt::format(
-          "{}$d{} using 1:2 with linespoints linewidth 2 pointtype 7 linecolor rgb '{}' title {}",
-          plots.empty() ? "" : ", ", i, colours[i % colours.size()], quoted(one->series[i].scheme));
+/// Error over CPU time, a chart a problem with two runs of some scheme.
+std::vector<report::LineChart> charts_of(const Case& c) {
+  std::vector<report::LineChart> charts;
+  for (const Problem& one : c.problems) {
+    if (std::none_of(one.series.begin(), one.series.end(), [](const Series& s) { return s.runs.size() > 1; }))
+      continue;
+    report::LineChart chart{.title = one.title,
+                            .x_label = "CPU time (s)",
+                            .y_label = "error",
+                            .curves = {},
+                            .log_x = true,
+                            .log_y = true};
+    for (const Series& s : one.series) {
+      report::Curve curve{.label = s.scheme, .x = {}, .y = {}, .mark = report::Mark::line_and_points};
+      for (const Run& run : s.runs)
+        if (run.error > 0.0) curve.x.push_back(std::max(run.cpu, 1e-9)), curve.y.push_back(run.error);
+      if (!curve.x.empty()) chart.curves.push_back(std::move(curve));
     }
-    text += fmt::format("set title {}\nset ylabel 'error'\nplot {}\n", quoted(one->title), plots);
+    charts.push_back(std::move(chart));
   }
-  return text + "unset multiplot\n";
+  return charts;
 }
 
-std::string draw(const std::vector<CaseGroup>& groups, const fs::path& folder) {
-  std::string script;
-  for (const CaseGroup& group : groups)
-    if (can_be_drawn(group)) script += chart_of(group) + "reset\n";
-  if (script.empty()) return {};
-  const auto gnuplot = report::find_program("gnuplot");
-  if (gnuplot.empty()) return "gnuplot is not installed: no charts";
-  const fs::path file = folder / ".charts.gp";
-  io::write_text(file, script);
-  const auto code = report::run_program(gnuplot, {file.filename().string()}, folder);
-  fs::remove(file);
-  return code == 0 ? "" : "gnuplot failed: charts are missing or not complete";
-}
-
-std::string head(const std::vector<CaseGroup>& groups, const std::string& command) {
+std::string head(const std::vector<Case>& cases, const std::string& command) {
   std::string text = fmt::format(
       "# Verification: error against run time\n\ntremie {} ({}), {}, {}.\nMade by `{}`. CPU seconds are of "
       "one "
@@ -142,7 +103,7 @@ std::string head(const std::vector<CaseGroup>& groups, const std::string& comman
       "log "
       "cell size over all resolutions of the scheme.\n\n",
       version, commit, compiler, study::processor(), command);
-  const auto broken = broken_bounds(groups);
+  const auto broken = broken_bounds(cases);
   text += broken.empty() ? "Every bound is kept.\n" : "Bounds that are **not kept**:\n\n";
   for (const auto& line : broken) text += fmt::format("- {}\n", line);
   text += '\n';
@@ -151,33 +112,34 @@ std::string head(const std::vector<CaseGroup>& groups, const std::string& comman
 
 }  // namespace
 
-std::vector<std::string> broken_bounds(const std::vector<CaseGroup>& groups) {
+std::vector<std::string> broken_bounds(const std::vector<Case>& cases) {
   std::vector<std::string> lines;
-  const auto add = [&](const CaseGroup& group, const std::string& name, const std::vector<Bound>& bounds) {
+  const auto add = [&](const Case& c, const std::string& name, const std::vector<Bound>& bounds) {
     for (const Bound& b : bounds)
       if (!b.kept())
-        lines.push_back(fmt::format("rung {}, {}: {} {:.3g}, {} {:.3g} wanted", group.number, name, b.what,
+        lines.push_back(fmt::format("case {}, {}: {} {:.3g}, {} {:.3g} wanted", c.number, name, b.what,
                                     b.value, b.at_least ? "at least" : "at most", b.limit));
   };
-  for (const CaseGroup& group : groups) {
-    for (const Case& one : group.cases) add(group, one.name, one.bounds);
-    for (const Table& table : group.tables) add(group, table.name, table.bounds);
+  for (const Case& c : cases) {
+    for (const Problem& one : c.problems) add(c, one.name, one.bounds);
+    for (const Table& table : c.tables) add(c, table.name, table.bounds);
   }
   return lines;
 }
 
-std::string write_document(const std::vector<CaseGroup>& groups, const std::string& command,
-                           const fs::path& folder) {
-  std::string text = head(groups, command);
-  for (const CaseGroup& group : groups) {
-    text += fmt::format("## Rung {}. {}\n\n", group.number, group.title);
-    if (can_be_drawn(group)) text += fmt::format("![error over CPU time]({}.svg)\n\n", stem_of(group));
-    for (const Case& one : group.cases) text += case_section(one);
-    for (const Table& table : group.tables) text += table_section(table);
-    if (!group.cases.empty()) io::write_text(folder / (stem_of(group) + ".csv"), csv_of(group));
+void write_document(const std::vector<Case>& cases, const std::string& command, const fs::path& folder) {
+  std::string text = head(cases, command);
+  for (const Case& c : cases) {
+    text += fmt::format("## Case {}. {}\n\n", c.number, c.title);
+    if (const auto charts = charts_of(c); !charts.empty()) {
+      text += fmt::format("![error over CPU time]({}.svg)\n\n", stem_of(c));
+      io::write_text(folder / (stem_of(c) + ".svg"), report::svg_file(charts));
+    }
+    for (const Problem& one : c.problems) text += problem_section(one);
+    for (const Table& table : c.tables) text += table_section(table);
+    if (!c.problems.empty()) io::write_text(folder / (stem_of(c) + ".csv"), csv_of(c));
   }
   io::write_text(folder / "VERIFICATION.md", text);
-  return draw(groups, folder);
 }
 
 }  // namespace tremie::verification

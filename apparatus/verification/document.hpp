@@ -1,6 +1,6 @@
 #pragma once
 
-// VERIFICATION.md with its CSV files and charts: what the rungs measured, for a person.
+// VERIFICATION.md with its CSV files and charts: what the cases measured, for a person.
 
 #include <filesystem>
 #include <string>
@@ -10,13 +10,12 @@
 
 namespace tremie::verification {
 
-/// Writes VERIFICATION.md, a CSV and a chart a rung (error over CPU time, all schemes) into `folder`, which
-/// is there. `command` is what made it. Returns a note where charts could not be drawn, else nothing. Throws
-/// io::WriteError.
-std::string write_document(const std::vector<CaseGroup>& groups, const std::string& command,
-                           const std::filesystem::path& folder);
+/// Writes VERIFICATION.md, a CSV and a chart a case (error over CPU time, all schemes) into `folder`, which
+/// is there. `command` is what made it. Throws io::WriteError.
+void write_document(const std::vector<Case>& cases, const std::string& command,
+                    const std::filesystem::path& folder);
 
 /// The bounds that were not kept, a line each.
-std::vector<std::string> broken_bounds(const std::vector<CaseGroup>& groups);
+std::vector<std::string> broken_bounds(const std::vector<Case>& cases);
 
 }  // namespace tremie::verification

@@ -9,6 +9,7 @@
 
 #include "apparatus/cell/cell.hpp"
 #include "apparatus/registry/registry.hpp"
+#include "apparatus/scene/document.hpp"
 #include "apparatus/verification/case.hpp"
 #include "rheometer/reference/instrument.hpp"
 #include "rheometer/reference/reiner_riwlin.hpp"
@@ -299,8 +300,15 @@ scene::Outcome run_cell_scene(const Extreme& extreme) {
   return cell::outcome(scene, cell::run(scene));
 }
 
+bool is_of_the_cell(const Extreme& extreme) {
+  const auto document = scene::parse_text(extreme.scene, extreme.name, scene::Layer::scene);
+  const auto* node = scene::find(document, "apparatus");
+  const auto* name = node ? std::get_if<std::string>(&node->value) : nullptr;
+  return name && *name == "cell";
+}
+
 scene::Outcome run_scene(const Extreme& extreme, double limit, bool& too_slow) {
-  if (extreme.scene.find("\"cell\"") != std::string::npos) return run_cell_scene(extreme);
+  if (is_of_the_cell(extreme)) return run_cell_scene(extreme);
   const auto scene = scene::read_text(extreme.scene, extreme.name, extreme.overrides);
   std::atomic<bool> stop{false};
   const double start = cpu_seconds();
@@ -338,7 +346,7 @@ Verdict judge(const Extreme& extreme, double limit) {
     if (too_slow) {
       verdict.ending = Ending::too_slow;
     } else if (!outcome.checks.reasons.empty()) {
-      verdict.ending = Ending::marked;
+      verdict.ending = Ending::flagged;
       verdict.why = outcome.checks.reasons.front();
     } else if (outcome.status != Status::completed) {
       verdict.ending = Ending::silent_wrong;

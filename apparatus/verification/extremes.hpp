@@ -14,7 +14,7 @@ namespace tremie::verification {
 /// How a scene ended.
 enum class Ending {
   right,        ///< exit 0, and physics has nothing against it
-  marked,       ///< exit 3, with its reason
+  flagged,      ///< exit 3, with its reason
   no_meaning,   ///< exit 2, with its reason
   too_slow,     ///< stopped after its time: not judged
   silent_wrong  ///< exit 0 against physics, or exit 3 without a reason

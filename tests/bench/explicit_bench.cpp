@@ -22,11 +22,11 @@ Body<Geometry> block(bool thixotropic, int cells = Geometry::dim == 3 ? 12 : 60)
   constexpr int D = Geometry::dim;
   const double h = 0.015, height = cells * h;
   Body<Geometry> body;
-  body.mix = test::concrete(54.0, 35.8, 33e3);
+  body.mix = bodies::concrete(54.0, 35.8, 33e3);
   body.gravity[Geometry::up] = -9.81;
   for (Axis& a : body.grid.axes) a = {.h = h, .low = FaceKind::free_slip};
-  test::fill_box<Geometry>(body, Vec<D>::Zero(), Vec<D>::Constant(height), 2,
-                           [&](const auto& x) { return 2400.0 * 9.81 * (height - x[Geometry::up]); });
+  bodies::fill_box<Geometry>(body, Vec<D>::Zero(), Vec<D>::Constant(height), 2,
+                             [&](const auto& x) { return 2400.0 * 9.81 * (height - x[Geometry::up]); });
   if (!thixotropic) return body;
   body.mix.thixotropy = Thixotropy{1.3, 0.01};
   body.points.lambda.assign(body.points.size(), 1.0);

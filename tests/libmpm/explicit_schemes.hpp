@@ -43,13 +43,13 @@ inline ExplicitSettings settings_of(const Scheme& scheme, double dt) {
 /// A block of 2000 points on a floor with friction.
 inline Body<ThreeD> collapsing_block() {
   Body<ThreeD> body;
-  body.mix = concrete(20.0, 5.0, 33e3);
+  body.mix = bodies::concrete(20.0, 5.0, 33e3);
   body.mix.thixotropy = Thixotropy{1.3, 0.01};
   body.gravity[2] = -g;
   for (Axis& a : body.grid.axes) a = {.h = 0.02, .low = FaceKind::free_slip};
   body.grid.axes[2].low = FaceKind::friction;
-  fill_box<ThreeD>(body, Vec<3>::Zero(), Vec<3>(0.1, 0.1, 0.2), 2,
-                   [](const auto& x) { return 2400.0 * g * (0.2 - x[2]); });
+  bodies::fill_box<ThreeD>(body, Vec<3>::Zero(), Vec<3>(0.1, 0.1, 0.2), 2,
+                           [](const auto& x) { return 2400.0 * g * (0.2 - x[2]); });
   body.points.lambda.assign(body.points.size(), 2.0);
   body.points.gamma_dot.assign(body.points.size(), 0.0);
   return body;

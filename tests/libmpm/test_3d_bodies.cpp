@@ -9,7 +9,7 @@
 namespace tremie {
 namespace {
 
-using namespace test;
+using namespace bodies;
 
 StepSettings by_iteration(double tolerance, double dt) {
   StepSettings settings;

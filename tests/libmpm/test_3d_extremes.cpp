@@ -8,7 +8,7 @@
 namespace tremie {
 namespace {
 
-using namespace test;
+using namespace bodies;
 
 constexpr double rho = 2400.0, g = 9.81, width = 0.1, height = 0.3;
 

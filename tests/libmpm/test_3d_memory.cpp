@@ -12,13 +12,13 @@ namespace {
 /// Two steps of a thixotropic block of n^3 full cells, 8 points each, that slumps on a floor.
 bool slumps(int n) {
   ImplicitBody<ThreeD> body;
-  body.mix = test::concrete(54.0, 35.8, 1e6);
+  body.mix = bodies::concrete(54.0, 35.8, 1e6);
   body.gravity[2] = -9.81;
   const double h = 0.3 / n;
   for (Axis& a : body.grid.axes) a.h = h;
   body.grid.axes[2].low = FaceKind::no_slip;
-  test::fill_box<ThreeD>(body, Vec<3>::Zero(), Vec<3>::Constant(0.3), 2,
-                         [&](const auto& x) { return 2400.0 * 9.81 * (0.3 - x[2]); });
+  bodies::fill_box<ThreeD>(body, Vec<3>::Zero(), Vec<3>::Constant(0.3), 2,
+                           [&](const auto& x) { return 2400.0 * 9.81 * (0.3 - x[2]); });
   body.mix.thixotropy = Thixotropy{1.3, 0.01};
   shrink(body.points);
   body.points.lambda.assign(body.points.size(), 0.0);

@@ -9,7 +9,7 @@
 namespace tremie {
 namespace {
 
-using namespace test;
+using namespace bodies;
 
 /// Points in the middles of the cells of a box with holes; cells of 1 m.
 struct Holes {

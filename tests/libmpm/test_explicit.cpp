@@ -12,6 +12,7 @@ namespace tremie {
 namespace {
 
 using namespace test;
+using namespace bodies;
 
 /// Steps a body from here to there; returns the reports' worst.
 template <class Geometry>

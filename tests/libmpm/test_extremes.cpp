@@ -9,7 +9,7 @@
 namespace tremie {
 namespace {
 
-using namespace test;
+using namespace bodies;
 
 constexpr double g = 9.81;
 

@@ -8,7 +8,7 @@
 namespace tremie {
 namespace {
 
-using namespace test;
+using namespace bodies;
 
 constexpr double r_in = 0.05, r_out = 0.15;
 

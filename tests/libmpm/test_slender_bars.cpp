@@ -8,7 +8,7 @@
 namespace tremie {
 namespace {
 
-using namespace test;
+using namespace bodies;
 
 constexpr double mu = 30.0, diameter = 0.012, speed = 1e-4, depth = 0.04;
 

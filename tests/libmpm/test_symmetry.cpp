@@ -8,7 +8,7 @@
 namespace tremie {
 namespace {
 
-using namespace test;
+using namespace bodies;
 
 /// A block on the floor, free to slump; the whole of it, or the quarter between two planes of symmetry.
 ImplicitBody<ThreeD> slumping(bool quarter, FaceKind floor) {

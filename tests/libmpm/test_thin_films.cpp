@@ -14,11 +14,11 @@ constexpr double rho_g = 2400.0 * 9.81, tau_0 = 50.0, mu = 30.0;
 
 ImplicitBody<PlaneStrain> film_on_a_wall(double thickness) {
   ImplicitBody<PlaneStrain> body;
-  body.mix = test::concrete(tau_0, mu);
+  body.mix = bodies::concrete(tau_0, mu);
   body.gravity = {0.0, -9.81};
   body.grid.axes[0] = {.h = 0.01, .low = FaceKind::no_slip};
   body.grid.axes[1] = {.h = 0.01, .periodic = true, .n_cells = 4};
-  test::fill_box(body, Vec<2>(0.0, 0.0), Vec<2>(thickness, 0.04), 20);
+  bodies::fill_box(body, Vec<2>(0.0, 0.0), Vec<2>(thickness, 0.04), 20);
   return body;
 }
 
@@ -51,7 +51,7 @@ TEST(ThinFilm, HoldsAndSlidesInPartOfACell) {
 /// the right one or the other way round, over the mean depth, at most over the last ten.
 double tilt_after_long_steps(bool moving_surface) {
   ImplicitBody<PlaneStrain> body;
-  body.mix = test::concrete(0.0, mu);
+  body.mix = bodies::concrete(0.0, mu);
   body.gravity = {0.0, -9.81};
   body.grid.axes[0] = {.h = 0.02, .low = FaceKind::no_slip, .high = FaceKind::no_slip, .n_cells = 20};
   body.grid.axes[1] = {.h = 0.02, .low = FaceKind::no_slip};

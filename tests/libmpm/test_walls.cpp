@@ -8,7 +8,7 @@
 namespace tremie {
 namespace {
 
-using namespace test;
+using namespace bodies;
 
 constexpr double coefficient = 0.4, g = 9.81;
 

@@ -12,6 +12,7 @@
 namespace tremie {
 namespace {
 
+using namespace bodies;
 using namespace test;
 
 /// A rising wall beside the block, to which it must not come nearer.

@@ -25,7 +25,7 @@ ImplicitBody<PlaneStrain> row(int cells, double Bi) {
   const double h = spacing / cells;
   const std::array n{2 * static_cast<int>(std::lround(reach / h)), cells};
   ImplicitBody<PlaneStrain> body;
-  body.mix = test::concrete(Bi * mu * speed / diameter, mu);
+  body.mix = bodies::concrete(Bi * mu * speed / diameter, mu);
   body.mix.density = 1.0;  // creeping flow
   for (int d = 0; d < 2; ++d)
     body.grid.axes[d] = {.h = h, .low = FaceKind::free_slip, .high = FaceKind::free_slip, .n_cells = n[d]};

@@ -2,7 +2,7 @@
 // over time for tau_0, mu, alpha, A_thix, m and the rest, one varied at a time around
 // apparatus/scenes/cell_parametric.toml.
 //
-//   cell_parametric SCENE.toml DIR     writes cell_parametric.csv, .gp and .svg into DIR
+//   cell_parametric SCENE.toml DIR     writes cell_parametric.csv and .svg into DIR
 
 #include <vector>
 
@@ -26,42 +26,33 @@ const std::vector<Study> studies{
     {"regularisation m", "model.regularisation", {"1 s", "5 s", "50 s"}},
     {"rest", "test.rest", {"0 s", "100 s", "240 s"}}};
 
-const char* const blues[] = {"#9fc5e8", "#3d85c6", "#073763"};  // small, middle, large value
-const char* const oranges[] = {"#f9cb9c", "#e69138", "#783f04"};
-
 void run(const std::string& scene, const std::string& directory) {
   std::ofstream csv(directory + "/cell_parametric.csv");
   csv << "study,value,time_s,shear_rate_per_s,shear_stress_Pa,flocculation\n";
-  std::ofstream gp(directory + "/cell_parametric.gp");
-  gp << "set terminal svg size 1200,760 font 'sans,13' background 'white'\nset output 'cell_parametric.svg'\n"
-        "set datafile separator ','\nset grid lc '#dddddd'\nset xlabel 'time in s'\nset ylabel 'shear stress "
-        "in Pa' tc "
-        "'#0b5394'\nset y2label 'lambda' tc '#e07b00'\nset ytics nomirror\nset y2tics\nset yrange [0:*]\nset "
-        "y2range "
-        "[0:*]\nset key top right samplen 1.5\nset offsets 0, 0, graph 0.3, 0\nset xtics 10\nset multiplot "
-        "layout 2,3\n"
-        "f(s,v) = sprintf('< grep \"^%s,%s,\" cell_parametric.csv', s, v)\n";
+  std::vector<report::LineChart> charts;
   for (const Study& s : studies) {
-    gp << "set title '" << s.title << "' noenhanced\nplot ";
-    for (std::size_t k = 0; k < s.values.size(); ++k) {
-      const cell::Scene varied = cell::read(scene, {std::string(s.key) + "=" + s.values[k]});
+    report::LineChart stress{
+        .title = s.title, .x_label = "time (s)", .y_label = "shear stress (Pa)", .curves = {}};
+    stress.y_from_zero = true;
+    report::LineChart lambda = stress;
+    lambda.y_label = "λ";
+    for (const char* value : s.values) {
+      const cell::Scene varied = cell::read(scene, {std::string(s.key) + "=" + value});
       const CellResult result = cell::run(varied);
+      report::Curve stresses = curve(value), lambdas = curve(value);
       for (std::size_t i = 0; i < result.samples.size(); i += 10) {
         const CellSample& p = result.samples[i];
-        csv << s.title << ',' << s.values[k] << ',' << p.time << ',' << p.shear_rate << ',' << *p.shear_stress
+        csv << s.title << ',' << value << ',' << p.time << ',' << p.shear_rate << ',' << *p.shear_stress
             << ',' << *p.flocculation << '\n';
+        add_point(stresses, p.time, *p.shear_stress);
+        add_point(lambdas, p.time, *p.flocculation);
       }
-      const std::string source = "f('" + std::string(s.title) + "','" + s.values[k] + "')";
-      gp << (k ? ", " : "") << source << " using 3:5 with lines lw 2 lc '" << blues[k] << "' title '"
-         << s.values[k] << "', " << source << " using 3:6 axes x1y2 with lines lw 2 lc '" << oranges[k]
-         << "' notitle";
+      stress.curves.push_back(std::move(stresses));
+      lambda.curves.push_back(std::move(lambdas));
     }
-    gp << "\n";
+    charts.insert(charts.end(), {stress, lambda});
   }
-  gp << "unset multiplot\n";
-  csv.close();
-  gp.close();
-  draw(directory, "cell_parametric.gp");
+  std::ofstream(directory + "/cell_parametric.svg") << report::svg_file(charts, 2);
 }
 
 }  // namespace

@@ -4,8 +4,9 @@
 //   to the finest solution, 3200 intervals at a tolerance of 1e-9. Published: T = 2.36, 1.63, 1.38, 1.24 N m
 //   at 0, 5, 10, 20 s.
 //
-//   couette_convergence DIR     writes couette_convergence.md, couette_decay.csv, .gp and .svg into DIR
+//   couette_convergence DIR     writes couette_convergence.md, couette_decay.csv and .svg into DIR
 
+#include <array>
 #include <cmath>
 #include <iomanip>
 
@@ -55,26 +56,24 @@ void write_decay(const std::string& directory) {
   for (int i = 0; i <= 200; ++i) t.push_back(0.1 * i);
   const CouetteDecay gated = thixotropic_couette(mix_a(Kinetics::gated), t);
   const CouetteDecay roussel = thixotropic_couette(mix_a(Kinetics::roussel), t);
-  for (std::size_t i = 0; i < t.size(); ++i)
+  report::LineChart torque{.title = "Torque", .x_label = "time (s)", .y_label = "torque (N·m)", .curves = {}},
+      sheared{.title = "Sheared as far as", .x_label = "time (s)", .y_label = "radius (mm)", .curves = {}};
+  torque.curves = {curve("gated"),
+                   curve("roussel", report::Mark::dashed),
+                   {"published, gated", times, {2.36, 1.63, 1.38, 1.24}, report::Mark::points}};
+  torque.levels = {{"dynamic Reiner-Riwlin torque", 0.801, 0.0}};
+  torque.y_from_zero = true;
+  sheared.curves = {curve("gated"), curve("roussel", report::Mark::dashed)};
+  const std::array decays{&gated, &roussel};
+  for (std::size_t i = 0; i < t.size(); ++i) {
     out << t[i] << ',' << gated.torque[i] << ',' << roussel.torque[i] << ',' << 1e3 * gated.sheared_radius[i]
         << ',' << 1e3 * roussel.sheared_radius[i] << '\n';
-  out.close();
-  std::ofstream script(directory + "/couette_decay.gp");
-  script
-      << "set terminal svg size 1000,420 font 'sans,13' background 'white'\nset output 'couette_decay.svg'\n"
-         "set datafile separator ','\nset grid lc '#dddddd'\nset xlabel 'time in s'\nset multiplot layout "
-         "1,2\n"
-         "set ylabel 'torque in N m'\nset yrange [0:2.5]\n"
-         "$stated << EOD\n0,2.36\n5,1.63\n10,1.38\n20,1.24\nEOD\n"
-         "plot 'couette_decay.csv' using 1:2 skip 1 with lines lw 2 lc '#0072b2' title 'gated', "
-         "'' using 1:3 skip 1 with lines lw 2 dt 2 lc '#d55e00' title 'roussel', "
-         "$stated using 1:2 with points pt 7 lc 'black' title 'published, gated', "
-         "0.801 with lines dt 3 lc 'black' title 'dynamic Reiner-Riwlin torque'\n"
-         "set ylabel 'sheared as far as, in mm'\nset yrange [63.5:95]\n"
-         "plot 'couette_decay.csv' using 1:4 skip 1 with lines lw 2 lc '#0072b2' title 'gated', "
-         "'' using 1:5 skip 1 with lines lw 2 dt 2 lc '#d55e00' title 'roussel'\nunset multiplot\n";
-  script.close();
-  draw(directory, "couette_decay.gp");
+    for (std::size_t k = 0; k < decays.size(); ++k) {
+      add_point(torque.curves[k], t[i], decays[k]->torque[i]);
+      add_point(sheared.curves[k], t[i], 1e3 * decays[k]->sheared_radius[i]);
+    }
+  }
+  std::ofstream(directory + "/couette_decay.svg") << report::svg_file({torque, sheared});
 }
 
 void run(const std::string& directory) {

@@ -12,7 +12,7 @@
 namespace tremie {
 namespace {
 
-using namespace test;
+using namespace bodies;
 
 constexpr double H = 0.1, rho = 2400.0, mu = 35.8, tau_0 = 54.0;
 

@@ -22,11 +22,11 @@ double order_of(const std::vector<double>& errors) {
 }
 
 template <class Law>
-std::vector<Place> steady(const Flow& flow, const Law& law, YieldMethod method, int cells) {
+std::vector<Sample> steady(const Flow& flow, const Law& law, YieldMethod method, int cells) {
   bool converged = false;
-  auto places = steady_state(flow, law, method, cells, converged);
+  auto samples = steady_state(flow, law, method, cells, converged);
   EXPECT_TRUE(converged);
-  return places;
+  return samples;
 }
 
 const std::vector<int> resolutions{8, 16, 32, 64};

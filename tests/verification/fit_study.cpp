@@ -1,7 +1,7 @@
 // What the fit of a torque record is worth: coverage of its 95 % intervals, the apparent alpha beside the
 // fitted one, and the paper's site test.
 //
-//   fit_study DIR SITE.csv     writes fit_study.md, fit_apparent_alpha.csv, .gp and .svg into DIR
+//   fit_study DIR SITE.csv     writes fit_study.md, fit_apparent_alpha.csv and .svg into DIR
 
 #include <algorithm>
 #include <cmath>
@@ -53,32 +53,31 @@ void write_apparent(std::ofstream& out, const Apparent& a, const std::string& di
          "|\n|---|---|---|\n";
   std::ofstream csv(directory + "/fit_apparent_alpha.csv");
   csv << "window_s,newtonian_median,newtonian_low,newtonian_high,vane_median,vane_low,vane_high\n";
+  report::LineChart chart{
+      .title = "One concrete, one α (2 % noise; bars: 95 % of 200 records)",
+      .x_label = "window of the record (s)",
+      .y_label = "α",
+      .curves = {curve("apparent, Newtonian rate 3.91 1/s", report::Mark::line_and_points),
+                 curve("apparent, rate at the vane 10.2 1/s", report::Mark::line_and_points)},
+      .levels = {{"truth", synthetic::alpha, 0.0}},
+      .y_from_zero = true};
   for (std::size_t i = 0; i < 4; ++i) {
     out << "| " << a.window[i] << " s | " << median(a.newtonian[i]) << " | " << median(a.vane[i]) << " |\n";
     csv << a.window[i];
-    for (const auto* v : {&a.newtonian[i], &a.vane[i]})
-      csv << ',' << median(*v) << ',' << quantile(*v, 0.025) << ',' << quantile(*v, 0.975);
+    for (std::size_t k = 0; k < 2; ++k) {
+      const auto& v = k == 0 ? a.newtonian[i] : a.vane[i];
+      report::Curve& drawn = chart.curves[k];
+      add_point(drawn, a.window[i], median(v));
+      drawn.low.push_back(quantile(v, 0.025)), drawn.high.push_back(quantile(v, 0.975));
+      csv << ',' << drawn.y.back() << ',' << drawn.low.back() << ',' << drawn.high.back();
+    }
     csv << '\n';
   }
-  csv.close();
-  std::ofstream script(directory + "/fit_apparent_alpha.gp");
-  script << "set terminal svg size 800,520 font 'sans,13' background 'white'\nset output "
-            "'fit_apparent_alpha.svg'\n"
-         << "set datafile separator ','\nset grid lc '#dddddd'\nset xrange [0:22]\nset yrange [0:0.06]\n"
-         << "set xlabel 'window of the record in s'\nset ylabel 'alpha'\nset key top right\n"
-         << "set title 'One concrete, one alpha (2 % noise; bars: 95 % of 200 records)'\n"
-         << "low = " << quantile(a.fitted, 0.025) << "; high = " << quantile(a.fitted, 0.975)
-         << "; fitted = " << median(a.fitted) << "\n"
-         << "set object 1 rectangle from 0,low to 22,high fc '#009e73' fs solid 0.2 noborder behind\n"
-         << "plot 0.0358 with lines lw 2 lc 'black' title 'truth, 0.0358', "
-         << "fitted with lines lw 2 dt 2 lc '#009e73' title 'fit of the thixotropic Couette model, whole "
-            "record', "
-         << "'fit_apparent_alpha.csv' using 1:2:3:4 skip 1 with yerrorlines lw 2 pt 7 lc '#0072b2' title "
-            "'apparent, Newtonian rate 3.91 1/s', "
-         << "'' using 1:5:6:7 skip 1 with yerrorlines lw 2 pt 5 lc '#d55e00' title 'apparent, rate at the "
-            "vane 10.2 1/s'\n";
-  script.close();
-  draw(directory, "fit_apparent_alpha.gp");
+  const double first = a.window.front(), last = a.window.back(), fitted = median(a.fitted);
+  const double low = quantile(a.fitted, 0.025), high = quantile(a.fitted, 0.975);
+  chart.curves.push_back({"fit of the whole record, with 95 %", {first, last}, {fitted, fitted}});
+  chart.bands = {{"", {first, last}, {low, low}, {high, high}}};
+  std::ofstream(directory + "/fit_apparent_alpha.svg") << report::svg_file({chart});
 }
 
 std::string text(const std::optional<Estimate>& e) {

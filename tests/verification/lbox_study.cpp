@@ -1,6 +1,6 @@
 // The L-box over cells, yield stresses and modes: the profile against the closed form at rest, the films on
-// the column's walls against their drainage, CPU seconds. Writes lbox_tables.md, lbox_study.csv, lbox_profiles.csv and,
-// with gnuplot, lbox_study.svg into the folder given.
+// the column's walls against their drainage, CPU seconds. Writes lbox_tables.md, lbox_study.csv, lbox_profiles.csv and
+// lbox_study.svg into the folder given.
 
 #include <fmt/format.h>
 
@@ -63,10 +63,43 @@ std::string or_none(const std::optional<double>& value, const char* format) {
   return value ? fmt::format(fmt::runtime(format), *value) : "none";
 }
 
+/// Profiles of 10 mm cells beside the closed form, and the error over the CPU time of 50 Pa; a colour a mode and stress.
+struct Charts {
+  report::LineChart profiles{.title = "Profiles at rest, 10 mm cells",
+                             .x_label = "distance from the gate (mm)",
+                             .y_label = "depth (mm)",
+                             .curves = {}};
+  report::LineChart errors{.title = "50 Pa; 20, 10, 5 mm cells",
+                           .x_label = "CPU time (s)",
+                           .y_label = "error of the profile, rms (%)",
+                           .curves = {study::curve("plane", report::Mark::line_and_points),
+                                      study::curve("side walls", report::Mark::line_and_points)},
+                           .log_x = true,
+                           .log_y = true};
+};
+
+void add(const Case& c, const Run& r, Charts& charts) {
+  if (c.points != Case{}.points || c.alternating_viscosity != Case{}.alternating_viscosity) return;
+  if (c.tau_0 == 50.0)
+    study::add_point(charts.errors.curves[c.side_walls], r.cpu, 100 * r.compared.error.rms);
+  if (c.cell_mm != 10.0 || !(c.tau_0 == 50.0 || (c.tau_0 == 15.0 && !c.side_walls))) return;
+  const int colour = static_cast<int>(charts.profiles.curves.size() / 2);
+  report::Curve computed = study::curve(
+      fmt::format("{:g} Pa, {}", c.tau_0, c.side_walls ? "side walls" : "plane"), report::Mark::points);
+  report::Curve form = study::curve(colour == 0 ? "closed form at the same volume" : "");
+  computed.colour = form.colour = colour;
+  for (const auto& [x, h] : r.outcome.results.profile) {
+    study::add_point(computed, 1e3 * x, 1e3 * h);
+    study::add_point(form, 1e3 * x, 1e3 * r.compared.form.depth(x));
+  }
+  charts.profiles.curves.insert(charts.profiles.curves.end(), {computed, form});
+}
+
 /// Runs a case and writes its row; returns the films over time.
 std::vector<std::array<double, 2>> row(const Case& c, std::ofstream& md, std::ofstream& csv,
-                                       std::ofstream& profiles) {
+                                       std::ofstream& profiles, Charts& charts) {
   const Run r = run(c);
+  add(c, r, charts);
   const auto& results = r.outcome.results;
   const auto& [form, error, heap, ratio] = r.compared;
   const char* mode = c.side_walls ? "side walls" : "plane";
@@ -139,15 +172,17 @@ int main(int argc, char** argv) {
          "cpu_s,heap_mm,borne_mm,t200_s,volume_percent\n";
   profiles << "mode,tau_0_Pa,cell_mm,distance_mm,depth_mm,closed_form_mm\n";
   Films films;
+  Charts charts;
   md << "## Cells\n\n" << head;
   for (bool side_walls : {false, true})
     for (double cell : {20.0, 10.0, 5.0}) {
-      const auto hanging = row({.cell_mm = cell, .side_walls = side_walls}, md, csv, profiles);
+      const auto hanging = row({.cell_mm = cell, .side_walls = side_walls}, md, csv, profiles, charts);
       if (!side_walls) films[cell] = hanging;
     }
   md << "\n## Yield stresses, 10 mm cells\n\n" << head;
   for (bool side_walls : {false, true})
-    for (double tau_0 : {0.0, 15.0, 30.0}) row({.tau_0 = tau_0, .side_walls = side_walls}, md, csv, profiles);
+    for (double tau_0 : {0.0, 15.0, 30.0})
+      row({.tau_0 = tau_0, .side_walls = side_walls}, md, csv, profiles, charts);
   md << "\n## Points a cell, 20 mm\n\n32×8 instead of 16×4: the column's concrete is stretched eight times, "
         "and "
         "two of 16 points are left along a cell.\n\n"
@@ -155,15 +190,14 @@ int main(int argc, char** argv) {
   for (bool side_walls : {false, true})
     for (double tau_0 : {0.0, 15.0})
       for (std::array<int, 2> points : {std::array{16, 4}, std::array{32, 8}})
-        row({.tau_0 = tau_0, .cell_mm = 20.0, .side_walls = side_walls, .points = points}, md, csv, profiles);
+        row({.tau_0 = tau_0, .cell_mm = 20.0, .side_walls = side_walls, .points = points}, md, csv, profiles,
+            charts);
   md << "\n## Without the viscosity against velocities that alternate from node to node\n\n15 Pa, plane, 20 "
         "mm "
         "(libmpm/implicit/problem/yield_problem.hpp); 100 μ is the default above.\n\n"
      << head;
   for (double zeta : {0.0, 100.0})
-    row({.tau_0 = 15.0, .cell_mm = 20.0, .alternating_viscosity = zeta}, md, csv, profiles);
+    row({.tau_0 = 15.0, .cell_mm = 20.0, .alternating_viscosity = zeta}, md, csv, profiles, charts);
   write_films(films, md);
-  profiles.close();
-  csv.close();
-  study::draw(folder, "lbox_study.gp");
+  std::ofstream(folder + "/lbox_study.svg") << report::svg_file({charts.profiles, charts.errors});
 }

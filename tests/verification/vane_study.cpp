@@ -203,7 +203,8 @@ void what_else(std::ofstream& md) {
   row("turned the other way", back, -1.0);
 }
 
-void decays(std::ofstream& md, std::ofstream& csv, std::ofstream& curves) {
+/// Returns the chart.
+std::string decays(std::ofstream& md, std::ofstream& csv, std::ofstream& curves) {
   md << "\n## Mix A after 240 s of rest, alpha = 0.0358, 0.25 rev/s: decay of the torque\n\nTorque in N m; "
         "largest difference from 0.5 s on against 2.5 mm cells; disagreement of the torques from 0.5 s "
         "on.\n\n"
@@ -227,11 +228,31 @@ void decays(std::ofstream& md, std::ofstream& csv, std::ofstream& curves) {
   curves << "time_s";
   for (double size : sizes) curves << fmt::format(",torque_{}mm_N_m", size);
   curves << ",wall_5mm_N_m,power_5mm_N_m,momentum_rate_5mm_N_m\n";
+  using report::Mark;
+  report::LineChart decay{.title = "Decay of the torque",
+                          .x_label = "time (s)",
+                          .y_label = "torque (N·m)",
+                          .curves = {study::curve("10 mm"), study::curve("5 mm"), study::curve("2.5 mm")},
+                          .y_from_zero = true};
+  report::LineChart start{.title = "The start, 5 mm",
+                          .x_label = "time (s)",
+                          .y_label = "torque (N·m)",
+                          .curves = {study::curve("blades"), study::curve("container"),
+                                     study::curve("container + rate of angular momentum", Mark::points),
+                                     study::curve("power / speed", Mark::dashed)}};
   for (const Sample& s : runs[1].outcome.series) {
     curves << fmt::format("{:.5g}", s.time);
-    for (const Run& r : runs) curves << fmt::format(",{:.5f}", torque_at(r.outcome.series, s.time));
+    for (std::size_t k = 0; k < runs.size(); ++k) {
+      const double torque = torque_at(runs[k].outcome.series, s.time);
+      curves << fmt::format(",{:.5f}", torque);
+      study::add_point(decay.curves[k], s.time, torque);
+    }
     curves << fmt::format(",{:.5f},{:.5f},{:.5f}\n", s.torque_wall, s.torque_power, s.momentum_rate);
+    const std::array parts{s.torque, s.torque_wall, s.torque_wall + s.momentum_rate, s.torque_power};
+    for (std::size_t k = 0; s.time <= 0.3 && k < parts.size(); ++k)
+      study::add_point(start.curves[k], s.time, parts[k]);
   }
+  return report::svg_file({decay, start});
 }
 
 void closed_loop(std::ofstream& md) {
@@ -255,20 +276,6 @@ void closed_loop(std::ofstream& md) {
     const double solid = reiner_riwlin({tau_0, mu}, 2.0 * std::numbers::pi * p.speed, Instrument{}).torque;
     md << fmt::format("| {} | {:.4f} | {:.3f} |\n", p.speed, p.torque, p.torque / solid);
   }
-}
-
-void write_chart(const std::string& folder) {
-  std::ofstream(folder + "/vane_study.gp")
-      << "set terminal svg size 1000,420 font 'sans,13' background 'white'\nset output 'vane_study.svg'\n"
-         "set datafile separator ','\nset grid lc '#dddddd'\nset multiplot layout 1,2\n"
-         "set xlabel 'time in s'\nset ylabel 'torque in N m'\nset yrange [0:2.5]\n"
-         "plot 'vane_decay.csv' using 1:2 skip 1 with lines title '10 mm', '' using 1:3 skip 1 with lines "
-         "title '5 mm', '' using 1:4 skip 1 with lines title '2.5 mm'\n"
-         "set xrange [0:0.3]\nset title 'the start, 5 mm'\n"
-         "plot 'vane_decay.csv' using 1:3 skip 1 with lines title 'blades', '' using 1:5 skip 1 with lines "
-         "title 'container', '' using 1:($5+$7) skip 1 with points pt 6 ps 0.5 title 'container + rate of "
-         "angular momentum', '' using 1:6 skip 1 with lines title 'power / speed'\nunset multiplot\n";
-  study::draw(folder, "vane_study.gp");
 }
 
 }  // namespace
@@ -296,7 +303,5 @@ int main(int argc, char** argv) {
   finite_elements(md, csv);
   what_else(md);
   closed_loop(md);
-  decays(md, csv, curves);
-  curves.close();
-  write_chart(folder);
+  std::ofstream(folder + "/vane_study.svg") << decays(md, csv, curves);
 }

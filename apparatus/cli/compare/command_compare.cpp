@@ -38,7 +38,7 @@ void write(const report::Comparison& comparison, const Options& options, const S
   outcome.checks.reasons = report::comparison_reasons(comparison);
   watch.stop(outcome.cost);
   auto summary = summary_of(outcome);
-  summary["results"] = nlohmann::ordered_json::parse(report::comparison_json(comparison));
+  summary["results"] = report::comparison_json(comparison);
   io::write_text(folder / "compare.csv", report::comparison_csv(comparison));
   io::write_text(folder / "report.html", report::comparison_html(comparison, command_of(options)));
   io::write_text(folder / "summary.json", summary.dump(2) + "\n");

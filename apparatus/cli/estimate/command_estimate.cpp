@@ -84,21 +84,27 @@ std::vector<estimate::NamedMix> published_mixes() {
   return mixes;
 }
 
+/// SVG, or PDF by rsvg-convert.
 void draw_chart(const Options& options, const estimate::SlumpTable& table,
                 const std::optional<estimate::Estimate>& result) {
   namespace fs = std::filesystem;
-  const fs::path file = fs::absolute(options.chart), script = file.string() + ".gp";
-  if (file.extension() != ".svg" && file.extension() != ".pdf")
-    throw scene::InputError("--chart: must end with .svg or .pdf");
+  const fs::path file = fs::absolute(options.chart);
+  const bool pdf = file.extension() == ".pdf";
+  if (file.extension() != ".svg" && !pdf) throw scene::InputError("--chart: must end with .svg or .pdf");
   if (!fs::is_directory(file.parent_path()))
     throw scene::InputError(fmt::format("--chart: there is no folder {}", file.parent_path().string()));
-  const auto gnuplot = report::find_program("gnuplot");
-  if (gnuplot.empty()) throw scene::InputError("--chart: gnuplot is not installed here");
-  io::write_text(script,
-                 estimate::rheograph_script(table, published_mixes(), result, file.filename().string()));
-  const auto code = report::run_program(gnuplot, {script.filename().string()}, file.parent_path());
-  fs::remove(script);
-  if (code != 0) throw std::runtime_error("gnuplot failed: the chart is missing or not complete");
+  const auto converter = pdf ? report::find_program("rsvg-convert") : fs::path();
+  if (pdf && converter.empty())
+    throw scene::InputError(
+        "--chart: a PDF takes rsvg-convert (librsvg2-bin), which is not installed here; a file.svg "
+        "takes nothing");
+  const fs::path svg = pdf ? fs::path(file.string() + ".svg") : file;
+  io::write_text(svg, estimate::rheograph_svg(table, published_mixes(), result));
+  if (!pdf) return;
+  const auto code = report::run_program(
+      converter, {"--format=pdf", "--output=" + file.string(), svg.string()}, file.parent_path());
+  fs::remove(svg);
+  if (code != 0) throw std::runtime_error("rsvg-convert failed: the chart is missing or not complete");
 }
 
 int run(const Options& options) {

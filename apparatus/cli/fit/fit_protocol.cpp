@@ -148,40 +148,4 @@ std::string protocol_csv(const ProtocolReading& r) {
   return text;
 }
 
-std::string protocol_charts(const ProtocolRecord& record, const ProtocolReading& r) {
-  std::string text;
-  for (std::size_t i = 0; i < r.sections.size(); ++i) {
-    const SectionReading& s = r.sections[i];
-    if (s.section.kind == SectionKind::rest) continue;
-    const bool curve =
-        s.section.kind == SectionKind::flow_curve_up || s.section.kind == SectionKind::flow_curve_down;
-    text += fmt::format(
-        "reset\nset terminal svg size 720,440 dynamic background rgb 'white' font 'sans,14'\nset output "
-        "'section_{}.svg'\nset grid linecolor rgb '#dddddd'\nset border 3\nset tics nomirror out\nset title "
-        "'{} {}'\n"
-        "set xlabel '{}'\nset ylabel 'torque in mN.m'\nset yrange [0:*]\n$data << EOD\n",
-        i + 1, i + 1, name_of(s.section.kind), curve ? "speed in rev/s" : "time in s");
-    const std::size_t every = 1 + (s.section.end - s.section.begin) / 600;
-    for (std::size_t k = s.section.begin; k < s.section.end; k += every)
-      text += fmt::format("{:.8g} {:.8g}\n", curve ? record.omega[k] / two_pi : record.time[k],
-                          1e3 * record.torque[k]);
-    text += "EOD\n";
-    std::string fit_curve;
-    if (s.fit) {
-      text += "$fit << EOD\n";
-      const double zero = curve ? 0.0 : record.time[s.section.begin] + s.fit_origin;
-      for (std::size_t k = 0; k < s.fit->curve.x.size(); ++k)
-        text += fmt::format("{:.8g} {:.8g}\n", curve ? s.fit->curve.x[k] / two_pi : zero + s.fit->curve.x[k],
-                            1e3 * s.fit->curve.fitted[k]);
-      text += "EOD\n";
-      fit_curve = fmt::format(", $fit using 1:2 with lines linewidth 2 linecolor rgb '#0b5394' title '{}'",
-                              s.fit->model);
-    }
-    text +=
-        "plot $data using 1:2 with points pointtype 7 pointsize 0.5 linecolor rgb '#444444' title 'record'" +
-        fit_curve + "\n";
-  }
-  return text;
-}
-
 }  // namespace tremie::cli

@@ -1,6 +1,6 @@
 #pragma once
 
-// The sections of a record as JSON, as a table for the screen and as charts.
+// The sections of a record as JSON, as a table for the screen and as CSV.
 
 #include <nlohmann/json.hpp>
 #include <string>
@@ -16,8 +16,5 @@ void print_protocol(const ProtocolReading& reading);
 
 /// The table as CSV.
 std::string protocol_csv(const ProtocolReading& reading);
-
-/// gnuplot script: section_<number>.svg, torque over time or, of a flow curve, over speed.
-std::string protocol_charts(const ProtocolRecord& record, const ProtocolReading& reading);
 
 }  // namespace tremie::cli

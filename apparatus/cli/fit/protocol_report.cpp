@@ -27,10 +27,9 @@ bool is_curve(const SectionReading& s) {
   return s.section.kind == SectionKind::flow_curve_up || s.section.kind == SectionKind::flow_curve_down;
 }
 
-/// Torque of a section, thinned to some hundreds of readings, and the line of its fit.
-void add_section(const ProtocolRecord& record, const SectionReading& s, std::size_t number,
-                 report::Page& page) {
-  if (s.section.kind == SectionKind::rest) return;
+/// Torque of a section, thinned to some hundreds of readings, and the line of its fit; none of a rest.
+report::LineChart section_chart(const ProtocolRecord& record, const SectionReading& s, std::size_t number) {
+  if (s.section.kind == SectionKind::rest) return {};
   report::LineChart chart{.title = fmt::format("Section {}: {}", number, name_of(s.section.kind)),
                           .x_label = is_curve(s) ? "speed (rev/s)" : "time in the section (s)",
                           .y_label = "torque (mN·m)",
@@ -50,7 +49,7 @@ void add_section(const ProtocolRecord& record, const SectionReading& s, std::siz
     for (double& y : line.y) y *= 1e3;
     chart.curves.push_back(line);
   }
-  if (can_be_drawn(chart)) page.figures.push_back({fmt::format("section_{}", number), "", chart_svg(chart)});
+  return chart;
 }
 
 void add_peaks(const Structuration& a, report::Page& page) {
@@ -101,7 +100,8 @@ std::string protocol_html(const ProtocolRecord& record, const ProtocolReading& r
   page.trust = {good, "Intervals hold 95 %.", reading.reasons};
   add_peaks(a, page);
   for (std::size_t i = 0; i < reading.sections.size(); ++i)
-    add_section(record, reading.sections[i], i + 1, page);
+    if (const auto chart = section_chart(record, reading.sections[i], i + 1); can_be_drawn(chart))
+      page.figures.push_back({fmt::format("section_{}", i + 1), "", chart_svg(chart)});
   report::GridTable table{"Sections",
                           {"", "kind", "speed (rev/s)", "rest before (s)", "peak (mN·m)",
                            "static yield stress (Pa)", "shear modulus (Pa)", "model, scatter"},
@@ -116,6 +116,15 @@ std::string protocol_html(const ProtocolRecord& record, const ProtocolReading& r
                 "A_thix: how fast rest builds the yield stress up."};
   page.made = report::facts_of_this_run(command);
   return to_html(page);
+}
+
+std::vector<std::pair<std::string, std::string>> protocol_chart_files(const ProtocolRecord& record,
+                                                                      const ProtocolReading& reading) {
+  std::vector<std::pair<std::string, std::string>> files;
+  for (std::size_t i = 0; i < reading.sections.size(); ++i)
+    if (const auto chart = section_chart(record, reading.sections[i], i + 1); can_be_drawn(chart))
+      files.emplace_back(fmt::format("section_{}.svg", i + 1), report::svg_file({chart}));
+  return files;
 }
 
 }  // namespace tremie::cli

@@ -17,7 +17,7 @@
 #include "apparatus/cli/options/json_option.hpp"
 #include "apparatus/cli/options/quantity.hpp"
 #include "apparatus/cli/program.hpp"
-#include "apparatus/cli/study/charts.hpp"
+#include "apparatus/cli/study/fit_csv.hpp"
 #include "apparatus/cli/study/fit_report.hpp"
 #include "apparatus/report/fit_results.hpp"
 #include "apparatus/report/rheometer_files.hpp"
@@ -311,12 +311,11 @@ Json input_json(const Options& o, const FitInput& in) {
           {"critical_shear_rate_per_s", in.gamma_c}};
 }
 
-/// What a fit gives: the JSON of results, reasons, files and charts, and lines for the screen.
+/// What a fit gives: the JSON of results, reasons, files with the charts, and lines for the screen.
 struct Answer {
   Json results;
   std::vector<std::string> reasons;
   std::vector<std::pair<std::string, std::string>> files;
-  std::string charts;
   std::function<void()> print;
 };
 
@@ -333,12 +332,10 @@ void print_moves(const Json& moves, const Options& o, double factor) {
 Answer one_record(const Options& o, const FitInput& in, double factor) {
   const std::string& file = o.data.front();
   auto result = std::make_shared<FitResult>(read_and_fit(o, file, in, factor));
-  Answer a{report::fit_results(*result),
-           result->reasons,
-           {{"fit.csv", fit_csv(*result, in.instrument)},
-            {"report.html", report::fit_html(fit_report(*result, in.instrument, file, repeat(o, {file})))}},
-           fit_charts(*result, in.instrument),
-           {}};
+  const report::FitReport page = fit_report(*result, in.instrument, file, repeat(o, {file}));
+  Answer a{report::fit_results(*result), result->reasons, report::fit_chart_files(page), {}};
+  a.files.emplace_back("fit.csv", fit_csv(*result));
+  a.files.emplace_back("report.html", report::fit_html(page));
   const Json moves = o.ends == "none" ? Json() : ends_json(o, file, in, factor, *result);
   a.results["ends"] = {{"correction", o.ends}, {"factor", factor}, {"moves", moves}};
   a.results["blades"] = {{"correction", o.blades}};
@@ -358,12 +355,9 @@ Answer protocol(const Options& o, FitInput in, double factor) {
     record = parse_protocol_record(read_text_file(file), file, torque_offset(o));
     return read_protocol(record, in, options);
   }));
-  Answer a{protocol_json(*reading),
-           reading->reasons,
-           {{"sections.csv", protocol_csv(*reading)},
-            {"report.html", protocol_html(record, *reading, file, repeat(o, {file}))}},
-           protocol_charts(record, *reading),
-           {}};
+  Answer a{protocol_json(*reading), reading->reasons, protocol_chart_files(record, *reading), {}};
+  a.files.emplace_back("sections.csv", protocol_csv(*reading));
+  a.files.emplace_back("report.html", protocol_html(record, *reading, file, repeat(o, {file})));
   a.results["understood"] = record.understood;
   a.results["ends"] = {{"correction", o.ends}, {"factor", factor}};
   a.print = [=, understood = record.understood] {
@@ -385,7 +379,7 @@ Answer replicates(const Options& o, const FitInput& in, double factor) {
     one.update(report::fit_results(fits.back()));
     a.results["records"].push_back(one);
     for (const auto& why : fits.back().reasons) a.reasons.push_back(file + ": " + why);
-    a.files.emplace_back(fmt::format("fit_{}.csv", fits.size()), fit_csv(fits.back(), in.instrument));
+    a.files.emplace_back(fmt::format("fit_{}.csv", fits.size()), fit_csv(fits.back()));
     reports.push_back(fit_report(fits.back(), in.instrument, file, repeat(o, {file})));
     a.files.emplace_back(fmt::format("report_{}.html", fits.size()), report::fit_html(reports.back()));
   }
@@ -449,7 +443,6 @@ int run(const Options& options) {
   outcome.apparatus = "fit";
   outcome.checks.reasons = answer.reasons;
   for (const auto& [file, text] : answer.files) io::write_text(folder.staging() / file, text);
-  const std::string note = answer.charts.empty() ? "" : draw(folder.staging(), answer.charts);
   watch.stop(outcome.cost);
   Json summary = summary_of(outcome);
   summary["results"] = answer.results;
@@ -461,7 +454,6 @@ int run(const Options& options) {
     print_result_as_json(folder.target());
   } else if (!options.quiet) {
     answer.print();
-    if (!note.empty()) fmt::print("{:<22} {}\n", "note", note);
     fmt::print("{:<22} {}\n", "written to", folder.target().string());
   }
   return answer.reasons.empty() ? done : not_to_be_trusted;

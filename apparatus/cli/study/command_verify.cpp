@@ -24,56 +24,56 @@ namespace tremie::cli {
 namespace {
 
 struct Options {
-  std::vector<std::string> groups;
+  std::vector<std::string> cases;
   std::string out;
   bool quick = false, full = false, validation = false, force = false, json = false;
 };
 
-std::string known_groups() {
+std::string known_cases() {
   std::string text;
-  for (const auto& step : verification::ladder())
-    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", step.name, step.number);
+  for (const auto& entry : verification::suite())
+    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", entry.name, entry.number);
   return text;
 }
 
-/// The steps asked for by name or number, all without any, in the ladder's order.
-std::vector<verification::Step> chosen(const std::vector<std::string>& groups) {
-  const auto ladder = verification::ladder();
-  const auto is = [](const verification::Step& step, const std::string& name) {
-    return name == step.name || name == std::to_string(step.number);
+/// The cases asked for by name or number, all without any, in the suite's order.
+std::vector<verification::Entry> chosen(const std::vector<std::string>& cases) {
+  const auto suite = verification::suite();
+  const auto is = [](const verification::Entry& entry, const std::string& name) {
+    return name == entry.name || name == std::to_string(entry.number);
   };
-  for (const std::string& name : groups)
-    if (std::none_of(ladder.begin(), ladder.end(), [&](const auto& step) { return is(step, name); }))
+  for (const std::string& name : cases)
+    if (std::none_of(suite.begin(), suite.end(), [&](const auto& entry) { return is(entry, name); }))
       throw scene::InputError(
-          fmt::format("verify: there is no rung \"{}\"; there are {}", name, known_groups()));
-  std::vector<verification::Step> steps;
-  for (const auto& step : ladder)
-    if (groups.empty() ||
-        std::any_of(groups.begin(), groups.end(), [&](const auto& name) { return is(step, name); }))
-      steps.push_back(step);
-  return steps;
+          fmt::format("verify: there is no case \"{}\"; there are {}", name, known_cases()));
+  std::vector<verification::Entry> entries;
+  for (const auto& entry : suite)
+    if (cases.empty() ||
+        std::any_of(cases.begin(), cases.end(), [&](const auto& name) { return is(entry, name); }))
+      entries.push_back(entry);
+  return entries;
 }
 
 std::string command_line(const Options& options) {
   std::string text = "tremie verify";
-  for (const auto& group : options.groups) text += " " + group;
+  for (const auto& name : options.cases) text += " " + name;
   return text + (options.full ? " --full" : " --quick");
 }
 
 /// One object: whether every bound is kept, which are not, and what each case cost.
-nlohmann::ordered_json summary_of_cases(const std::vector<verification::Step>& steps,
-                                        const std::vector<verification::CaseGroup>& groups,
+nlohmann::ordered_json summary_of_cases(const std::vector<verification::Entry>& entries,
+                                        const std::vector<verification::Case>& cases,
                                         const std::vector<double>& cpu) {
-  nlohmann::ordered_json cases = nlohmann::ordered_json::array();
-  for (std::size_t i = 0; i < steps.size(); ++i)
-    cases.push_back({{"number", steps[i].number},
-                     {"name", steps[i].name},
-                     {"what", steps[i].what},
-                     {"kept", verification::all_kept({groups[i]})},
-                     {"cpu_s", cpu[i]}});
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < entries.size(); ++i)
+    list.push_back({{"number", entries[i].number},
+                    {"name", entries[i].name},
+                    {"what", entries[i].what},
+                    {"kept", verification::all_kept({cases[i]})},
+                    {"cpu_s", cpu[i]}});
   return {{"schema", 1},
-          {"results", {{"cases", cases}, {"kept", verification::all_kept(groups)}}},
-          {"checks", {{"reasons", verification::broken_bounds(groups)}}}};
+          {"results", {{"cases", list}, {"kept", verification::all_kept(cases)}}},
+          {"checks", {{"reasons", verification::broken_bounds(cases)}}}};
 }
 
 nlohmann::ordered_json summary_of_sections(const std::vector<validation::Section>& sections) {
@@ -95,7 +95,7 @@ nlohmann::ordered_json summary_of_sections(const std::vector<validation::Section
 
 /// A measurement that is missed is a finding of the page, not a fault of the run.
 int validate(const Options& options) {
-  if (!options.groups.empty()) throw scene::InputError("verify: --validation has no rungs");
+  if (!options.cases.empty()) throw scene::InputError("verify: --validation has no cases");
   if (!validation::has_calibration())
     throw scene::InputError("verify: --validation calibrates, which needs libopenturns-dev at the build");
   report::RunFolder folder(options.out.empty() ? "runs/validation" : options.out, options.force);
@@ -125,35 +125,34 @@ int validate(const Options& options) {
 
 int verify(const Options& options) {
   if (options.validation) return validate(options);
-  const auto steps = chosen(options.groups);
+  const auto entries = chosen(options.cases);
   report::RunFolder folder(options.out.empty() ? "runs/verification" : options.out, options.force);
   const auto depth = options.full ? verification::Depth::full : verification::Depth::quick;
   FILE* const screen = options.json ? stderr : stdout;
-  std::vector<verification::CaseGroup> groups;
+  std::vector<verification::Case> cases;
   std::vector<double> cpu;
   stop_on_interrupt();
-  for (const auto& step : steps) {
+  for (const auto& entry : entries) {
     if (stop_requested) {
       fmt::print(screen, "interrupted: nothing written\n");
       return interrupted;
     }
-    fmt::print(screen, "rung {}: {}\n", step.number, step.what);
+    fmt::print(screen, "case {}: {}\n", entry.number, entry.what);
     std::fflush(screen);
     const double start = cpu_seconds();
-    groups.push_back(step.run(depth));
+    cases.push_back(entry.run(depth));
     cpu.push_back(cpu_seconds() - start);
-    const bool kept = verification::all_kept({groups.back()});
+    const bool kept = verification::all_kept({cases.back()});
     fmt::print(screen, "        {} in {:.1f} s of CPU\n", kept ? "all bounds kept" : "a bound is broken",
                cpu.back());
     std::fflush(screen);
   }
-  const std::string note = verification::write_document(groups, command_line(options), folder.staging());
+  verification::write_document(cases, command_line(options), folder.staging());
   folder.publish();
-  for (const auto& line : verification::broken_bounds(groups)) fmt::print(stderr, "not kept: {}\n", line);
-  if (!note.empty()) fmt::print(screen, "note: {}\n", note);
+  for (const auto& line : verification::broken_bounds(cases)) fmt::print(stderr, "not kept: {}\n", line);
   fmt::print(screen, "written to {}\n", (folder.target() / "VERIFICATION.md").string());
-  if (options.json) fmt::print("{}\n", summary_of_cases(steps, groups, cpu).dump(2));
-  return verification::all_kept(groups) ? done : not_to_be_trusted;
+  if (options.json) fmt::print("{}\n", summary_of_cases(entries, cases, cpu).dump(2));
+  return verification::all_kept(cases) ? done : not_to_be_trusted;
 }
 
 }  // namespace
@@ -161,12 +160,12 @@ int verify(const Options& options) {
 void add_command_verify(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   Command command(app, verify_command.name, verify_command.description);
-  command.option("rungs", options->groups, "Rungs by name or number (default: all): " + known_groups());
+  command.option("cases", options->cases, "Cases by name or number (default: all): " + known_cases());
   command.flag("--quick", options->quick, "Coarser cells, under five minutes (the default)");
   command.flag_without("--full", {"--quick"}, options->full, "All cells, some ten minutes");
   command.flag_without(
       "--validation", {"--quick", "--full"}, options->validation,
-      "Predictions beside measurements on concrete, in place of the rungs; under ten minutes");
+      "Predictions beside measurements on concrete, in place of the cases; under ten minutes");
   command.option("--out", options->out,
                  "Folder for the result (default: runs/verification or runs/validation)");
   add_json_option(command, options->json);

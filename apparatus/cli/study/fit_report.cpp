@@ -43,6 +43,18 @@ void add_flow_curve(const FitResult& r, const Instrument& in, report::FitReport&
   }
 }
 
+/// The fitted torque at many speeds from just above 0 on, where the record tells Bingham's parameters.
+void add_line(const FitResult& r, const Instrument& in, report::FitReport& report) {
+  if (r.kind != RecordKind::flow_curve || !r.tau_0 || !r.mu || !(r.mu->value > 0.0) || r.curve.x.empty())
+    return;
+  constexpr int pieces = 100;
+  for (int i = 0; i <= pieces; ++i) {
+    const double omega = r.curve.x.back() * (i + 0.01) / pieces;
+    report.line_x.push_back(omega / two_pi);
+    report.line.push_back(reiner_riwlin({r.tau_0->value, r.mu->value}, omega, in).torque);
+  }
+}
+
 /// The exponential through the apparent flocculation state, by the whole window's coefficient.
 void add_flocculation(const FitResult& r, report::FitReport& report) {
   if (!r.apparent || r.apparent->windows.empty() || r.lambda_apparent.size() != r.curve.x.size()) return;
@@ -101,6 +113,8 @@ report::FitReport fit_report(const FitResult& r, const Instrument& in, const std
   if (!report.decay)
     for (double& x : report.x) x /= two_pi;
   if (!report.decay) report.standard_error = r.curve.standard_error;
+  if (r.plug_below) report.plug_below = *r.plug_below / two_pi;
+  add_line(r, in, report);
   add_flow_curve(r, in, report);
   add_flocculation(r, report);
   report.scatter = r.scatter, report.correlation = r.correlation;

@@ -133,7 +133,7 @@ std::string comparison_csv(const Comparison& comparison) {
   return csv;
 }
 
-std::string comparison_json(const Comparison& comparison) {
+Json comparison_json(const Comparison& comparison) {
   Json runs = Json::array(), scenes = Json::object(), results = Json::object();
   for (const auto& run : comparison.runs)
     runs.push_back({{"name", run.name},
@@ -148,7 +148,7 @@ std::string comparison_json(const Comparison& comparison) {
       results[row.key] = {{"values", values_json(row)},
                           {"difference", row.difference ? Json(*row.difference) : Json(nullptr)},
                           {"difference_error", row.error ? Json(*row.error) : Json(nullptr)}};
-  return Json{{"runs", runs}, {"scene_differences", scenes}, {"result_differences", results}}.dump();
+  return {{"runs", runs}, {"scene_differences", scenes}, {"result_differences", results}};
 }
 
 std::vector<std::string> comparison_reasons(const Comparison& comparison) {

@@ -2,6 +2,7 @@
 
 // Results side by side: what differs, and files that say so.
 
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,7 +36,7 @@ Comparison compare(const std::vector<std::string>& folders);
 std::string comparison_csv(const Comparison& comparison);
 
 /// summary.json's "results": the runs, `scene_differences` and `result_differences` by key, a value a run.
-std::string comparison_json(const Comparison& comparison);
+nlohmann::ordered_json comparison_json(const Comparison& comparison);
 
 /// Why a run among them is not to be trusted.
 std::vector<std::string> comparison_reasons(const Comparison& comparison);

@@ -23,59 +23,87 @@ std::string value_text(const FitParameter& p) {
 
 std::string x_label(const FitReport& fit) { return fit.decay ? "time (s)" : "speed (rev/s)"; }
 
-/// The 95 % band of the fitted torque, where its error is known.
-std::vector<Band> band_of(const FitReport& fit) {
-  if (fit.standard_error.size() != fit.x.size()) return {};
-  Band band{"95 % band of the fitted line", fit.x, fit.fitted, fit.fitted};
-  for (std::size_t i = 0; i < fit.x.size(); ++i)
-    band.low[i] -= 1.96 * fit.standard_error[i], band.high[i] += 1.96 * fit.standard_error[i];
+/// The 95 % band of a fitted line that is the fitted torque times a constant, where its error is known.
+std::vector<Band> band_of(const FitReport& fit, const std::vector<double>& x,
+                          const std::vector<double>& line) {
+  if (fit.standard_error.size() != line.size()) return {};
+  Band band{"95 % band of the fitted line", x, line, line};
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const double half = 1.96 * fit.standard_error[i] / fit.fitted[i] * line[i];
+    band.low[i] -= half, band.high[i] += half;
+  }
   return {band};
 }
 
-void add(const LineChart& chart, const char* id, const std::string& caption, Page& page) {
-  if (can_be_drawn(chart)) page.figures.push_back({id, caption, chart_svg(chart)});
+/// "fitted line: 54.1 Pa, 35.6 Pa·s".
+std::string line_label(const FitReport& fit) {
+  std::string text = "fitted line";
+  for (const FitParameter& p : fit.parameters)
+    if (p.value)
+      text += fmt::format("{}{}{}{}", text.ends_with("line") ? ": " : ", ", scene::rounded(*p.value, 4),
+                          p.unit.empty() ? "" : " ", p.unit);
+  return text;
 }
 
-void add_torque(const FitReport& fit, Page& page) {
-  const LineChart chart{
-      .title = fit.decay ? "Decay of the torque" : "Torque over speed",
-      .x_label = x_label(fit),
-      .y_label = "torque (N·m)",
-      .curves = {{"readings", fit.x, fit.observed, Mark::points}, {fit.model, fit.x, fit.fitted}},
-      .bands = band_of(fit)};
-  add(chart, "torque", "", page);
+LineChart torque_chart(const FitReport& fit) {
+  const bool own_line = !fit.line.empty();
+  LineChart chart{.title = fit.decay ? "Decay of the torque" : "Torque over speed",
+                  .x_label = x_label(fit),
+                  .y_label = "torque (N·m)",
+                  .curves = {{"readings", fit.x, fit.observed, Mark::points},
+                             {fit.model, own_line ? fit.line_x : fit.x, own_line ? fit.line : fit.fitted}},
+                  .bands = band_of(fit, fit.x, fit.fitted)};
+  if (fit.plug_below)
+    chart.ranges = {{fmt::format("plug below {:.3g} rev/s", *fit.plug_below), 0.0, *fit.plug_below}};
+  return chart;
 }
 
-void add_flow_curve(const FitReport& fit, Page& page) {
-  if (fit.rate.empty()) return;
-  const LineChart chart{.title = "Flow curve",
-                        .x_label = "shear rate at the vane (1/s)",
-                        .y_label = "shear stress at the vane (Pa)",
-                        .curves = {{"readings", fit.rate, fit.stress_observed, Mark::points},
-                                   {"fitted line", fit.rate, fit.stress_fitted}}};
-  add(chart, "flow_curve", "The rate of a reading is the fitted model's at its torque.", page);
+LineChart flow_curve_chart(const FitReport& fit) {
+  return {.title = "Flow curve",
+          .x_label = "shear rate at the vane (1/s)",
+          .y_label = "shear stress at the vane (Pa)",
+          .curves = {{"readings", fit.rate, fit.stress_observed, Mark::points},
+                     {line_label(fit), fit.rate, fit.stress_fitted}},
+          .bands = band_of(fit, fit.rate, fit.stress_fitted)};
 }
 
-void add_flocculation(const FitReport& fit, Page& page) {
-  if (fit.lambda_apparent.empty()) return;
-  const LineChart chart{.title = "Flocculation state λ, as read off the torque",
-                        .x_label = x_label(fit),
-                        .y_label = "apparent λ",
-                        .curves = {{"from the torque", fit.x, fit.lambda_apparent, Mark::points},
-                                   {"exponential through it", fit.x, fit.lambda_line}}};
-  add(chart, "flocculation", "", page);
+LineChart flocculation_chart(const FitReport& fit) {
+  std::string label = "exponential through it";
+  if (fit.lambda_line.size() > 1)
+    label += fmt::format(", {:.3g} 1/s", std::log(fit.lambda_line.front() / fit.lambda_line.back()) /
+                                             (fit.x.back() - fit.x.front()));
+  return {.title = "Flocculation state λ, as read off the torque",
+          .x_label = x_label(fit),
+          .y_label = "apparent λ",
+          .curves = {{"from the torque", fit.x, fit.lambda_apparent, Mark::points},
+                     {label, fit.x, fit.lambda_line}}};
 }
 
-void add_residuals(const FitReport& fit, Page& page) {
+LineChart residual_chart(const FitReport& fit) {
   Curve residuals{.label = "", .x = fit.x, .y = {}, .mark = Mark::points};
   for (std::size_t i = 0; i < fit.x.size(); ++i)
     residuals.y.push_back(100.0 * (fit.observed[i] / fit.fitted[i] - 1.0));
-  const LineChart chart{.title = "Residuals",
-                        .x_label = x_label(fit),
-                        .y_label = "reading less fit (% of the fit)",
-                        .curves = {residuals},
-                        .levels = {{"no residual", 0.0, 0.0}}};
-  add(chart, "residuals", "Without a pattern where the model fits.", page);
+  return {.title = "Residuals",
+          .x_label = x_label(fit),
+          .y_label = "reading less fit (% of the fit)",
+          .curves = {residuals},
+          .levels = {{"no residual", 0.0, 0.0}}};
+}
+
+struct FitChart {
+  const char *name, *caption;
+  LineChart chart;
+};
+
+/// All that can be drawn.
+std::vector<FitChart> charts_of(const FitReport& fit) {
+  std::vector<FitChart> charts{
+      {"torque", "", torque_chart(fit)},
+      {"flow_curve", "The rate of a reading is the fitted model's at its torque.", flow_curve_chart(fit)},
+      {"flocculation", "", flocculation_chart(fit)},
+      {"residuals", "Without a pattern where the model fits.", residual_chart(fit)}};
+  std::erase_if(charts, [](const FitChart& c) { return !can_be_drawn(c.chart); });
+  return charts;
 }
 
 /// "left out: 2 (before the torque's peak), 1 (no torque)".
@@ -129,10 +157,8 @@ std::string fit_html(const FitReport& fit) {
   page.title = "Tremie: " + page.headline;
   page.verdict = verdict_of(fit);
   page.trust = {fit.reasons.empty(), trust_text(fit), fit.reasons};
-  add_torque(fit, page);
-  add_flow_curve(fit, page);
-  add_flocculation(fit, page);
-  add_residuals(fit, page);
+  for (const auto& [name, caption, chart] : charts_of(fit))
+    page.figures.push_back({name, caption, chart_svg(chart)});
   ValueTable table{"Parameters, with their 95 % intervals", {}};
   for (const FitParameter& p : fit.parameters)
     table.rows.push_back({p.words, value_text(p), p.value ? p.unit : "", p.key});
@@ -142,6 +168,13 @@ std::string fit_html(const FitReport& fit) {
                 "α: how fast shear breaks λ down; A_thix: how fast rest builds the yield stress up."};
   page.made = facts_of_this_run(fit.command);
   return to_html(page);
+}
+
+std::vector<std::pair<std::string, std::string>> fit_chart_files(const FitReport& fit) {
+  std::vector<std::pair<std::string, std::string>> files;
+  for (const auto& [name, caption, chart] : charts_of(fit))
+    files.emplace_back(std::string(name) + ".svg", svg_file({chart}));
+  return files;
 }
 
 }  // namespace tremie::report

@@ -22,8 +22,10 @@ struct FitReport {
   bool decay = false;  ///< torque over time at one speed; else over the speed
   std::string model;   ///< of the fitted line, in words
   std::vector<FitParameter> parameters;
-  std::vector<double> x;                                     ///< [s] of a decay, [rev/s] of a flow curve
-  std::vector<double> observed, fitted, standard_error;      ///< torque [N m]; the last may be empty
+  std::vector<double> x;                                 ///< [s] of a decay, [rev/s] of a flow curve
+  std::vector<double> observed, fitted, standard_error;  ///< torque [N m]; the last may be empty
+  std::vector<double> line_x, line;  ///< the fitted line at many speeds; empty: at those of the readings
+  std::optional<double> plug_below;  ///< speed below which a plug stands at the container [rev/s]
   std::vector<double> rate, stress_observed, stress_fitted;  ///< at the vane [1/s], [Pa]; may be empty
   std::vector<double> lambda_apparent, lambda_line;          ///< over x, as read off the torque; may be empty
   double scatter = 0.0;                                      ///< relative standard deviation about the fit
@@ -37,5 +39,9 @@ struct FitReport {
 
 /// report.html.
 std::string fit_html(const FitReport& fit);
+
+/// The charts of that page as files, each a name and an SVG: torque.svg, residuals.svg, and of a flow curve flow_curve.svg,
+/// of a decay flocculation.svg.
+std::vector<std::pair<std::string, std::string>> fit_chart_files(const FitReport& fit);
 
 }  // namespace tremie::report

@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <nlohmann/json.hpp>
 
 #include "apparatus/report/page/page.hpp"
 
 namespace tremie::report {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 struct Extent {
   double x0 = 1e300, x1 = -1e300, y0 = 1e300, y1 = -1e300;
@@ -69,36 +72,39 @@ std::vector<std::uint8_t> bytes_of(const MovingFrame& frame, const std::vector<C
   return bytes;
 }
 
-std::string walls_json(const std::vector<Polyline>& walls) {
-  std::string text;
-  for (const Polyline& wall : walls) {
-    std::string points;
-    for (const auto& p : wall)
-      points += fmt::format("{}[{:.5g},{:.5g}]", points.empty() ? "" : ",", p[0], p[1]);
-    text += fmt::format("{}[{}]", text.empty() ? "" : ",", points);
-  }
-  return fmt::format("[{}]", text);
-}
+/// Few digits: the page is looked at, and its size counts.
+double rounded(double v, int digits) { return std::stod(fmt::format("{:.{}g}", v, digits)); }
 
-std::string number_words(const ColourField& field) {
-  return fmt::format("{{\"low\":\"{:.2g}\",\"high\":\"{:.2g}\"}}", field.low, field.high);
+Json walls_json(const std::vector<Polyline>& walls) {
+  Json list = Json::array();
+  for (const Polyline& wall : walls) {
+    Json& line = list.emplace_back(Json::array());
+    for (const auto& p : wall) line.push_back({rounded(p[0], 5), rounded(p[1], 5)});
+  }
+  return list;
 }
 
 std::string data_json(const MovingPicture& picture) {
   const Extent e = extent_of(picture);
-  std::string frames, fields;
+  Json frames = Json::array(), fields = Json::array();
   for (const MovingFrame& frame : picture.frames)
-    frames += fmt::format("{}{{\"t\":{:.4g},\"a\":{:.5g},\"n\":{},\"d\":\"{}\"}}",
-                          frames.empty() ? "" : ",\n", frame.time, frame.turned, frame.places.size(),
-                          base64(bytes_of(frame, picture.fields, e)));
+    frames.push_back({{"t", rounded(frame.time, 4)},
+                      {"a", rounded(frame.turned, 5)},
+                      {"n", frame.places.size()},
+                      {"d", base64(bytes_of(frame, picture.fields, e))}});
   for (const ColourField& field : picture.fields)
-    fields += fmt::format("{}{}", fields.empty() ? "" : ",", number_words(field));
-  return fmt::format(
-      "{{\"box\":[{:.6g},{:.6g},{:.6g},{:.6g}],\"mirrored\":{},\"full\":{},\"speed\":{:.5g},\"fixed\":{},"
-      "\"lifted\":{},"
-      "\"turning\":{},\"fields\":[{}],\"frames\":[{}]}}",
-      e.x0, e.x1, e.y0, e.y1, picture.mirrored, picture.full, picture.lift_speed, walls_json(picture.fixed),
-      walls_json(picture.lifted), walls_json(picture.turning), fields, frames);
+    fields.push_back(
+        {{"low", fmt::format("{:.2g}", field.low)}, {"high", fmt::format("{:.2g}", field.high)}});
+  return Json{{"box", {rounded(e.x0, 6), rounded(e.x1, 6), rounded(e.y0, 6), rounded(e.y1, 6)}},
+              {"mirrored", picture.mirrored},
+              {"full", picture.full},
+              {"speed", rounded(picture.lift_speed, 5)},
+              {"fixed", walls_json(picture.fixed)},
+              {"lifted", walls_json(picture.lifted)},
+              {"turning", walls_json(picture.turning)},
+              {"fields", std::move(fields)},
+              {"frames", std::move(frames)}}
+      .dump();
 }
 
 void thin_points(MovingFrame& frame, std::size_t most) {

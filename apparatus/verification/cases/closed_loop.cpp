@@ -1,4 +1,4 @@
-// Rung 9: material parameters, virtual vane, torque, fit, material parameters.
+// Case 9: material parameters, virtual vane, torque, fit, material parameters.
 
 #include <fmt/format.h>
 
@@ -33,14 +33,14 @@ Loop flow_curve_and_back(const Bingham& bingham, double cell_mm) {
 
 }  // namespace
 
-CaseGroup closed_loop_cases(Depth depth) {
-  Case one{.name = "closed_loop",
-           .title = "Flow curve of Mix A, Couette section",
-           .equation = "(τ0, μ) → torque at seven speeds → (τ0, μ)",
-           .reference = "the parameters that went in, 54 Pa and 35.8 Pa·s",
-           .norm = "relative error of the parameter",
-           .series = {{"yield stress", {}}, {"plastic viscosity", {}}},
-           .bounds = {}};
+Case closed_loop_case(Depth depth) {
+  Problem one{.name = "closed_loop",
+              .title = "Flow curve of Mix A, Couette section",
+              .equation = "(τ0, μ) → torque at seven speeds → (τ0, μ)",
+              .reference = "the parameters that went in, 54 Pa and 35.8 Pa·s",
+              .norm = "relative error of the parameter",
+              .series = {{"yield stress", {}}, {"plastic viscosity", {}}},
+              .bounds = {}};
   for (double cell : {8.0, 4.0, 2.0, 1.0}) {
     if (cell == 1.0 && depth == Depth::quick) break;
     const Loop loop = flow_curve_and_back({54.0, 35.8}, cell);

@@ -1,4 +1,4 @@
-// Rung 5: the Couette line of the vane apparatus against Reiner-Riwlin and against the radial reference by
+// Case 5: the Couette line of the vane apparatus against Reiner-Riwlin and against the radial reference by
 // IDA.
 
 #include <fmt/format.h>
@@ -34,14 +34,14 @@ Run torque_error(const Bingham& bingham, double speed, double cell_mm) {
                                            : ""};
 }
 
-Case steady(Depth depth) {
-  Case one{.name = "couette",
-           .title = "Steady torque",
-           .equation = "(1/r²) d(r² τ)/dr = 0 between r = 63.5 and 143 mm, exact Bingham",
-           .reference = "Reiner-Riwlin, the plug's radius solved for",
-           .norm = "relative error of the torque",
-           .series = {},
-           .bounds = {}};
+Problem steady(Depth depth) {
+  Problem one{.name = "couette",
+              .title = "Steady torque",
+              .equation = "(1/r²) d(r² τ)/dr = 0 between r = 63.5 and 143 mm, exact Bingham",
+              .reference = "Reiner-Riwlin, the plug's radius solved for",
+              .norm = "relative error of the torque",
+              .series = {},
+              .bounds = {}};
   struct Flow {
     const char* name;
     Bingham bingham;
@@ -85,16 +85,16 @@ icar_vane::Scene decay_scene(double cell_mm) {
   return scene;
 }
 
-Case decay(Depth depth) {
-  Case one{.name = "couette_decay",
-           .title = "Torque decay after 240 s of rest",
-           .equation = "μγ̇ + (1+λ)τ0 = T/(2πr²h), dλ/dt = −αλγ̇, gated; Mix A, α = 0.0358, 0.25 rev/s",
-           .reference =
-               "the radial equations by SUNDIALS IDA, 800 intervals, tolerance 1e-8; the vane reaches its "
-               "speed within 0.1 s, as the instrument's motor does, or at once",
-           .norm = "largest relative error of the torque from 0.5 to 20 s",
-           .series = {{"speed reached in 0.1 s", {}}, {"reference at full speed from the start", {}}},
-           .bounds = {}};
+Problem decay(Depth depth) {
+  Problem one{.name = "couette_decay",
+              .title = "Torque decay after 240 s of rest",
+              .equation = "μγ̇ + (1+λ)τ0 = T/(2πr²h), dλ/dt = −αλγ̇, gated; Mix A, α = 0.0358, 0.25 rev/s",
+              .reference =
+                  "the radial equations by SUNDIALS IDA, 800 intervals, tolerance 1e-8; the vane reaches its "
+                  "speed within 0.1 s, as the instrument's motor does, or at once",
+              .norm = "largest relative error of the torque from 0.5 to 20 s",
+              .series = {{"speed reached in 0.1 s", {}}, {"reference at full speed from the start", {}}},
+              .bounds = {}};
   std::vector<double> times;
   for (int i = 0; i <= 40; ++i) times.push_back(0.5 * i);
   CouetteOptions options;
@@ -130,16 +130,17 @@ Run blade_error(icar_vane::Scene scene, double cell_mm, double reference) {
           cpu_seconds() - start};
 }
 
-Case blades(Depth depth) {
-  Case one{.name = "blades",
-           .title = "Steady torque on four blades, plane section, 0.25 rev/s",
-           .equation = "div σ = 0 around blades of 3 mm in a container of 143 mm",
-           .reference =
-               "finite elements in polar coordinates, quadratic velocities, the regularisation taken to its "
-               "limit (vane_finite_elements.hpp)",
-           .norm = "relative error of the torque",
-           .series = {},
-           .bounds = {}};
+Problem blades(Depth depth) {
+  Problem one{
+      .name = "blades",
+      .title = "Steady torque on four blades, plane section, 0.25 rev/s",
+      .equation = "div σ = 0 around blades of 3 mm in a container of 143 mm",
+      .reference =
+          "finite elements in polar coordinates, quadratic velocities, the regularisation taken to its "
+          "limit (vane_finite_elements.hpp)",
+      .norm = "relative error of the torque",
+      .series = {},
+      .bounds = {}};
   struct Fluid {
     const char* name;
     double tau_0;
@@ -168,8 +169,6 @@ Case blades(Depth depth) {
 
 }  // namespace
 
-CaseGroup couette_cases(Depth depth) {
-  return {5, "Couette flow", {steady(depth), decay(depth), blades(depth)}};
-}
+Case couette_case(Depth depth) { return {5, "Couette flow", {steady(depth), decay(depth), blades(depth)}}; }
 
 }  // namespace tremie::verification

@@ -1,4 +1,4 @@
-// Rung 11: is the error bar of `tremie run --with-error` honest? The answer on cells of half the size must
+// Case 11: is the error bar of `tremie run --with-error` honest? The answer on cells of half the size must
 // lie inside it.
 
 #include <fmt/format.h>
@@ -44,7 +44,7 @@ double reading_of(const scene::Outcome& outcome, const std::string& name) {
 
 }  // namespace
 
-CaseGroup error_bars_cases(Depth depth) {
+Case error_bars_case(Depth depth) {
   Table table{.name = "Error bars against the answer on cells of half the size",
               .text = "",
               .columns = {"scene", "value", "bar", "finer", "inside", "extra CPU", "basis"},

@@ -1,4 +1,4 @@
-// Rung 10: stiff and extreme scenes.
+// Case 10: stiff and extreme scenes.
 
 #include "apparatus/verification/extremes.hpp"
 
@@ -16,7 +16,7 @@ const char* word_of(Ending ending) {
   switch (ending) {
     case Ending::right:
       return "right";
-    case Ending::marked:
+    case Ending::flagged:
       return "exit 3";
     case Ending::no_meaning:
       return "exit 2";
@@ -29,7 +29,7 @@ const char* word_of(Ending ending) {
 }
 
 /// One line without what a table cannot hold.
-std::string in_a_table(std::string text) {
+std::string table_cell(std::string text) {
   if (const auto end = text.find('\n'); end != std::string::npos) text.resize(end);
   std::replace(text.begin(), text.end(), '|', '/');
   return text;
@@ -37,7 +37,7 @@ std::string in_a_table(std::string text) {
 
 }  // namespace
 
-CaseGroup extremes_cases(Depth depth) {
+Case extremes_case(Depth depth) {
   const double limit = depth == Depth::full ? 120.0 : 2.0;
   std::vector<Extreme> cases = extremes();
   if (depth == Depth::quick) {  // every seventh
@@ -60,14 +60,14 @@ CaseGroup extremes_cases(Depth depth) {
     cpu += v.cpu;
     table.rows.push_back({cases[i].family, cases[i].name, word_of(v.ending),
                           v.reading ? fmt::format("{:.4g}", *v.reading) : "", fmt::format("{:.2f}", v.cpu),
-                          in_a_table(v.why)});
+                          table_cell(v.why)});
   }
   table.text = fmt::format(
       "{} scenes in {:.0f} s of CPU: {} right, {} marked as not to be trusted (exit 3), {} refused (exit 2), "
       "{} "
       "stopped after {:g} s, {} wrong without saying so. The reading is the spread in mm or the torque in N "
       "m.",
-      cases.size(), cpu, count[Ending::right], count[Ending::marked], count[Ending::no_meaning],
+      cases.size(), cpu, count[Ending::right], count[Ending::flagged], count[Ending::no_meaning],
       count[Ending::too_slow], limit, count[Ending::silent_wrong]);
   table.bounds = {{.what = "scenes wrong without saying so",
                    .value = static_cast<double>(count[Ending::silent_wrong]),

@@ -1,4 +1,4 @@
-// Rung 4: a Bingham film down a plane and plane Poiseuille flow.
+// Case 4: a Bingham film down a plane and plane Poiseuille flow.
 
 #include "apparatus/verification/references/film.hpp"
 
@@ -16,23 +16,23 @@ template <class Law, class Profile>
 Run profile_error(const Flow& flow, const Law& law, YieldMethod method, int cells, const Profile& profile) {
   const double start = cpu_seconds();
   bool converged = false;
-  const auto places = film::steady_state(flow, law, method, cells, converged);
+  const auto samples = film::steady_state(flow, law, method, cells, converged);
   const double cpu = cpu_seconds() - start;
-  return {fmt::format("{} cells", cells), film::height / cells, film::relative_error(places, profile), cpu,
+  return {fmt::format("{} cells", cells), film::height / cells, film::relative_error(samples, profile), cpu,
           converged ? "" : "not converged"};
 }
 
 template <class Law, class Profile>
-Case flow_case(const std::string& name, const std::string& title, const Flow& flow, const Law& law,
-               const Profile& profile, double least_order, Depth depth) {
-  Case one{.name = name,
-           .title = title,
-           .equation = flow.film ? "a film 100 mm deep on a no-slip plane, τ = ρ g_x (H − y)"
-                                 : "a channel 100 mm wide, τ = ρ g_x (H/2 − y)",
-           .reference = "",
-           .norm = "relative L2 error of the velocity profile",
-           .series = {{"ADMM", {}}, {"primal-dual Newton", {}}},
-           .bounds = {}};
+Problem flow_problem(const std::string& name, const std::string& title, const Flow& flow, const Law& law,
+                     const Profile& profile, double least_order, Depth depth) {
+  Problem one{.name = name,
+              .title = title,
+              .equation = flow.film ? "a film 100 mm deep on a no-slip plane, τ = ρ g_x (H − y)"
+                                    : "a channel 100 mm wide, τ = ρ g_x (H/2 − y)",
+              .reference = "",
+              .norm = "relative L2 error of the velocity profile",
+              .series = {{"ADMM", {}}, {"primal-dual Newton", {}}},
+              .bounds = {}};
   for (int cells : {8, 16, 32, 64}) {
     if (cells == 64 && depth == Depth::quick) break;
     one.series[0].runs.push_back(profile_error(flow, law, YieldMethod::admm, cells, profile));
@@ -71,28 +71,28 @@ Run explicit_error(const Flow& flow, const Law& law, const ExplicitSettings& set
   bool failed = false;
   while (body.time < (flow.film ? 2.5 : 0.8)) failed |= explicit_step(body, law, settings, state).failed;
   write_back(state, body);
-  std::vector<film::Place> places;
+  std::vector<film::Sample> samples;
   for (std::size_t p = 0; p < body.points.size(); ++p)
-    places.push_back({body.points.x[p][1], body.points.v[p][0], 0.0, body.points.volume(p)});
-  return {fmt::format("{} cells", cells), h, film::relative_error(places, profile), cpu_seconds() - start,
+    samples.push_back({body.points.x[p][1], body.points.v[p][0], 0.0, body.points.volume(p)});
+  return {fmt::format("{} cells", cells), h, film::relative_error(samples, profile), cpu_seconds() - start,
           failed ? "failed" : ""};
 }
 
 /// The paper's regularisation, m = 5 s, which explicit steps can carry, by every scheme. What the transfers
 /// of explicit steps take from a curved profile is reported, without a bound.
-Case schemes(const Flow& flow, Depth depth) {
+Problem schemes(const Flow& flow, Depth depth) {
   constexpr double m = 5.0;
   const Papanastasiou law{m};
   const film::RegularisedProfile profile(flow, m);
-  Case one{.name = flow.film ? "film_schemes" : "poiseuille_schemes",
-           .title = std::string(flow.film ? "Film" : "Plane Poiseuille flow") +
-                    ", Papanastasiou m = 5 s, every scheme",
-           .equation = flow.film ? "a film 100 mm deep on a no-slip plane, τ = ρ g_x (H − y)"
-                                 : "a channel 100 mm wide, τ = ρ g_x (H/2 − y)",
-           .reference = "τ(γ̇) = ρ g_x (…) solved for γ̇ and summed by Gauss' rule on 4000 intervals",
-           .norm = "relative L2 error of the velocity profile",
-           .series = {},
-           .bounds = {}};
+  Problem one{.name = flow.film ? "film_schemes" : "poiseuille_schemes",
+              .title = std::string(flow.film ? "Film" : "Plane Poiseuille flow") +
+                       ", Papanastasiou m = 5 s, every scheme",
+              .equation = flow.film ? "a film 100 mm deep on a no-slip plane, τ = ρ g_x (H − y)"
+                                    : "a channel 100 mm wide, τ = ρ g_x (H/2 − y)",
+              .reference = "τ(γ̇) = ρ g_x (…) solved for γ̇ and summed by Gauss' rule on 4000 intervals",
+              .norm = "relative L2 error of the velocity profile",
+              .series = {},
+              .bounds = {}};
   struct Scheme {
     const char* name;
     ShapeFunctions shape;
@@ -124,23 +124,24 @@ Case schemes(const Flow& flow, Depth depth) {
 
 }  // namespace
 
-CaseGroup film_cases(Depth depth) {
-  CaseGroup group{4, "Film down a plane, plane Poiseuille flow", {}};
+Case film_case(Depth depth) {
+  Case result{4, "Film down a plane, plane Poiseuille flow", {}};
   for (const bool is_film : {true, false}) {
     const Flow flow{is_film};
     const std::string name = is_film ? "film" : "poiseuille",
                       title = is_film ? "Film" : "Plane Poiseuille flow";
-    group.cases.push_back(flow_case(
+    result.problems.push_back(flow_problem(
         name + "_exact", title + ", exact yield", flow, ExactBingham{},
         [&](double y) { return film::exact_velocity(flow, y); }, 1.5, depth));
-    group.cases.back().reference = "closed form: a parabola up to the plug";
-    group.cases.push_back(flow_case(name + "_regularised", title + ", Papanastasiou m = 100 s", flow,
-                                    Papanastasiou{100.0}, film::RegularisedProfile(flow, 100.0), 1.8, depth));
-    group.cases.back().reference =
+    result.problems.back().reference = "closed form: a parabola up to the plug";
+    result.problems.push_back(flow_problem(name + "_regularised", title + ", Papanastasiou m = 100 s", flow,
+                                           Papanastasiou{100.0}, film::RegularisedProfile(flow, 100.0), 1.8,
+                                           depth));
+    result.problems.back().reference =
         "τ(γ̇) = ρ g_x (…) solved for γ̇ and summed by Gauss' rule on 4000 intervals";
-    group.cases.push_back(schemes(flow, depth));
+    result.problems.push_back(schemes(flow, depth));
   }
-  return group;
+  return result;
 }
 
 }  // namespace tremie::verification

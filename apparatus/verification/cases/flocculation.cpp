@@ -1,4 +1,4 @@
-// Rung 2: lambda by the per-point update, by forward Euler, CVODE and ARKODE, against closed forms and CVODE
+// Case 2: lambda by the per-point update, by forward Euler, CVODE and ARKODE, against closed forms and CVODE
 // at its finest tolerance.
 
 #include <fmt/format.h>
@@ -34,18 +34,19 @@ Run measure(const std::string& label, double h, const std::vector<double>& refer
   return run;
 }
 
-Case history_case(const std::string& name, const std::string& title, const study::Case& c, Depth depth) {
-  Case one{.name = name,
-           .title = title,
-           .equation = "dλ/dt = A_thix/τ0 − αλγ̇(t), equations (3) and (4)",
-           .reference = "CVODE at a tolerance of 1e-13, gate crossings found as roots",
-           .norm = "largest |λ − λ_reference| over the largest λ, every second",
-           .series = {{"update of the points", {}},
-                      {"forward Euler (for comparison)", {}},
-                      {"CVODE", {}},
-                      {"update along the history", {}},
-                      {"ARKODE", {}}},
-           .bounds = {}};
+Problem history_problem(const std::string& name, const std::string& title, const study::Case& c,
+                        Depth depth) {
+  Problem one{.name = name,
+              .title = title,
+              .equation = "dλ/dt = A_thix/τ0 − αλγ̇(t), equations (3) and (4)",
+              .reference = "CVODE at a tolerance of 1e-13, gate crossings found as roots",
+              .norm = "largest |λ − λ_reference| over the largest λ, every second",
+              .series = {{"update of the points", {}},
+                         {"forward Euler (for comparison)", {}},
+                         {"CVODE", {}},
+                         {"update along the history", {}},
+                         {"ARKODE", {}}},
+              .bounds = {}};
   const auto reference = flocculation_ode(c.history, c.thixotropy, study::tau_0, c.lambda_0, c.times).lambda;
   for (double dt : {0.2, 0.1, 0.05, 0.02, 0.01, 1e-3, 1e-4}) {
     if (dt > c.largest_dt || (dt < 1e-3 && depth == Depth::quick)) continue;
@@ -78,7 +79,7 @@ std::vector<double> every_second(double until) {
 }
 
 /// Worst relative error of one step at a constant rate, over rates and step sizes, against the closed form.
-Case constant_rate() {
+Problem constant_rate() {
   const double start = cpu_seconds();
   const Thixotropy t{.A_thix = 1.3, .alpha = 0.0358, .kinetics = Kinetics::roussel};
   double worst = 0.0;
@@ -88,20 +89,20 @@ Case constant_rate() {
       const double exact = static_cast<double>(5.0L * std::exp(-k) - build * std::expm1(-k) / k);
       worst = std::max(worst, std::abs(flocculation_step(5.0, t, 54.0, rate, rate, dt) / exact - 1.0));
     }
-  Case one{.name = "constant_rate",
-           .title = "Constant rate",
-           .equation = "dλ/dt = A_thix/τ0 − αλγ̇, equation (3)",
-           .reference = "λ e^(−k) + (A_thix/τ0) Δt (1 − e^(−k))/k, k = αγ̇Δt, in extended precision",
-           .norm = "largest relative error of one step, αγ̇Δt from 4e-11 to 4e7",
-           .series = {{"update of the points", {{"1e-6 to 100 s", 0.0, worst, cpu_seconds() - start}}}},
-           .bounds = {{.what = "worst error", .value = worst, .limit = 1e-13}}};
+  Problem one{.name = "constant_rate",
+              .title = "Constant rate",
+              .equation = "dλ/dt = A_thix/τ0 − αλγ̇, equation (3)",
+              .reference = "λ e^(−k) + (A_thix/τ0) Δt (1 − e^(−k))/k, k = αγ̇Δt, in extended precision",
+              .norm = "largest relative error of one step, αγ̇Δt from 4e-11 to 4e7",
+              .series = {{"update of the points", {{"1e-6 to 100 s", 0.0, worst, cpu_seconds() - start}}}},
+              .bounds = {{.what = "worst error", .value = worst, .limit = 1e-13}}};
   return one;
 }
 
 }  // namespace
 
-CaseGroup flocculation_cases(Depth depth) {
-  CaseGroup group{2, "The flocculation state", {constant_rate()}};
+Case flocculation_case(Depth depth) {
+  Case result{2, "The flocculation state", {constant_rate()}};
   const Thixotropy roussel{.A_thix = 1.3, .alpha = 0.0358, .kinetics = Kinetics::roussel};
   Thixotropy gated = roussel;
   gated.kinetics = Kinetics::gated;
@@ -109,10 +110,10 @@ CaseGroup flocculation_cases(Depth depth) {
                              .rate = [](double t) { return 5.0 * (1.0 - std::cos(0.5 * t)); }};
   const study::Case smooth{
       .name = "cosine", .title = "", .history = {cosine}, .thixotropy = roussel, .times = every_second(20.0)};
-  group.cases.push_back(
-      history_case("smooth_rate", "Smooth rate, 5 (1 − cos t/2) 1/s for 20 s", smooth, depth));
-  const double order = observed_order(group.cases.back().series[0]);
-  group.cases.back().bounds = {{.what = "update: order", .value = order, .limit = 1.9, .at_least = true}};
+  result.problems.push_back(
+      history_problem("smooth_rate", "Smooth rate, 5 (1 − cos t/2) 1/s for 20 s", smooth, depth));
+  const double order = observed_order(result.problems.back().series[0]);
+  result.problems.back().bounds = {{.what = "update: order", .value = order, .limit = 1.9, .at_least = true}};
   const ShearPiece up = {.duration = 10.0, .rate = [](double t) { return 0.5 * t; }};
   const ShearPiece down = {.duration = 10.0, .rate = [](double t) { return 5.0 - 0.5 * t; }};
   const study::Case gate{.name = "gate",
@@ -121,12 +122,12 @@ CaseGroup flocculation_cases(Depth depth) {
                          .thixotropy = gated,
                          .times = every_second(20.0),
                          .largest_dt = 0.1};
-  group.cases.push_back(
-      history_case("gated", "Up and down through the gate, 0 to 5 to 0 1/s in 20 s", gate, depth));
-  group.cases.back().bounds = {{.what = "update: error at 0.01 s",
-                                .value = group.cases.back().series[0].runs[3].error,
-                                .limit = 1e-10}};
-  return group;
+  result.problems.push_back(
+      history_problem("gated", "Up and down through the gate, 0 to 5 to 0 1/s in 20 s", gate, depth));
+  result.problems.back().bounds = {{.what = "update: error at 0.01 s",
+                                    .value = result.problems.back().series[0].runs[3].error,
+                                    .limit = 1e-10}};
+  return result;
 }
 
 }  // namespace tremie::verification

@@ -1,4 +1,4 @@
-// Rung 7: the L-box at rest, against the thin-layer closed form.
+// Case 7: the L-box at rest, against the thin-layer closed form.
 
 #include <fmt/format.h>
 
@@ -21,8 +21,8 @@ Run at_rest(double cell, bool side_walls) {
 
 }  // namespace
 
-CaseGroup l_box_cases(Depth depth) {
-  Case one{
+Case l_box_case(Depth depth) {
+  Problem one{
       .name = "l_box_at_rest",
       .title = "The profile of the L-box at rest",
       .equation = "50 Pa, 30 Pa·s, gate at 30 cm/s, 180 s",

@@ -1,4 +1,4 @@
-// Rung 1: the deviatoric stress of every yield law in simple shear, rotated into many frames, against its
+// Case 1: the deviatoric stress of every yield law in simple shear, rotated into many frames, against its
 // closed form in extended precision.
 
 #include <Eigen/Core>
@@ -63,15 +63,15 @@ Series worst_over_frames(const std::string& name, const Law& law, const std::vec
 
 }  // namespace
 
-CaseGroup law_cases(Depth depth) {
+Case law_case(Depth depth) {
   const auto frames = rotations(depth == Depth::full ? 5000 : 500);
-  Case one{.name = "law",
-           .title = "Simple shear in rotated frames",
-           .equation = "τ = 2 [μ + s(γ̇)] D', equations (27), (32), (33)",
-           .reference = "the laws' definitions in extended precision",
-           .norm = "largest |Qᵀ τ Q − τ_exact| / |τ_exact| over rates and frames",
-           .series = {},
-           .bounds = {}};
+  Problem one{.name = "law",
+              .title = "Simple shear in rotated frames",
+              .equation = "τ = 2 [μ + s(γ̇)] D', equations (27), (32), (33)",
+              .reference = "the laws' definitions in extended precision",
+              .norm = "largest |Qᵀ τ Q − τ_exact| / |τ_exact| over rates and frames",
+              .series = {},
+              .bounds = {}};
   one.series = {worst_over_frames("exact Bingham", ExactBingham{0.0}, frames),
                 worst_over_frames("Papanastasiou, m = 5 s", Papanastasiou{5.0}, frames),
                 worst_over_frames("Papanastasiou, m = 1e6 s", Papanastasiou{1e6}, frames),

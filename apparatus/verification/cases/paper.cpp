@@ -1,4 +1,4 @@
-// Rung 8: the paper's slump flows, by exact yield in the axisymmetric space, beside what it prints. Reported
+// Case 8: the paper's slump flows, by exact yield in the axisymmetric space, beside what it prints. Reported
 // without a bound: the paper's own numbers contradict each other (reference_data/published.toml).
 
 #include <fmt/format.h>
@@ -35,7 +35,7 @@ std::string mm(double metres) { return fmt::format("{:.0f}", 1e3 * metres); }
 
 }  // namespace
 
-CaseGroup paper_cases(Depth) {
+Case paper_case(Depth) {
   Table table{
       .name = "Slump flow without and after 240 s of rest",
       .text =

@@ -1,4 +1,4 @@
-// Rung 12: which scheme for which CPU budget? The slump by every scheme, against the finite elements.
+// Case 12: which scheme for which CPU budget? The slump by every scheme, against the finite elements.
 
 #include <fmt/format.h>
 
@@ -66,15 +66,15 @@ Run run_of(const Test& test, const Model& model, double across) {
   return run;
 }
 
-Case measured(const Test& test, Depth depth) {
-  Case one{.name = test.name,
-           .title = test.title,
-           .equation = fmt::format("Bingham, {:g} Pa and {:g} Pa·s, no slip, with inertia, {:g} s of flow",
-                                   test.tau_0, test.mu, test.duration),
-           .reference = "body-fitted Lagrangian finite elements, exact yield",
-           .norm = "largest relative error of the spread at the reference's times from 1 s on",
-           .series = {},
-           .bounds = {}};
+Problem measured(const Test& test, Depth depth) {
+  Problem one{.name = test.name,
+              .title = test.title,
+              .equation = fmt::format("Bingham, {:g} Pa and {:g} Pa·s, no slip, with inertia, {:g} s of flow",
+                                      test.tau_0, test.mu, test.duration),
+              .reference = "body-fitted Lagrangian finite elements, exact yield",
+              .norm = "largest relative error of the spread at the reference's times from 1 s on",
+              .series = {},
+              .bounds = {}};
   for (const Scheme& scheme : schemes(depth == Depth::quick ? 20.0 : test.finest_explicit)) {
     Series series{scheme.name, {}};
     for (const double across : sizes(depth))
@@ -84,7 +84,7 @@ Case measured(const Test& test, Depth depth) {
   return one;
 }
 
-/// The smallest error within a budget of CPU time, marked runs left out.
+/// The smallest error within a budget of CPU time, runs with a note left out.
 struct Best {
   double error = HUGE_VAL;
   std::string who = "none";
@@ -104,7 +104,7 @@ std::string percent(double error) {
 }
 
 /// What each budget buys. Errors below the reference's own are equal.
-Table budgets(const Case& one) {
+Table budgets(const Problem& one) {
   Table table{.name = fmt::format("What a CPU budget buys: {}", one.title),
               .text = fmt::format(
                   "Errors below {:.1f} % are within the reference's own, and none is better than another.",
@@ -131,21 +131,21 @@ Series peer(std::initializer_list<Run> runs) { return {"interFoam (measured else
 
 }  // namespace
 
-CaseGroup pareto_cases(Depth depth) {
+Case pareto_case(Depth depth) {
   const Test tests[] = {{"pareto_mix_a", "Mix A at 20 s", 54.0, 35.8, 20.0, 15.0, finite_elements_mix_a},
                         {"pareto_mix_c", "Mix C from 1 to 3 s", 130.0, 30.2, 3.0, 10.0,
                          std::span(finite_elements_mix_c).first(3)}};
-  CaseGroup group{12, "Which scheme for which budget", {}, {}};
-  for (const Test& test : tests) group.cases.push_back(measured(test, depth));
-  for (const Case& one : group.cases) group.tables.push_back(budgets(one));
+  Case result{12, "Which scheme for which budget", {}, {}};
+  for (const Test& test : tests) result.problems.push_back(measured(test, depth));
+  for (const Problem& one : result.problems) result.tables.push_back(budgets(one));
   const double mix_a = finite_elements_mix_a[0].mm;
-  group.cases[0].series.push_back(
+  result.problems[0].series.push_back(
       peer({{"10 mm", 10.0, 585.0 / mix_a - 1.0, 5.6},
             {"5 mm", 5.0, 621.0 / mix_a - 1.0, 35.0},
             {"2.5 mm", 2.5, 654.0 / mix_a - 1.0, 480.0, "14 s of 20, still moving"}}));
-  group.cases[0].notes = {
+  result.problems[0].notes = {
       "CB-GEO MPM, explicit and in 3D with the paper's grid, needs 8 h (2.9e4 s) for the same 20 s."};
-  return group;
+  return result;
 }
 
 }  // namespace tremie::verification

@@ -1,4 +1,4 @@
-// Rung 3: a column at rest under its own weight, and a body that rotates freely.
+// Case 3: a column at rest under its own weight, and a body that rotates freely.
 
 #include <fmt/format.h>
 #include <omp.h>
@@ -17,14 +17,14 @@ Run column_at_rest(int levels, double tau_0) {
   constexpr int D = Geometry::dim, up = Geometry::up;
   const double start = cpu_seconds(), h = height / levels;
   ImplicitBody<Geometry> body;
-  body.mix = test::concrete(tau_0, 35.8);
+  body.mix = bodies::concrete(tau_0, 35.8);
   body.gravity[up] = -g;
   Vec<D> low = Vec<D>::Zero(), high = Vec<D>::Constant(2 * h);
   for (Axis& a : body.grid.axes)
     a = {.h = h, .low = FaceKind::free_slip, .high = FaceKind::free_slip, .n_cells = 2};
   body.grid.axes[up] = {.h = h, .low = FaceKind::no_slip};
   high[up] = height;
-  test::fill_box<Geometry>(body, low, high, 2, [&](const auto& x) { return rho * g * (height - x[up]); });
+  bodies::fill_box<Geometry>(body, low, high, 2, [&](const auto& x) { return rho * g * (height - x[up]); });
   StepSettings settings;
   settings.dt_max = 0.05;
   int unconverged = 0;
@@ -38,8 +38,8 @@ Run column_at_rest(int levels, double tau_0) {
           unconverged ? fmt::format("{} unconverged steps", unconverged) : ""};
 }
 
-Case hydrostatic(Depth depth) {
-  Case one{
+Problem hydrostatic(Depth depth) {
+  Problem one{
       .name = "hydrostatic",
       .title = "Hydrostatic pressure",
       .equation = "∇p = ρg, a column between free-slip walls, 54 Pa; 1 s",
@@ -65,34 +65,34 @@ Case hydrostatic(Depth depth) {
 Run free_rotation(int steps) {
   const double start = cpu_seconds(), h = 0.05;
   ImplicitBody<PlaneStrain> body;
-  body.mix = test::concrete(54.0, 35.8);
+  body.mix = bodies::concrete(54.0, 35.8);
   for (Axis& a : body.grid.axes) a.h = h;
-  test::fill_box(body, Vec<2>(-0.1, -0.1), Vec<2>(0.1, 0.1), 2);
+  bodies::fill_box(body, Vec<2>(-0.1, -0.1), Vec<2>(0.1, 0.1), 2);
   Mat<2, 2> W;
   W << 0.0, -2.0, 2.0, 0.0;
   for (std::size_t p = 0; p < body.points.size(); ++p) {
     body.points.C[p] = W;
     body.points.v[p] = W * body.points.x[p];
   }
-  const auto before = test::angular_momentum<2>(body);
+  const auto before = bodies::angular_momentum<2>(body);
   StepSettings settings;
   settings.fixed_dt = 1e-3;
   for (int i = 0; i < steps; ++i) implicit_step(body, ExactBingham{}, settings);
-  const double drift = (test::angular_momentum<2>(body) - before).norm() / before.norm();
+  const double drift = (bodies::angular_momentum<2>(body) - before).norm() / before.norm();
   return {fmt::format("{} steps", steps), 0.0, drift, cpu_seconds() - start};
 }
 
 }  // namespace
 
-CaseGroup rest_cases(Depth depth) {
+Case rest_case(Depth depth) {
   omp_set_num_threads(1);
-  Case rotation{.name = "rotation",
-                .title = "Free rotation",
-                .equation = "d/dt Σ m (x × v + spin) = 0",
-                .reference = "its start",
-                .norm = "relative drift of the angular momentum",
-                .series = {{"APIC, implicit", {free_rotation(1000)}}},
-                .bounds = {}};
+  Problem rotation{.name = "rotation",
+                   .title = "Free rotation",
+                   .equation = "d/dt Σ m (x × v + spin) = 0",
+                   .reference = "its start",
+                   .norm = "relative drift of the angular momentum",
+                   .series = {{"APIC, implicit", {free_rotation(1000)}}},
+                   .bounds = {}};
   rotation.bounds = {
       {.what = "drift over 1000 steps", .value = rotation.series[0].runs[0].error, .limit = 1e-10}};
   return {3, "Bodies at rest and in rigid motion", {hydrostatic(depth), rotation}};

@@ -1,4 +1,4 @@
-// Rung 6: spreading on a no-slip floor.
+// Case 6: spreading on a no-slip floor.
 
 #include <fmt/format.h>
 
@@ -20,14 +20,14 @@ std::string label_of(const Cell& cell) { return fmt::format("{:g} x {:g} mm", ce
 double size_of(const Cell& cell) { return std::sqrt(cell[0] * cell[1]); }
 std::string unconverged(std::int64_t n) { return n ? fmt::format("{} unconverged steps", n) : ""; }
 
-Case newtonian(Depth depth) {
-  Case one{.name = "huppert",
-           .title = "A Newtonian patch over a decade of time",
-           .equation = "ρ h² ≪ μ t: ∂h/∂t = (ρg/3μ) ∇·(h³∇h)",
-           .reference = "Huppert (1982): R = 0.894 (gV³/3ν)^(1/8) t^(1/8)",
-           .norm = "largest relative error of the radius at any step",
-           .series = {{"implicit", {}}},
-           .bounds = {}};
+Problem newtonian(Depth depth) {
+  Problem one{.name = "huppert",
+              .title = "A Newtonian patch over a decade of time",
+              .equation = "ρ h² ≪ μ t: ∂h/∂t = (ρg/3μ) ∇·(h³∇h)",
+              .reference = "Huppert (1982): R = 0.894 (gV³/3ν)^(1/8) t^(1/8)",
+              .norm = "largest relative error of the radius at any step",
+              .series = {{"implicit", {}}},
+              .bounds = {}};
   HuppertFit fit{};
   for (const Cell& cell : {Cell{10, 5}, Cell{7.5, 3.75}, Cell{5, 2.5}}) {
     if (cell[0] == 7.5 && depth == Depth::quick) continue;
@@ -44,8 +44,8 @@ Case newtonian(Depth depth) {
   return one;
 }
 
-Case slender(Depth depth) {
-  Case one{
+Problem slender(Depth depth) {
+  Problem one{
       .name = "slender",
       .title = "A slender Bingham body, 10 Pa",
       .equation = "lubrication with a plug: Q = ρg S Y² (3h − Y)/(6μ), Y = h − τ0/(ρg S)",
@@ -84,7 +84,7 @@ Run against_finite_elements(const Cell& cell, const Model& scheme) {
 }
 
 /// Explicit steps: a bounded viscosity, m = 5 s, and two points a cell.
-void add_explicit_schemes(Depth depth, Case& one) {
+void add_explicit_schemes(Depth depth, Problem& one) {
   for (const bool gimp : {false, true}) {
     Model model;
     model.law = Papanastasiou{5.0};
@@ -102,8 +102,8 @@ void add_explicit_schemes(Depth depth, Case& one) {
       "Explicit steps have m = 5 s, which alone takes the spread 8 to 9 % further by 20 s: no bound.");
 }
 
-Case slump(Depth depth) {
-  Case one{
+Problem slump(Depth depth) {
+  Problem one{
       .name = "slump_mix_c",
       .title = "Mix C, the cone gone at once",
       .equation = "exact Bingham, 130 Pa and 30.2 Pa·s, no slip, with inertia",
@@ -129,15 +129,16 @@ Case slump(Depth depth) {
 }
 
 /// Spread at rest between the balance with the plug's normal stress and the thin-layer law.
-Case rest_balance() {
-  Case one{.name = "slump_rest",
-           .title = "Spread at rest, Mix C",
-           .equation = "h²/2 − a l h = l (R − r), l = τ0/ρg",
-           .reference =
-               "a = √3π/4 (with the plug's normal stress) as the lower, a = 0 (the law) as the upper bound",
-           .norm = "relative difference of the spread to the lower bound",
-           .series = {{"implicit", {}}},
-           .bounds = {}};
+Problem rest_balance() {
+  Problem one{
+      .name = "slump_rest",
+      .title = "Spread at rest, Mix C",
+      .equation = "h²/2 − a l h = l (R − r), l = τ0/ρg",
+      .reference =
+          "a = √3π/4 (with the plug's normal stress) as the lower, a = 0 (the law) as the upper bound",
+      .norm = "relative difference of the spread to the lower bound",
+      .series = {{"implicit", {}}},
+      .bounds = {}};
   const double start = cpu_seconds();
   const auto outcome = cone::run(instant_release(130.0, 30.2, cone::Scene{}.duration));
   const Fluid fluid{2400.0, 9.81, 130.0, 30.2};
@@ -155,7 +156,7 @@ Case rest_balance() {
 
 }  // namespace
 
-CaseGroup spreading_cases(Depth depth) {
+Case spreading_case(Depth depth) {
   return {6, "Spreading on a floor", {newtonian(depth), slender(depth), slump(depth), rest_balance()}};
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Small bodies for the tests, and what is summed over them.
+// Small bodies of concrete, and sums over them.
 
 #include <Eigen/Geometry>
 #include <limits>
@@ -9,7 +9,7 @@
 #include "libmpm/implicit/step.hpp"
 #include "libmpm/particles/seeding.hpp"
 
-namespace tremie::test {
+namespace tremie::bodies {
 
 /// A mix of density 2400 kg/m^3 without thixotropy.
 inline Mix concrete(double tau_0, double mu, double K = 1e6) {
@@ -91,4 +91,4 @@ void fill_box(Body<Geometry>& body, const Vec<Geometry::dim>& low, const Vec<Geo
   fill_box(body, low, high, per_cell, [](const auto&) { return 0.0; });
 }
 
-}  // namespace tremie::test
+}  // namespace tremie::bodies

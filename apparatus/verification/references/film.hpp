@@ -59,8 +59,8 @@ class RegularisedProfile {
     return 0.5 * (low + high);
   }
   double integral(double a, double b) const {
-    const double c = 0.5 * (a + b), w = 0.5 * (b - a), place = w * std::sqrt(0.6);
-    return w / 9.0 * (5.0 * rate(c - place) + 8.0 * rate(c) + 5.0 * rate(c + place));
+    const double c = 0.5 * (a + b), w = 0.5 * (b - a), off = w * std::sqrt(0.6);
+    return w / 9.0 * (5.0 * rate(c - off) + 8.0 * rate(c) + 5.0 * rate(c + off));
   }
   static constexpr int n_ = 4000;
   Flow flow_;
@@ -68,17 +68,17 @@ class RegularisedProfile {
   std::vector<double> sum_;
 };
 
-/// A place of the steady solution.
-struct Place {
+/// The steady solution at a point.
+struct Sample {
   double y, v, gamma_dot, weight;
 };
 
-/// Runs to the steady state, `cells` over the height, and samples the velocity at three Gauss places a cell.
+/// Runs to the steady state, `cells` over the height, and samples the velocity at three Gauss points a cell.
 /// Steps of 0.1 s for 6 s: the slowest decay is exp(-3.7 t/s), so 1e-8 of the start is left.
 /// `converged` is that of the last step: the start is of no interest.
 template <class Law>
-std::vector<Place> steady_state(const Flow& flow, const Law& law, YieldMethod method, int cells,
-                                bool& converged) {
+std::vector<Sample> steady_state(const Flow& flow, const Law& law, YieldMethod method, int cells,
+                                 bool& converged) {
   omp_set_num_threads(1);
   ImplicitBody<PlaneStrain> body;
   body.mix.tau_0 = tau_0, body.mix.mu = mu, body.mix.K = 1e6, body.mix.density = rho;
@@ -100,27 +100,27 @@ std::vector<Place> steady_state(const Flow& flow, const Law& law, YieldMethod me
   for (int i = 0; i < 60; ++i) last = implicit_step(body, law, settings);
   converged = last.converged;
 
-  std::vector<Place> places;
+  std::vector<Sample> samples;
   for (int c = 0; c < body.grid.n_cells(); ++c)
     for (int k = 0; k < 3; ++k) {
       const Vec<2> s(0.31, 0.5 + (k - 1) * 0.5 * std::sqrt(0.6));
       const Stencil<2> st = stencil<2>(body.grid.axes, body.grid.cell_index[c], s);
-      Place place{position_in_cell<2>(body.grid.axes, body.grid.cell_index[c], s)[1], 0.0, 0.0,
-                  k == 1 ? 8.0 / 18.0 : 5.0 / 18.0};
+      Sample sample{position_in_cell<2>(body.grid.axes, body.grid.cell_index[c], s)[1], 0.0, 0.0,
+                    k == 1 ? 8.0 / 18.0 : 5.0 / 18.0};
       for (int i = 0; i < 9; ++i) {
-        place.v += st.N[i] * body.v[body.grid.cell_nodes[c][i]][0];
-        place.gamma_dot += st.g[i][1] * body.v[body.grid.cell_nodes[c][i]][0];
+        sample.v += st.N[i] * body.v[body.grid.cell_nodes[c][i]][0];
+        sample.gamma_dot += st.g[i][1] * body.v[body.grid.cell_nodes[c][i]][0];
       }
-      if (place.y < height) places.push_back(place);
+      if (sample.y < height) samples.push_back(sample);
     }
-  return places;
+  return samples;
 }
 
 /// L2 error of the profile, relative to the L2 norm of the profile itself.
 template <class Profile>
-double relative_error(const std::vector<Place>& places, Profile profile) {
+double relative_error(const std::vector<Sample>& samples, Profile profile) {
   double error = 0.0, norm = 0.0;
-  for (const Place& p : places) {
+  for (const Sample& p : samples) {
     error += p.weight * std::pow(p.v - profile(p.y), 2);
     norm += p.weight * std::pow(profile(p.y), 2);
   }

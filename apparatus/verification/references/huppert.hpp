@@ -44,8 +44,8 @@ inline HuppertFit huppert_decade(double across, double up) {
   const double R = 0.3, mu = 200.0, V = 0.75 * std::numbers::pi * R * R * 0.03, nu = mu / 2400.0;
   const double start = std::pow(R / huppert_prefactor, 8) * 3.0 * nu / (9.81 * V * V * V);
   auto body =
-      patch(test::concrete(0.0, mu), across, up, R, 0.03, [&](double r) { return huppert_depth(V, R, r); });
-  const double V_points = test::total_volume(body.points);
+      patch(bodies::concrete(0.0, mu), across, up, R, 0.03, [&](double r) { return huppert_depth(V, R, r); });
+  const double V_points = bodies::total_volume(body.points);
   body.time = start;
   StepSettings settings;
   settings.dt_max = 0.5;

@@ -1,6 +1,6 @@
 #pragma once
 
-// The L-box of the tests, the study and the ladder: 30 Pa s, cubes of cells, 180 s at most.
+// The L-box of the tests, the study and the verification suite: 30 Pa s, cubes of cells, 180 s at most.
 
 #include "apparatus/l_box/l_box.hpp"
 #include "apparatus/verification/references/lbox_reference.hpp"

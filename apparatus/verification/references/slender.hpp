@@ -47,7 +47,7 @@ struct SlenderFlow {
 
 inline SlenderFlow slender_flow(double across, double up) {
   cone::Scene scene;
-  scene.mix = test::concrete(10.0, 35.8);
+  scene.mix = bodies::concrete(10.0, 35.8);
   scene.lift_speed.reset();
   scene.model.cell = {across, up};
   omp_set_num_threads(1);

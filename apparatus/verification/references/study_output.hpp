@@ -1,12 +1,13 @@
 #pragma once
 
-// What the studies of the rheometer write at the head of their tables, and how they call gnuplot.
+// What the studies write at the head of their tables, and their charts.
 
-#include <cstdlib>
 #include <fstream>
 #include <iostream>
 #include <string>
+#include <vector>
 
+#include "apparatus/report/page/charts.hpp"
 #include "tremie_version.hpp"
 
 namespace tremie::study {
@@ -24,10 +25,13 @@ inline std::string made_by(const std::string& target) {
          processor() + ".\nMade by `ninja -C build/release " + target + "`.";
 }
 
-/// Runs gnuplot on a script of this folder.
-inline void draw(const std::string& directory, const std::string& script) {
-  if (std::system(("cd '" + directory + "' && gnuplot " + script).c_str()) != 0)
-    std::cerr << "gnuplot failed: no chart of " << script << '\n';
+/// A curve over the rows of a table, to be filled.
+inline report::Curve curve(const std::string& label, report::Mark mark = report::Mark::line) {
+  return {.label = label, .x = {}, .y = {}, .mark = mark};
+}
+
+inline void add_point(report::Curve& curve, double x, double y) {
+  curve.x.push_back(x), curve.y.push_back(y);
 }
 
 }  // namespace tremie::study

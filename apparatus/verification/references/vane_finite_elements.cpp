@@ -15,14 +15,16 @@
 namespace tremie::verification {
 namespace {
 
-using Place = std::array<double, 2>;  // r [m], theta [rad]
+using Position = std::array<double, 2>;  // r [m], theta [rad]
 
 /// A logical rectangle of elements; those that the blade's half tip covers inside its radius are left out.
 struct Mesh {
   int n_r = 0, n_theta = 0, n_tip = 0, tip = 0;  // n_tip elements before half the tip, from column `tip` on
-  std::vector<Place> corners;                    // (n_r + 1) by (n_theta + 1)
+  std::vector<Position> corners;                 // (n_r + 1) by (n_theta + 1)
   bool fluid(int i, int j) const { return i >= tip || j >= n_tip; }
-  const Place& corner(int i, int j) const { return corners[static_cast<std::size_t>(i * (n_theta + 1) + j)]; }
+  const Position& corner(int i, int j) const {
+    return corners[static_cast<std::size_t>(i * (n_theta + 1) + j)];
+  }
 };
 
 Mesh mesh_of(const BladeFlow& b) {

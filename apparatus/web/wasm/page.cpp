@@ -49,7 +49,7 @@ void hand_over(const Frame& frame) {
 
 void hand_over(const scene::Scene& scene, const scene::Outcome& outcome) {
   nlohmann::ordered_json json;
-  json["summary"] = nlohmann::ordered_json::parse(report::summary_json(outcome));
+  json["summary"] = report::run_summary(outcome);
   json["scene"] = scene.resolved;
   json["notes"] = scene.notes;
   json["lines"] = outcome.lines;

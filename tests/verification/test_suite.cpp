@@ -12,7 +12,7 @@
 namespace tremie::verification {
 namespace {
 
-TEST(Ladder, FindsTheOrderOfAPowerLaw) {
+TEST(Verification, FindsTheOrderOfAPowerLaw) {
   Series series{"", {}};
   for (double h : {8.0, 4.0, 2.0, 1.0}) series.runs.push_back({"", h, 0.3 * std::pow(h, 1.7), 0.0});
   EXPECT_NEAR(observed_order(series), 1.7, 1e-12);
@@ -20,17 +20,17 @@ TEST(Ladder, FindsTheOrderOfAPowerLaw) {
   EXPECT_TRUE(std::isnan(observed_order(series)));
 }
 
-TEST(Ladder, NamesTheBoundsThatAreBroken) {
-  Case one;
+TEST(Verification, NamesTheBoundsThatAreBroken) {
+  Problem one;
   one.name = "film";
   one.bounds = {{.what = "order", .value = 1.4, .limit = 1.5, .at_least = true},
                 {.what = "error", .value = 1e-4, .limit = 1e-3},
                 {.what = "not a number", .value = std::nan(""), .limit = 1.0}};
-  const std::vector<CaseGroup> groups{{4, "Film", {one}}};
-  EXPECT_FALSE(all_kept(groups));
-  const auto lines = broken_bounds(groups);
+  const std::vector<Case> cases{{4, "Film", {one}}};
+  EXPECT_FALSE(all_kept(cases));
+  const auto lines = broken_bounds(cases);
   ASSERT_EQ(lines.size(), 2u);
-  EXPECT_EQ(lines[0], "rung 4, film: order 1.4, at least 1.5 wanted");
+  EXPECT_EQ(lines[0], "case 4, film: order 1.4, at least 1.5 wanted");
 }
 
 Extreme quick_cell(std::function<std::string(const scene::Outcome&)> against) {
