@@ -277,9 +277,7 @@ Outcome run_slump_flow(const slump_flow::Scene& scene, const Measured& measured,
 std::vector<std::string> slump_flow_uses(const slump_flow::Scene& scene) {
   const Model& model = scene.model;
   std::vector<std::string> lines{flocculation_use(scene.mix)};
-  lines.push_back(scene.floor.contact == ContactKind::friction
-                      ? "floor friction: Coulomb's, at every floor node"
-                      : "floor friction: left out (floor.contact)");
+  lines.push_back(std::string("floor friction: ") + use(scene.floor.contact));
   lines.push_back(scene.lift_speed ? "cone: a moving rigid wall"
                                    : "cone: left out (test.lift_speed = \"instant\")");
   lines.push_back(model.space == SpaceKind::axisymmetric

@@ -19,7 +19,7 @@ inline constexpr double most_hold = 4.0;
 /// How far points may move, in cells, before the cells are looked into again.
 inline constexpr double hold_drift = 0.05;
 
-inline bool holds(FaceKind kind) { return kind == FaceKind::no_slip || kind == FaceKind::friction; }
+inline bool holds(FaceKind kind) { return kind == FaceKind::no_slip || kind == FaceKind::wall_law; }
 
 /// Direction and side of a wall that holds the concrete in a cell; 0 in `into` where there is none.
 struct HeldAt {

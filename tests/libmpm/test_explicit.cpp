@@ -131,7 +131,7 @@ TEST(ExplicitSingle, CollapsesAsInDoublePrecision) {
     for (const bool single : {false, true}) {
       const Scheme scheme{StressUpdate::first, false, kind, true, single};
       ExplicitSettings settings = settings_of(scheme, 1e-3);
-      settings.friction_coefficient = 0.3;
+      settings.wall_law = Coulomb{0.3};
       auto body = collapsing_block();
       EXPECT_FALSE(advance(body, settings, shape_of<3>(kind), 100).failed);
       ends[single ? 1 : 0] = body.points;
@@ -244,7 +244,7 @@ TYPED_TEST(ExplicitSpaces, StableUpToTheLimit) {
 // own.
 TEST(ExplicitWalls, HollowCellsHoldAsFullOnes) {
   omp_set_num_threads(1);
-  for (const FaceKind floor : {FaceKind::no_slip, FaceKind::friction, FaceKind::free_slip}) {
+  for (const FaceKind floor : {FaceKind::no_slip, FaceKind::wall_law, FaceKind::free_slip}) {
     Body<PlaneStrain> body;
     body.mix = concrete(54.0, 35.8);
     body.grid.axes[0] = {.h = 0.02};

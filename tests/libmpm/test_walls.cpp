@@ -19,7 +19,7 @@ ImplicitBody<PlaneStrain> block_on_a_slope(double theta) {
   body.mix = concrete(5e4, 100.0);
   body.gravity = {g * std::sin(theta), -g * std::cos(theta)};
   body.grid.axes[0] = {.h = 0.025};
-  body.grid.axes[1] = {.h = 0.025, .low = FaceKind::friction};
+  body.grid.axes[1] = {.h = 0.025, .low = FaceKind::wall_law};
   fill_box(body, {0.0, 0.0}, {0.2, 0.1}, 2,
            [&](const auto& x) { return 2400.0 * g * std::cos(theta) * (0.1 - x[1]); });
   return body;
@@ -31,7 +31,7 @@ double speed_on_a_slope(double theta, YieldMethod method) {
   auto body = block_on_a_slope(theta);
   StepSettings settings;
   settings.method = method;
-  settings.friction_coefficient = coefficient;
+  settings.wall_law = Coulomb{coefficient};
   settings.fixed_dt = 0.01;
   int unconverged = 0;
   for (int i = 0; i < 50; ++i) unconverged += !implicit_step(body, ExactBingham{}, settings).converged;

@@ -109,8 +109,8 @@ std::vector<Vec<Geometry::dim>> shifting_displacement(const YieldProblem<Geometr
   for (int i = 0; i < grid.n_nodes(); ++i)
     for (int d = 0; d < D; ++d) system.add_diagonal(i, d, problem.nodes.mass[i]);
   // Walls inside the grid let nothing through here either.
-  std::vector<PenaltyPoint<D>> bound = problem.bound;
-  for (PenaltyPoint<D>& b : bound) b.stiffness *= problem.dt;
+  std::vector<PointTerm<D>> bound = problem.bound;
+  for (PointTerm<D>& t : bound) t.penalty *= problem.dt;
   add_penalty_stiffness<D>(bound, system);
   system.fix(fixed);
   std::vector<Vec<D>> u(grid.node_index.size(), Vec<D>::Zero());

@@ -15,7 +15,7 @@ struct EveningMatrix {
   const DivergenceOperator& rows;
   std::vector<Quadrature<ThreeD>::DivergenceRows> b;  ///< as many as there are different ones
   std::vector<double> mass;                           ///< of the nodes
-  std::vector<PenaltyPoint<3>> bound;
+  std::vector<PointTerm<3>> bound;
 
   void make_rows() {
     b.resize(rows.n_rows());
@@ -74,7 +74,7 @@ std::vector<Vec<3>> shifting_displacement_3d(const YieldProblem<ThreeD>& problem
   resize_for_overwrite(matrix.mass, problem.nodes.mass.size());
   for (std::size_t i = 0; i < matrix.mass.size(); ++i)
     matrix.mass[i] = std::max(trace, problem.nodes.mass[i]);
-  for (PenaltyPoint<3>& wall : matrix.bound) wall.stiffness *= problem.dt;
+  for (PointTerm<3>& wall : matrix.bound) wall.penalty *= problem.dt;
 
   std::vector<Mat<3, 3>> G(grid.node_index.size());
 #pragma omp parallel for schedule(static)
