@@ -254,8 +254,8 @@ TEST(ExplicitWalls, HollowCellsHoldAsFullOnes) {
     const detail::CellFills<PlaneStrain> fills(state);
     for (int i = 0; i < 5; ++i) {
       const bool inside = i > 0 && i < 4 && floor != FaceKind::free_slip;
-      EXPECT_NEAR(hold_of<PlaneStrain>(fills, body.grid.axes, {i, 0}), inside ? 2.0 : 1.0, 1e-12);
-      EXPECT_EQ(hold_of<PlaneStrain>(fills, body.grid.axes, {i, 1}), 1.0);
+      EXPECT_NEAR(represented_volume<PlaneStrain>(fills, body.grid.axes, {i, 0}), inside ? 2.0 : 1.0, 1e-12);
+      EXPECT_EQ(represented_volume<PlaneStrain>(fills, body.grid.axes, {i, 1}), 1.0);
     }
   }
 }

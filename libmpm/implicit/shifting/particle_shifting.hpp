@@ -113,12 +113,12 @@ std::vector<Vec<Geometry::dim>> shifting_displacement(const YieldProblem<Geometr
   for (PointTerm<D>& t : bound) t.penalty *= problem.dt;
   add_penalty_stiffness<D>(bound, system);
   system.fix(fixed);
-  std::vector<Vec<D>> u(grid.node_index.size(), Vec<D>::Zero());
-  if (!system.factorise()) return u;
+  std::vector<Vec<D>> displacement(grid.node_index.size(), Vec<D>::Zero());
+  if (!system.factorise()) return displacement;
   const Eigen::VectorXd solution = system.solve(R);
-  for (int i = 0; i < grid.n_nodes(); ++i) u[i] = solution.segment<D>(i * D);
-  fill_mirrors<D>(grid, u);
-  return u;
+  for (int i = 0; i < grid.n_nodes(); ++i) displacement[i] = solution.segment<D>(i * D);
+  fill_mirrors<D>(grid, displacement);
+  return displacement;
 }
 
 namespace detail {

@@ -82,9 +82,9 @@ std::vector<Vec<3>> shifting_displacement_3d(const YieldProblem<ThreeD>& problem
   add_penalty_blocks(matrix.bound, grid.cell_nodes, G);
   fold_mirrors(grid, G);
   invert_blocks(fixed, G);
-  std::vector<Vec<3>> u(grid.node_index.size(), Vec<3>::Zero());
+  std::vector<Vec<3>> displacement(grid.node_index.size(), Vec<3>::Zero());
   if (!preconditioner.build(grid, system.batches, problem.quadrature, G, cells.stiffness, fill_stiffness))
-    return u;
+    return displacement;
   release(G);
   matrix.make_rows();
 
@@ -99,8 +99,8 @@ std::vector<Vec<3>> shifting_displacement_3d(const YieldProblem<ThreeD>& problem
   };
   conjugate_gradients([&](const Eigen::VectorXd& p, Eigen::VectorXd& Ap) { matrix.multiply(p, Ap); },
                       precondition, {.reduction = 1e-6, .most = 50}, R, x);
-  for (int i = 0; i < grid.n_nodes(); ++i) u[i] = x.segment<3>(3 * i);
-  return u;
+  for (int i = 0; i < grid.n_nodes(); ++i) displacement[i] = x.segment<3>(3 * i);
+  return displacement;
 }
 
 }  // namespace tremie
