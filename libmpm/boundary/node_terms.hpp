@@ -18,7 +18,7 @@ struct NodeDrag {
   Vec<D> pull = Vec<D>::Zero();  ///< of walls that move [N]
 };
 
-/// Viscous drag on each of n nodes; empty: none.
+/// Viscous drag on each of n nodes, in all directions: a flat wall prescribes the normal velocity. Empty: none.
 template <int D>
 std::vector<NodeDrag<D>> viscous_drag(const std::vector<NodeTerm<D>>& terms, std::size_t n) {
   std::vector<NodeDrag<D>> drag;

@@ -7,7 +7,8 @@
 //                      FaceKind::wall_law leaves those along the wall to a term at each node (wall_term.hpp), with
 //   yield_force(pressing)   its yield force where the concrete presses on the wall with `pressing`: [N] in an implicit
 //                      step; in an explicit one both are velocities, momenta over the node's mass [m/s]
-//   follows_pressure   whether that depends on `pressing`; an implicit step then renews it from the reaction
+//   follows_pressure   whether that depends on `pressing`; an implicit step then renews it from the reaction. The limit
+//                      and the viscous drag of a law that does not are set where terms are made (flat_walls.hpp)
 //   bears(pressure)    the largest shear stress that the wall takes under a pressure [Pa]
 //
 //   word               the word of a scene's `contact`

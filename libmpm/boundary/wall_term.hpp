@@ -12,11 +12,11 @@
 // as it does the yield stress of the concrete: each term has a slip velocity of its own, tied to w by a dual force and a
 // penalty s, and update_admm() is its step in closed form, for all of them.
 //
-//                                             acts at        g                       k
-//   wall law of a flat wall (wall_law.hpp)    node           the law's
-//   side walls of a section (pose.hpp)        node           their yield stress      of the parabola between them
-//   slender bar (slender_bars.hpp)            point          limit load              of the unresolved flow
-//   wall inside the grid (boundary_points.hpp)  point                                   (a penalty alone)
+//                                               acts at   g                     k
+//   wall law of a flat wall (wall_law.hpp)      node      the law's             the law's
+//   side walls of a section (pose.hpp)          node      their yield stress    of the parabola between them
+//   slender bar (slender_bars.hpp)              point     limit load            of the flow that the grid misses
+//   wall inside the grid (boundary_points.hpp)  point     none                  none: a penalty alone
 //
 // A term at a node is a NodeTerm (node_terms.hpp has what the linear systems see of it), one at a point a PointTerm
 // (point_terms.hpp), whose stencil is that of its cell. Walls that hold need no term: they prescribe nodal velocities
