@@ -145,4 +145,27 @@ YieldLaw read_law(const Values& values) {
   return read;
 }
 
+std::vector<Key> contact_keys() {
+  std::vector<Key> keys{{.name = "contact", .kind = Kind::choice}};
+  for_each_wall_law([&](const auto& law) {
+    keys.front().words.emplace_back(law.word);
+    for (const auto& of_law : law.keys()) {
+      keys.push_back(scene_key(of_law));
+      keys.back().only_with = Condition{"contact", {law.word}};
+    }
+  });
+  keys.front().fallback = keys.front().words.front();
+  return keys;
+}
+
+WallLaw read_wall_law(const Values& values) {
+  WallLaw read;
+  for_each_wall_law([&](auto law) {
+    if (law.word != values.word("floor.contact")) return;
+    for (const auto& key : law.keys()) law.*key.member = values.number(key.name);
+    read = law;
+  });
+  return read;
+}
+
 }  // namespace tremie::scene

@@ -1,12 +1,14 @@
 #pragma once
 
 // The scene keys of the yield laws, as the laws state them (libmpm/constitutive/law_interface.hpp): parameters of
-// [model] beside model.yield, and those of [mix] that take the place of plastic_viscosity.
+// [model] beside model.yield, and those of [mix] that take the place of plastic_viscosity. Those of the wall laws
+// (libmpm/boundary/wall_law_interface.hpp): parameters of [floor] beside floor.contact.
 
 #include <vector>
 
 #include "apparatus/scene/keys.hpp"
 #include "apparatus/scene/values.hpp"
+#include "libmpm/boundary/wall_law.hpp"
 #include "libmpm/constitutive/yield_law.hpp"
 
 namespace tremie::scene {
@@ -23,5 +25,11 @@ void settle_law(Values& values);
 
 /// The law that model.yield and the keys of [mix] name, with its parameters.
 YieldLaw read_law(const Values& values);
+
+/// floor.contact and the wall laws' parameters.
+std::vector<Key> contact_keys();
+
+/// The wall law that floor.contact names, with its parameters.
+WallLaw read_wall_law(const Values& values);
 
 }  // namespace tremie::scene

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "libmpm/boundary/wall_law.hpp"
 #include "libmpm/constitutive/yield_law.hpp"
 
 namespace tremie {
@@ -31,11 +32,9 @@ enum class ShapeKind { b_spline, gimp };
 enum class PressureKind { cell, point };
 enum class TransferKind { apic, flip };
 enum class PrecisionKind { both_double, single_sums };
-enum class ContactKind { no_slip, friction, free_slip };
 
 struct Floor {
-  ContactKind contact = ContactKind::no_slip;
-  double coefficient = 0.0;  ///< Coulomb friction coefficient, contact = friction alone
+  WallLaw contact = NoSlip{};
 };
 
 struct Model {

@@ -14,9 +14,6 @@ namespace {
 
 const Words<Kinetics> kinetics_words{
     {"gated", Kinetics::gated}, {"roussel", Kinetics::roussel}, {"power", Kinetics::power}};
-const Words<ContactKind> contact_words{{"no_slip", ContactKind::no_slip},
-                                       {"friction", ContactKind::friction},
-                                       {"free_slip", ContactKind::free_slip}};
 const Words<SpaceKind> space_words{{"axisymmetric", SpaceKind::axisymmetric},
                                    {"quarter", SpaceKind::quarter},
                                    {"full", SpaceKind::full},
@@ -225,17 +222,7 @@ Section measured_section() {
 }
 
 Section floor_section() {
-  return {.name = "floor",
-          .help = "What the concrete flows on.",
-          .keys = {
-              {.name = "contact", .kind = Kind::choice, .words = names(contact_words), .fallback = "no_slip"},
-              {.name = "coefficient",
-               .kind = Kind::number,
-               .range = between(0.0, 10.0),
-               .fallback = "0.35",
-               .only_with = Condition{"contact", {"friction"}},
-               .help = "Coulomb's; the mix's friction_coefficient if it has one"},
-          }};
+  return {.name = "floor", .help = "What the concrete flows on.", .keys = contact_keys()};
 }
 
 void settle_floor(Values& values) {
@@ -246,12 +233,7 @@ void settle_floor(Values& values) {
                     values.layer("mix.friction_coefficient"), "the mix's friction_coefficient");
 }
 
-Floor read_floor(const Values& values) {
-  Floor floor;
-  floor.contact = values.choice("floor.contact", contact_words);
-  if (values.has("floor.coefficient")) floor.coefficient = values.number("floor.coefficient");
-  return floor;
-}
+Floor read_floor(const Values& values) { return {read_wall_law(values)}; }
 
 Section model_section(const std::vector<std::string>& spaces, const ModelDefaults& defaults) {
   Section section{

@@ -15,8 +15,8 @@ std::vector<double> shear_rates_now(const Body<Geometry>& body) {
   NodalState<D> nodes;
   point_to_grid(grid, body.points, nodes);
   std::vector<char> fixed;
-  std::vector<FrictionNode<D>> friction;
-  detail::apply_flat_walls<D>(grid, body.walls, fixed, friction, nodes.v);
+  std::vector<NodeTerm<D>> terms;
+  detail::apply_flat_walls<D>(grid, body.walls, fixed, terms, nodes.v);
   detail::apply_blocks<D>(grid, fixed, nodes.v);
   std::vector<double> gamma_dot;
   shear_rate_at_points<Geometry>(grid, nodes.v, body.points, gamma_dot);

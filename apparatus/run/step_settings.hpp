@@ -16,12 +16,6 @@ namespace tremie::test_run {
 
 inline constexpr double gravity = 9.81;  ///< [m/s^2]
 
-inline FaceKind face_of(ContactKind contact) {
-  return contact == ContactKind::no_slip    ? FaceKind::no_slip
-         : contact == ContactKind::friction ? FaceKind::friction
-                                            : FaceKind::free_slip;
-}
-
 /// Points are counted one by one up to so many; beyond it their number is the volume over that of a point.
 inline constexpr double most_counted = 1e6;
 

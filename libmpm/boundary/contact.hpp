@@ -1,13 +1,9 @@
 #pragma once
 
-// Contact with walls, as terms of the step's convex problem.
-//
-// Flat walls are ends of the grid's axes: the interpolatory spline there makes a prescribed velocity exact. A
-// moving rigid wall acts through the points next to it: point p may not come closer than its own half
-// spacing,
+// Contact with moving rigid walls, as a term of the step's convex problem. Such a wall acts through the points next to
+// it: point p may not come closer than its own half spacing,
 //   n.(v(x_p) - v_wall) >= (gap_min - gap_p) / dt,
-// one-sided, so the concrete is free to separate; no friction along it. The Coulomb floor is a yield term g
-// |v_t| at each floor node with g = coefficient * normal force.
+// one-sided, so the concrete is free to separate; no friction along it.
 
 #include <Eigen/Core>
 #include <array>
@@ -23,10 +19,10 @@ template <int D>
 struct ContactPoint {
   int cell = 0;
   bool active = false;
-  std::array<std::array<double, 3>, D> one;  ///< shape values in that cell, direction by direction
-  Vec<D> normal;                             ///< from the wall into the concrete
-  double target = 0.0;                       ///< least normal velocity [m/s]
-  double stiffness = 0.0;                    ///< penalty [kg/s]
+  std::array<std::array<double, 3>, D> along;  ///< shape values in that cell, direction by direction
+  Vec<D> normal;                               ///< from the wall into the concrete
+  double target = 0.0;                         ///< least normal velocity [m/s]
+  double stiffness = 0.0;                      ///< penalty [kg/s]
 
   /// Of all nodes.
   std::array<double, power(3, D)> shape() const {
@@ -34,23 +30,10 @@ struct ContactPoint {
     for (int k = 0; k < power(3, D); ++k) {
       const Index<D> o = local_offset<D>(k);
       N[k] = 1.0;
-      for (int d = 0; d < D; ++d) N[k] *= one[d][o[d]];
+      for (int d = 0; d < D; ++d) N[k] *= along[d][o[d]];
     }
     return N;
   }
-};
-
-/// A node that a yield force holds (friction.hpp): on a wall with Coulomb friction, or between the side walls of a
-/// width-averaged section, whose yield stress takes the place of the friction.
-template <int D>
-struct FrictionNode {
-  int node = 0;
-  int normal_axis = 0;  ///< of the wall; -1: side walls, which hold against any motion in the section
-  double reach = 0.0;   ///< of side walls: W / sqrt(12), as their viscous drag has it [m]
-  double limit = 0.0;   ///< coefficient * normal force, or the side walls' yield force [N]
-  Vec<D> force = Vec<D>::Zero();  ///< along the wall, its dual [N]
-  Vec<D> slip = Vec<D>::Zero();   ///< split sliding velocity, for ADMM [m/s]
-  double stiffness = 0.0;         ///< ADMM's penalty [kg/s]
 };
 
 template <int D>
@@ -71,9 +54,10 @@ inline double normal_velocity(const ContactPoint<3>& c, const std::vector<std::a
     Vec<3> plane = Vec<3>::Zero();
     for (std::size_t j = 0; j < 3; ++j) {
       const int* line = &nodes[9 * i + 3 * j];
-      plane += c.one[1][j] * (c.one[2][0] * v[line[0]] + c.one[2][1] * v[line[1]] + c.one[2][2] * v[line[2]]);
+      plane += c.along[1][j] *
+               (c.along[2][0] * v[line[0]] + c.along[2][1] * v[line[1]] + c.along[2][2] * v[line[2]]);
     }
-    u += c.one[0][i] * plane;
+    u += c.along[0][i] * plane;
   }
   return c.normal.dot(u);
 }
@@ -130,14 +114,6 @@ double contact_energy(const std::vector<ContactPoint<D>>& contact,
     energy += 0.5 * c.stiffness * violation * violation;
   }
   return energy;
-}
-
-/// Sliding velocity of a node along its wall.
-template <int D>
-Vec<D> sliding(const FrictionNode<D>& f, const std::vector<Vec<D>>& v) {
-  Vec<D> u = v[f.node];
-  if (f.normal_axis >= 0) u[f.normal_axis] = 0.0;
-  return u;
 }
 
 }  // namespace tremie

@@ -1,13 +1,13 @@
 #pragma once
 
 // Flat walls at the ends of the grid's axes, and rigid blocks of whole cells: which nodal velocities they prescribe,
-// and where Coulomb friction acts. The spline at a wall is interpolatory, so a prescribed velocity is exact there.
+// and where a wall law acts. The spline at a wall is interpolatory, so a prescribed velocity is exact there.
 
 #include <algorithm>
 #include <array>
 #include <vector>
 
-#include "libmpm/boundary/contact.hpp"
+#include "libmpm/boundary/wall_term.hpp"
 #include "libmpm/grid/active_grid.hpp"
 
 namespace tremie {
@@ -23,11 +23,11 @@ struct WallVelocities {
 
 namespace detail {
 
-/// Walls at the ends of the axes: which components they prescribe, and where friction acts. Nodes behind a
-/// plane of symmetry are no unknowns.
+/// Walls at the ends of the axes: which components they prescribe, and the terms of a wall law (wall_law.hpp).
+/// Nodes behind a plane of symmetry are no unknowns.
 template <int D>
 void apply_flat_walls(const ActiveGrid<D>& grid, const WallVelocities<D>& walls, std::vector<char>& fixed,
-                      std::vector<FrictionNode<D>>& friction, std::vector<Vec<D>>& v) {
+                      std::vector<NodeTerm<D>>& terms, std::vector<Vec<D>>& v) {
   fixed.assign(grid.node_index.size() * D, 0);
   for (const MirrorNode<D>& m : grid.mirrors) std::fill_n(&fixed[m.node * D], D, 1);
   for (int i = 0; i < grid.n_nodes(); ++i) {
@@ -44,11 +44,13 @@ void apply_flat_walls(const ActiveGrid<D>& grid, const WallVelocities<D>& walls,
           fixed[i * D + d] = 1;
           v[i][d] = walls.v[a][axis.on_low_wall(j) ? 0 : 1][d];
         }
-      if (face == FaceKind::friction) {
-        FrictionNode<D> node;
-        node.node = i;
-        node.normal_axis = a;
-        friction.push_back(node);
+      if (face == FaceKind::wall_law) {
+        NodeTerm<D> term;
+        term.node = i;
+        term.normal_axis = a;
+        term.reach = axis.h;
+        term.velocity = walls.v[a][axis.on_low_wall(j) ? 0 : 1];
+        terms.push_back(term);
       }
     }
   }

@@ -53,7 +53,8 @@ std::vector<ContactPoint<D>> find_contact(const ActiveGrid<D>& grid, const Point
       const Vec<D> s = local_coordinates<D>(grid.axes, grid.cell_index[c], points.x[p]);
       ContactPoint<D> contact_point;
       contact_point.cell = c;
-      for (int d = 0; d < D; ++d) contact_point.one[d] = splines(grid.axes[d], grid.cell_index[c][d], s[d]).N;
+      for (int d = 0; d < D; ++d)
+        contact_point.along[d] = splines(grid.axes[d], grid.cell_index[c][d], s[d]).N;
       contact_point.normal = view->normal;
       // The wall already stands where it is at the end of the step: what is missing of the gap is closed by
       // then, at most a tenth of a cell a step so that a deep overlap does not shoot a point off.

@@ -41,7 +41,8 @@ inline constexpr double bar_drag_along = std::numbers::pi / bar_yield_drag;
 /// Cells for which bar_mobility() was measured, in radii of the bar. On smaller ones boundary points resolve it.
 inline constexpr double bar_cells_least = 1.0, bar_cells_most = 3.4;
 
-/// A point on the surface of a bar and the piece that it stands for.
+/// A point on the surface of a bar and the piece that it stands for. In a step it is a wall term, w = scale u, with a yield
+/// force a_y tau_y D l and the viscous drag mu l/m.
 template <int D>
 struct BarPoint {
   Vec<D> x;                          ///< [m]
@@ -50,27 +51,6 @@ struct BarPoint {
   double length = 1.0;               ///< share of the bar's length [m]; a section is a metre deep
   double diameter = 0.0;             ///< [m]
   double mobility = 0.0;             ///< m: bar_mobility()
-};
-
-/// The drag at a bar's point in ADMM.
-template <int D>
-struct BarDrag {
-  int source = 0;                           ///< index of the bar's point
-  Mat<D, D> scale = Mat<D, D>::Identity();  ///< w = scale u
-  Vec<D> velocity = Vec<D>::Zero();         ///< of the bar [m/s]
-  double limit = 0.0;                       ///< a_y tau_y D l [N]
-  double reach = 0.0;                       ///< l/m [m]
-  double viscous = 0.0;                     ///< mu l/m [kg/s]
-  double stiffness = 0.0;                   ///< ADMM's penalty [kg/s]
-  Vec<D> force = Vec<D>::Zero();            ///< of the yield part, its dual [N]
-  Vec<D> w = Vec<D>::Zero();                ///< split velocity [m/s]
-};
-
-/// Bars in a step: penalty points whose stiffness and velocity ADMM sets, and their drag.
-template <int D>
-struct SlenderBars {
-  std::vector<PenaltyPoint<D>> points;
-  std::vector<BarDrag<D>> drag;
 };
 
 /// m of a bar on square cells of so many of its radii, which stands s0 and s1 of a cell away from a corner of the
@@ -128,67 +108,11 @@ inline void add_bar(const std::array<Axis, 3>& axes, const Vec<3>& foot, int alo
                         cell, points);
 }
 
-/// Velocities towards which the penalty points pull: viscous drag, yield force and split velocity in one.
-template <int D>
-void set_bar_targets(SlenderBars<D>& bars) {
-  for (std::size_t i = 0; i < bars.drag.size(); ++i) {
-    const BarDrag<D>& b = bars.drag[i];
-    bars.points[i].velocity = b.velocity;
-    if (b.stiffness > 0.0)
-      bars.points[i].velocity +=
-          b.scale.inverse() * (b.stiffness * b.w - b.force) / (b.stiffness + b.viscous);
-  }
-}
-
-/// ADMM's penalties: to the viscous drag as `viscosity`, mu + r, is to mu.
-template <int D>
-void set_bar_stiffness(double viscosity, SlenderBars<D>& bars) {
-  for (std::size_t i = 0; i < bars.drag.size(); ++i) {
-    BarDrag<D>& b = bars.drag[i];
-    b.stiffness = b.limit > 0.0 ? viscosity * b.reach : 0.0;
-    bars.points[i].stiffness = (b.stiffness + b.viscous) * b.scale * b.scale;
-  }
-  set_bar_targets(bars);
-}
-
-/// w: velocity of the concrete past a bar at a point, scaled.
-template <int D>
-Vec<D> bar_velocity(const PenaltyPoint<D>& point, const BarDrag<D>& b,
-                    const std::vector<std::array<int, power(3, D)>>& cell_nodes,
-                    const std::vector<Vec<D>>& v) {
-  Vec<D> u = -b.velocity;
-  for (int i = 0; i < power(3, D); ++i) u += point.N[i] * v[cell_nodes[point.cell][i]];
-  return b.scale * u;
-}
-
 /// Force of the concrete on a bar at a point [N].
 template <int D>
-Vec<D> bar_force(const PenaltyPoint<D>& point, const BarDrag<D>& b,
-                 const std::vector<std::array<int, power(3, D)>>& cell_nodes, const std::vector<Vec<D>>& v) {
-  return b.scale * (b.force + b.viscous * bar_velocity<D>(point, b, cell_nodes, v));
-}
-
-/// One update of the split velocities; true when all agree with the grid's within the tolerance.
-template <int D>
-bool update_bars_admm(const std::vector<std::array<int, power(3, D)>>& cell_nodes,
-                      const std::vector<Vec<D>>& v, double over_relaxation, double tolerance,
-                      SlenderBars<D>& bars) {
-  double residuals = 0.0, scale = 0.0;
-  for (std::size_t i = 0; i < bars.drag.size(); ++i) {
-    BarDrag<D>& b = bars.drag[i];
-    if (b.stiffness == 0.0) continue;  // nothing yields
-    const Vec<D> w = bar_velocity<D>(bars.points[i], b, cell_nodes, v);
-    const Vec<D> a = b.force + b.stiffness * (over_relaxation * w + (1.0 - over_relaxation) * b.w);
-    const double size = a.norm();
-    const Vec<D> force = size > b.limit ? Vec<D>(b.limit / size * a) : a;
-    const Vec<D> split = (a - force) / b.stiffness;
-    residuals += b.stiffness * b.stiffness * std::max((w - split).squaredNorm(), (split - b.w).squaredNorm());
-    scale += std::pow(b.limit + b.viscous * w.norm(), 2);
-    b.force = force;
-    b.w = split;
-  }
-  set_bar_targets(bars);
-  return residuals <= tolerance * tolerance * scale;
+Vec<D> bar_force(const PointTerm<D>& bar, const std::vector<std::array<int, power(3, D)>>& cell_nodes,
+                 const std::vector<Vec<D>>& v) {
+  return bar.scale * (bar.force + bar.viscous * slip_velocity(bar, cell_nodes, v));
 }
 
 }  // namespace tremie

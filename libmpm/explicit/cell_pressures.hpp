@@ -184,22 +184,22 @@ class PressureCells {
 
   void make_rows(const Index<D>& cell, const Vec<D>& place, Rows& rows) const {
     PointWeights<Real, D, 1> weights{};
-    AtPoint<Real, D, 1> one = {};
-    for (int d = 0; d < D; ++d) row_along(d, cell[d], place[d], weights), one.along[0][d][d] = 1;
+    AtPoint<Real, D, 1> gradient = {};
+    for (int d = 0; d < D; ++d) row_along(d, cell[d], place[d], weights), gradient.along[0][d][d] = 1;
     if (hooped)
-      one.value[0] = static_cast<Real>(
+      gradient.value[0] = static_cast<Real>(
           1.0 / (axes_[0].origin + (tile_[0] * tile_cells + cell[0] + place[0]) * axes_[0].h));
     for (RowOf<Real>& row : rows) row = RowOf<Real>{};
-    scatter<D, 1, false, Real>(weights, one, rows);
+    scatter<D, 1, false, Real>(weights, gradient, rows);
   }
 
   /// A row's weights in direction d: three nodes, or the cell's two corners.
   void row_along(int d, int cell, double place, PointWeights<Real, D, 1>& weights) const {
     const double slope = 1.0 / axes_[d].h;
-    const SplineValues one = splines_ ? splines(axes_[d], tile_[d] * tile_cells + cell, place)
-                                      : SplineValues{{1.0 - place, place, 0.0}, {-slope, slope, 0.0}};
+    const SplineValues spline = splines_ ? splines(axes_[d], tile_[d] * tile_cells + cell, place)
+                                         : SplineValues{{1.0 - place, place, 0.0}, {-slope, slope, 0.0}};
     for (int k = 0; k < 3; ++k) {
-      const auto w = static_cast<Real>(one.N[k]), a = static_cast<Real>(one.dN[k]);
+      const auto w = static_cast<Real>(spline.N[k]), a = static_cast<Real>(spline.dN[k]);
       if (d < D - 1)
         weights.w[d][k] = w, weights.a[0][d][k] = a;
       else

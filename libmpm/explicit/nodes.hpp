@@ -6,11 +6,11 @@
 
 namespace tremie::detail {
 
-/// Flat walls on one node, v its velocity before them. A wall takes the normal velocity; friction takes up to the
-/// coefficient times what of it went into the wall from the sliding.
+/// Flat walls on one node, v its velocity before them. A wall takes the normal velocity; a wall law takes from the
+/// sliding up to the yield force that it makes of what went into the wall. No law: walls take nothing from it.
 template <int D>
 void apply_walls(const std::array<Axis, D>& axes, const Shape<D>& shape, const WallVelocities<D>& walls,
-                 double friction_coefficient, const Index<D>& node, f64x4& v) {
+                 const WallLaw* law, const Index<D>& node, f64x4& v) {
   for (int d = 0; d < D; ++d) {
     const Axis& axis = axes[d];
     const bool low = axis.wall_low() && node[d] == shape.low_wall();
@@ -23,12 +23,13 @@ void apply_walls(const std::array<Axis, D>& axes, const Shape<D>& shape, const W
     } else {
       const double pressing = low ? std::max(0.0, -v[d]) : std::max(0.0, v[d]);
       v[d] = 0.0;
-      if (kind != FaceKind::friction || friction_coefficient * pressing == 0.0) continue;
+      const double yield = kind == FaceKind::wall_law && law ? yield_force(*law, pressing) : 0.0;
+      if (yield == 0.0) continue;
       double slip = 0.0;
       for (int e = 0; e < D; ++e)
         if (e != d) slip += (v[e] - wall[e]) * (v[e] - wall[e]);
       slip = std::sqrt(slip);
-      const double kept = slip > 0.0 ? std::max(0.0, 1.0 - friction_coefficient * pressing / slip) : 0.0;
+      const double kept = slip > 0.0 ? std::max(0.0, 1.0 - yield / slip) : 0.0;
       for (int e = 0; e < D; ++e)
         if (e != d) v[e] = wall[e] + kept * (v[e] - wall[e]);
     }
@@ -45,16 +46,15 @@ Index<D> control_of(const Index<D>& block, int k) {
 /// Makes the velocities of block b's nodes from the sums over the tiles: update(v, total, k) at its k-th node. Flat
 /// walls come after it.
 template <class Geometry, class Buffers, class Update>
-void update_block(const Body<Geometry>& body, double friction_coefficient, const Buffers& buffers,
-                  std::size_t b, ExplicitState<Geometry>& state, Update update) {
+void update_block(const Body<Geometry>& body, const WallLaw* law, const Buffers& buffers, std::size_t b,
+                  ExplicitState<Geometry>& state, Update update) {
   constexpr int D = Geometry::dim;
   const NodeBlock<D>& block = state.grid.blocks[b];
   sum_tiles<D>(block, buffers, [&](int k, const f64x4& total) {
     f64x4& v = state.grid.v[b][static_cast<std::size_t>(k)];
     update(v, total, static_cast<std::size_t>(k));
     if (v[D] > 0.0)
-      apply_walls<D>(state.grid.axes, state.shape, body.walls, friction_coefficient,
-                     control_of<D>(block.at, k), v);
+      apply_walls<D>(state.grid.axes, state.shape, body.walls, law, control_of<D>(block.at, k), v);
   });
 }
 
@@ -68,12 +68,12 @@ f64x4 to_node(const Vec<D>& v) {
 
 /// Velocities of block b from the momenta (with the impulses of the stresses that are in them), and gravity.
 template <class Geometry, class Buffers>
-void velocities_from_sums(const Body<Geometry>& body, double friction, const Buffers& sums,
+void velocities_from_sums(const Body<Geometry>& body, const WallLaw* law, const Buffers& sums,
                           const Vec<Geometry::dim>& gravity_impulse, std::size_t b,
                           ExplicitState<Geometry>& state) {
   constexpr int D = Geometry::dim;
   const f64x4 pull = to_node<D>(gravity_impulse);
-  update_block(body, friction, sums, b, state, [&pull](f64x4& v, const f64x4& total, std::size_t) {
+  update_block(body, law, sums, b, state, [&pull](f64x4& v, const f64x4& total, std::size_t) {
     const double inverse = total[D] > 0.0 ? 1.0 / total[D] : 0.0;
     v = inverse > 0.0 ? total * inverse + pull : f64x4{};
     v[D] = inverse;
@@ -82,11 +82,11 @@ void velocities_from_sums(const Body<Geometry>& body, double friction, const Buf
 
 /// Adds impulses of the stresses and gravity to velocities of block b that are there already.
 template <class Geometry, class Buffers>
-void add_impulses(const Body<Geometry>& body, double friction, const Buffers& impulses, bool flip,
+void add_impulses(const Body<Geometry>& body, const WallLaw* law, const Buffers& impulses, bool flip,
                   const Vec<Geometry::dim>& gravity_impulse, std::size_t b, ExplicitState<Geometry>& state) {
   constexpr int D = Geometry::dim;
   const f64x4 pull = to_node<D>(gravity_impulse);
-  update_block(body, friction, impulses, b, state, [&](f64x4& v, const f64x4& impulse, std::size_t k) {
+  update_block(body, law, impulses, b, state, [&](f64x4& v, const f64x4& impulse, std::size_t k) {
     if (flip) state.grid.v_start[b][k] = v;
     const double inverse = v[D];
     if (inverse > 0.0) v += impulse * inverse + pull;

@@ -81,7 +81,7 @@ f64x8 update_yield_stress(const Mix& mix, double dt, const f64x8& gamma_dot, Lan
 
 /// What eight points stand for in cells at walls, in units of their volume; `cell`: theirs in the tile.
 template <int D>
-f64x8 hold_of_group(const HeldCells<D>* held, const GroupCells& cell) {
+f64x8 represented_volumes(const HeldCells<D>* held, const GroupCells& cell) {
   f64x8 of = all_lanes(1.0);
   for (std::size_t l = 0; l < cell.size() && held; ++l)
     of[l] = static_cast<double>((*held)[static_cast<std::size_t>(cell[l])].hold);
@@ -115,7 +115,7 @@ f64x8 update_stress(TilePass<Real, Geometry>& in, std::size_t g, const SimdOf<Re
   in.reduced.volume += volume, in.reduced.volume_rate += volume * gamma_dot;
   pressure = volume * (-in.mix.K * points.ln_J[g]);
   const f64x8 viscosity =
-      hold_of_group<D>(in.held, cell) * volume * (in.mix.mu + secant(in.law, gamma_dot, tau_y));
+      represented_volumes<D>(in.held, cell) * volume * (in.mix.mu + secant(in.law, gamma_dot, tau_y));
 
   f64x8 sigma[D][D], hoop;
   for (f64x8& component : q) component *= viscosity;
@@ -300,7 +300,7 @@ PassSums pass_over_points(const Mix& mix, const YieldLaw& law, const ExplicitSet
   for (std::size_t t = 0; t < of_tile.size(); ++t)
     of_tile[t] = pass_over_tile<pass, Real, Geometry>(mix, law, settings, input, t, state);
   PassSums all;
-  for (const PassSums& one : of_tile) all.add(one);
+  for (const PassSums& tile : of_tile) all.add(tile);
   return all;
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "libmpm/body/body.hpp"
+#include "libmpm/boundary/wall_law.hpp"
 #include "libmpm/explicit/stability_limits.hpp"
 #include "libmpm/explicit/tiled_particles.hpp"
 #include "libmpm/transfer/shape_functions.hpp"
@@ -27,9 +28,9 @@ struct ExplicitSettings {
   bool keep_shear_rates = false;   ///< in the points, where thixotropy does not need them
   std::optional<double> fixed_dt;  ///< [s]; empty: `safety` times the stability limit
   double safety = 0.8;
-  double dt_max = 0.01;  ///< [s]
-  double cfl = 0.2;      ///< largest move in a step of a chosen length, in cells
-  double friction_coefficient = 0.0;
+  double dt_max = 0.01;     ///< [s]
+  double cfl = 0.2;         ///< largest move in a step of a chosen length, in cells
+  WallLaw wall_law;         ///< along faces of FaceKind::wall_law
   double wall_gap = 0.0;    ///< how near a point may come to a rigid wall [m]
   double wall_speed = 0.0;  ///< of a rigid wall, at most [m/s]
 };

@@ -39,14 +39,13 @@ PassSums stress_last(Body<Geometry>& body, const YieldLaw& law, const ExplicitSe
                      const RigidWall<Geometry::dim>& wall, double dt, ExplicitState<Geometry>& state) {
   using Buffers = typename TileGrid<Geometry::dim>::template Buffers<Real>;
   const Vec<Geometry::dim> pull = dt * body.gravity, none = Vec<Geometry::dim>::Zero();
-  const double friction = settings.friction_coefficient;
   const bool flip = settings.transfer.flip;
   const Buffers &sums = std::get<Buffers>(state.grid.sums),
                 &impulses = std::get<Buffers>(state.grid.impulses);
-  // Momentum balance on the grid with flat walls and friction; the stresses' impulses are in the momenta, but for FLIP.
+  // Momentum balance on the grid with flat walls; the stresses' impulses are in the momenta, but for FLIP.
   for_each_block(state.grid, [&](std::size_t block) {
-    velocities_from_sums(body, flip ? 0.0 : friction, sums, flip ? none : pull, block, state);
-    if (flip) add_impulses(body, friction, impulses, flip, pull, block, state);
+    velocities_from_sums(body, flip ? nullptr : &settings.wall_law, sums, flip ? none : pull, block, state);
+    if (flip) add_impulses(body, &settings.wall_law, impulses, flip, pull, block, state);
   });
   push_off_wall(wall, body.time + dt, dt, settings.wall_gap, state);
   follow_points<Real>(settings, state);
@@ -61,16 +60,15 @@ PassSums stress_first(Body<Geometry>& body, const YieldLaw& law, const ExplicitS
                       const RigidWall<Geometry::dim>& wall, double dt, ExplicitState<Geometry>& state) {
   using Buffers = typename TileGrid<Geometry::dim>::template Buffers<Real>;
   const Vec<Geometry::dim> pull = dt * body.gravity, none = Vec<Geometry::dim>::Zero();
-  const double friction = settings.friction_coefficient;
   const Buffers& sums = std::get<Buffers>(state.grid.sums);
   for_each_block(state.grid,
-                 [&](std::size_t block) { velocities_from_sums(body, 0.0, sums, none, block, state); });
+                 [&](std::size_t block) { velocities_from_sums(body, nullptr, sums, none, block, state); });
   follow_points<Real>(settings, state);
   // Grid to points, stress, its impulses to the grid.
   PassSums all = pass_over_points<stress_pass, Real>(body.mix, law, settings, {dt, dt}, state);
-  // Momentum balance on the grid, flat walls and friction.
+  // Momentum balance on the grid, flat walls.
   for_each_block(state.grid, [&](std::size_t block) {
-    add_impulses(body, friction, sums, settings.transfer.flip, pull, block, state);
+    add_impulses(body, &settings.wall_law, sums, settings.transfer.flip, pull, block, state);
   });
   push_off_wall(wall, body.time + dt, dt, settings.wall_gap, state);
   // Grid to points, motion, points to grid.

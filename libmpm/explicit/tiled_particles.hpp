@@ -64,15 +64,15 @@ double& entry(Mat<D, D>& value, int k) {
 /// Visits the quantities that both kinds of points have, each with its arrays here and its array there.
 template <int D, class Visit>
 void for_each_quantity(LanePoints<D>& lanes, Points<D>& points, Visit visit) {
-  const auto one = [](std::vector<f64x8>& array) { return std::span<std::vector<f64x8>>(&array, 1); };
+  const auto as_span = [](std::vector<f64x8>& array) { return std::span<std::vector<f64x8>>(&array, 1); };
   visit(std::span<std::vector<f64x8>>(lanes.x), points.x);
   visit(std::span<std::vector<f64x8>>(lanes.v), points.v);
   visit(std::span<std::vector<f64x8>>(lanes.C), points.C);
-  visit(one(lanes.mass), points.mass);
-  visit(one(lanes.V0), points.V0);
-  visit(one(lanes.ln_J), points.ln_J);
-  visit(one(lanes.lambda), points.lambda);
-  visit(one(lanes.gamma_dot), points.gamma_dot);
+  visit(as_span(lanes.mass), points.mass);
+  visit(as_span(lanes.V0), points.V0);
+  visit(as_span(lanes.ln_J), points.ln_J);
+  visit(as_span(lanes.lambda), points.lambda);
+  visit(as_span(lanes.gamma_dot), points.gamma_dot);
 }
 
 }  // namespace detail

@@ -19,7 +19,7 @@ inline constexpr double most_hold = 4.0;
 /// How far points may move, in cells, before the cells are looked into again.
 inline constexpr double hold_drift = 0.05;
 
-inline bool holds(FaceKind kind) { return kind == FaceKind::no_slip || kind == FaceKind::friction; }
+inline bool holds(FaceKind kind) { return kind == FaceKind::no_slip || kind == FaceKind::wall_law; }
 
 /// Direction and side of a wall that holds the concrete in a cell; 0 in `into` where there is none.
 struct HeldAt {
@@ -132,8 +132,8 @@ class CellFills {
 /// What points in a cell at a wall stand for, in units of their own volume: a full cell where it is inside
 /// the body, though not more than twice what the cell on its other side has.
 template <class Geometry>
-double hold_of(const detail::CellFills<Geometry>& fills, const std::array<Axis, Geometry::dim>& axes,
-               const Index<Geometry::dim>& cell) {
+double represented_volume(const detail::CellFills<Geometry>& fills,
+                          const std::array<Axis, Geometry::dim>& axes, const Index<Geometry::dim>& cell) {
   const detail::HeldAt wall = detail::held_at<Geometry::dim>(axes, cell);
   if (wall.into == 0 || fills.at(cell) == 0.0 || !fills.inside(cell)) return 1.0;
   Index<Geometry::dim> next = cell;
@@ -164,13 +164,13 @@ void look_into_wall_cells(ExplicitState<Geometry>& state) {
       Index<D> cell;
       for (int d = D - 1, rest = k; d >= 0; --d, rest /= tile_pressure_cells)
         cell[d] = axes[d].cell(tile.at[d] * tile_cells + rest % tile_pressure_cells - 2);
-      HeldCell<D>& one = held[static_cast<std::size_t>(k)];
-      one.hold = 1.0F;
-      one.place.fill(0.5F);
+      HeldCell<D>& held_cell = held[static_cast<std::size_t>(k)];
+      held_cell.hold = 1.0F;
+      held_cell.place.fill(0.5F);
       const detail::HeldAt wall = detail::held_at<D>(axes, cell);
       if (wall.into == 0) continue;
-      one.hold = static_cast<float>(hold_of<Geometry>(fills, axes, cell));
-      one.place[static_cast<std::size_t>(wall.axis)] = static_cast<float>(fills.height(cell));
+      held_cell.hold = static_cast<float>(represented_volume<Geometry>(fills, axes, cell));
+      held_cell.place[static_cast<std::size_t>(wall.axis)] = static_cast<float>(fills.height(cell));
     }
   }
 }

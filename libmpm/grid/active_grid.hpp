@@ -111,18 +111,18 @@ struct Stencil {
 
 template <int D>
 Stencil<D> stencil(const std::array<Axis, D>& axes, const Index<D>& cell, const Vec<D>& s) {
-  std::array<SplineValues, D> one;
-  for (int d = 0; d < D; ++d) one[d] = splines(axes[d], cell[d], s[d]);
+  std::array<SplineValues, D> spline;
+  for (int d = 0; d < D; ++d) spline[d] = splines(axes[d], cell[d], s[d]);
   Stencil<D> st;
   for (int k = 0; k < Stencil<D>::n; ++k) {
     const Index<D> o = local_offset<D>(k);
     double N = 1.0;
-    for (int d = 0; d < D; ++d) N *= one[d].N[o[d]];
+    for (int d = 0; d < D; ++d) N *= spline[d].N[o[d]];
     st.N[k] = N;
     for (int d = 0; d < D; ++d) {
-      double g = one[d].dN[o[d]];
+      double g = spline[d].dN[o[d]];
       for (int e = 0; e < D; ++e)
-        if (e != d) g *= one[e].N[o[e]];
+        if (e != d) g *= spline[e].N[o[e]];
       st.g[k][d] = g;
     }
   }

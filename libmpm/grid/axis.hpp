@@ -20,7 +20,7 @@ enum class FaceKind {
   open,       ///< no wall: the grid goes on as far as there is concrete
   free_slip,  ///< normal velocity zero; also an axis
   symmetry,   ///< the other half of the body is behind it, mirrored; implicit steps alone
-  friction,   ///< normal velocity zero, Coulomb friction along it
+  wall_law,   ///< normal velocity zero, along it the step's wall law (boundary/wall_law.hpp)
   no_slip     ///< velocity zero
 };
 

@@ -56,15 +56,15 @@ class NodeReduction {
   /// Cuts the cells of a grid into chunks that begin at multiples of `unit`.
   void lay_out(const ActiveGrid<3>& grid, int unit = 1);
 
-  int size() const { return static_cast<int>(reduction_.size()); }
-  int first_cell(int chunk) const { return reduction_[static_cast<std::size_t>(chunk)].first_cell; }
-  int last_cell(int chunk) const { return reduction_[static_cast<std::size_t>(chunk)].last_cell; }
+  int size() const { return static_cast<int>(chunks_.size()); }
+  int first_cell(int chunk) const { return chunks_[static_cast<std::size_t>(chunk)].first_cell; }
+  int last_cell(int chunk) const { return chunks_[static_cast<std::size_t>(chunk)].last_cell; }
   void resize_for_overwrite(ReductionBuffer& buffer) const { buffer.resize_for_overwrite(buffer_nodes_); }
 
   /// Where a chunk's nodes are added to: node i at 4 i. Cleared before.
   template <class Scalar>
   Scalar* clear(int chunk, ReductionBuffer& buffer) const {
-    const Chunk& s = reduction_[static_cast<std::size_t>(chunk)];
+    const Chunk& s = chunks_[static_cast<std::size_t>(chunk)];
     Scalar* to = buffer.values<Scalar>() + 4 * s.place;
     std::fill(to + 4 * std::ptrdiff_t{s.first_node}, to + 4 * std::ptrdiff_t{s.last_node}, Scalar(0));
     return to;
@@ -75,9 +75,9 @@ class NodeReduction {
     using Value = Eigen::Matrix<Scalar, n, 1>;
     const Scalar* from = buffer.values<Scalar>();
     Value sum = Value::Zero();
-    for (auto s = static_cast<std::size_t>(first_chunk_[i]);
-         s < reduction_.size() && reduction_[s].first_node <= i; ++s)
-      sum += Eigen::Map<const Value>(from + 4 * (reduction_[s].place + i));
+    for (auto s = static_cast<std::size_t>(first_chunk_[i]); s < chunks_.size() && chunks_[s].first_node <= i;
+         ++s)
+      sum += Eigen::Map<const Value>(from + 4 * (chunks_[s].place + i));
     return sum;
   }
   /// Calls give(chunk, to) for every chunk, which adds what its cells give, and take(node) for every node
@@ -98,7 +98,7 @@ class NodeReduction {
     int first_cell, last_cell, first_node, last_node;
     std::ptrdiff_t place;  ///< of node 0 in the buffer, if it were among them
   };
-  std::vector<Chunk> reduction_;
+  std::vector<Chunk> chunks_;
   std::vector<int> first_chunk_;  ///< that sees each node
   std::size_t buffer_nodes_ = 0;  ///< of all chunks
 };
@@ -110,7 +110,7 @@ inline void NodeReduction::lay_out(const ActiveGrid<3>& grid, int unit) {
   while (2 * n <= most_chunks && 2 * n * least_cells <= n_cells &&
          2 * n * least_planes <= grid.cell_map.extent[0])
     n *= 2;
-  reduction_.resize(static_cast<std::size_t>(n));
+  chunks_.resize(static_cast<std::size_t>(n));
 #pragma omp parallel for schedule(static)
   for (int s = 0; s < n; ++s) {
     const auto begin = [&](int k) {
@@ -122,18 +122,18 @@ inline void NodeReduction::lay_out(const ActiveGrid<3>& grid, int unit) {
         chunk.first_node = std::min(chunk.first_node, i);
         chunk.last_node = std::max(chunk.last_node, i + 1);
       }
-    reduction_[static_cast<std::size_t>(s)] = chunk;
+    chunks_[static_cast<std::size_t>(s)] = chunk;
   }
   // Neither end lies behind an earlier chunk's, so that the chunks of a node follow each other.
-  for (std::size_t s = reduction_.size() - 1; s > 0; --s)
-    reduction_[s - 1].first_node = std::min(reduction_[s - 1].first_node, reduction_[s].first_node);
-  for (std::size_t s = 1; s < reduction_.size(); ++s)
-    reduction_[s].last_node = std::max(reduction_[s].last_node, reduction_[s - 1].last_node);
+  for (std::size_t s = chunks_.size() - 1; s > 0; --s)
+    chunks_[s - 1].first_node = std::min(chunks_[s - 1].first_node, chunks_[s].first_node);
+  for (std::size_t s = 1; s < chunks_.size(); ++s)
+    chunks_[s].last_node = std::max(chunks_[s].last_node, chunks_[s - 1].last_node);
   tremie::resize_for_overwrite(first_chunk_, static_cast<std::size_t>(n_nodes));
   std::ptrdiff_t place = 0;
   int next = 0;
   for (int s = 0; s < n; ++s) {
-    Chunk& chunk = reduction_[static_cast<std::size_t>(s)];
+    Chunk& chunk = chunks_[static_cast<std::size_t>(s)];
     chunk.place = place - chunk.first_node;
     place += chunk.last_node - chunk.first_node;
     for (; next < chunk.last_node; ++next) first_chunk_[static_cast<std::size_t>(next)] = s;

@@ -25,13 +25,10 @@ inline constexpr int tile_span = 2 * tile_cells;  ///< nodes that a tile sees in
 
 /// One entry a node: components 0 to D-1 a vector, component D the mass, or of velocities 1/mass [1/kg], 0
 /// where there is none.
-using f64x4 [[gnu::vector_size(32)]] = double;
-using f32x4 [[gnu::vector_size(16)]] = float;
 template <class Real>
 using NodeOf = std::conditional_t<std::is_same_v<Real, float>, f32x4, f64x4>;
 
 /// Four nodes of a row (the last direction) as one vector, or as two.
-using f32x16 [[gnu::vector_size(64)]] = float;
 struct f64x16 {
   f64x8 low, high;
 };

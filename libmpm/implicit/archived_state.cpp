@@ -3,9 +3,9 @@
 namespace tremie {
 
 template <int D>
-inline constexpr bool stored_plainly<FrictionNode<D>> = true;
+inline constexpr bool stored_plainly<NodeTerm<D>> = true;
 template <int D>
-inline constexpr bool stored_plainly<BarDrag<D>> = true;
+inline constexpr bool stored_plainly<PointTerm<D>> = true;
 template <>
 inline constexpr bool stored_plainly<PackedAdmmState::Batch> = true;
 
@@ -30,7 +30,7 @@ void visit(Archive& archive, AdmmState<Geometry>& state) {
 template <class Geometry>
 void visit(Archive& archive, ImplicitBody<Geometry>& body) {
   archive(body.points, body.time, body.dt, body.motion, body.walls.v);
-  archive(body.grid.cell_map, body.grid.node_map, body.admm_state, body.friction, body.bar_drag.drag);
+  archive(body.grid.cell_map, body.grid.node_map, body.admm_state, body.wall_nodes, body.bar_drag);
   archive(body.quadrature.tau_y, body.time_error, body.shear_rate);
 }
 

@@ -7,7 +7,7 @@
 
 namespace tremie {
 
-/// Stresses, rates, friction and the drag of bars stand by the cells and nodes that were active in the last step. A
+/// Stresses, rates and the wall terms stand by the cells and nodes that were active in the last step. A
 /// grid's axes and its blocks are the scene's; matrices and factors follow from the grid.
 template <class Geometry>
 void visit(Archive& archive, ImplicitBody<Geometry>& body);

@@ -15,26 +15,23 @@ void add_bar_point(const ImplicitBody<Geometry>& body, const YieldLaw& law, int 
   constexpr int D = Geometry::dim;
   const auto& grid = problem.grid;
   const BarPoint<D>& bar = body.bars[source];
-  PenaltyPoint<D> point;
-  point.cell = c, point.source = source;
-  point.N = stencil<D>(grid.axes, cell, local_coordinates<D>(grid.axes, cell, bar.x)).N;
+  PointTerm<D> term;
+  term.cell = c, term.source = source;
+  term.N = stencil<D>(grid.axes, cell, local_coordinates<D>(grid.axes, cell, bar.x)).N;
   double tau_y = 0.0, full = 1.0;
-  for (double one : problem.quadrature.tau_y[c]) tau_y += one / power(2, D);
+  for (double at_point : problem.quadrature.tau_y[c]) tau_y += at_point / power(2, D);
   for (const Axis& axis : grid.axes) full *= axis.h;
-  BarDrag<D> drag;
-  drag.source = source;
-  drag.scale += (bar_drag_along - 1.0) * bar.axis * bar.axis.transpose();
-  drag.velocity = bar.velocity;
+  term.scale += (bar_drag_along - 1.0) * bar.axis * bar.axis.transpose();
+  term.velocity = bar.velocity;
   const double length = bar.length * std::min(1.0, problem.quadrature.V_cell[c] / full);
-  drag.limit = bar_yield_drag * tau_y * bar.diameter * length;
-  drag.reach = length / bar.mobility;
-  const double rate = bar_velocity<D>(point, drag, grid.cell_nodes, body.v).norm() / bar.diameter;
-  drag.viscous =
+  term.limit = bar_yield_drag * tau_y * bar.diameter * length;
+  term.reach = length / bar.mobility;
+  const double rate = slip_velocity(term, grid.cell_nodes, body.v).norm() / bar.diameter;
+  term.viscous =
       (problem.mu +
        viscosity(law, std::clamp(rate, viscosity_scale_rates[0], viscosity_scale_rates[1]), tau_y)) *
-      drag.reach;
-  problem.bars.points.push_back(point);
-  problem.bars.drag.push_back(drag);
+      term.reach;
+  problem.bars.push_back(term);
 }
 
 /// The points of bars that lie in active cells. Their forces go on from those of the last step.
@@ -47,13 +44,13 @@ void add_bars(const ImplicitBody<Geometry>& body, const YieldLaw& law, YieldProb
       add_bar_point(body, law, static_cast<int>(k), c, cell, problem);
   }
   std::vector<int> last(body.bars.size(), -1);
-  for (std::size_t i = 0; i < body.bar_drag.drag.size(); ++i)
-    if (const int source = body.bar_drag.drag[i].source; source < static_cast<int>(last.size()))
+  for (std::size_t i = 0; i < body.bar_drag.size(); ++i)
+    if (const int source = body.bar_drag[i].source; source < static_cast<int>(last.size()))
       last[source] = static_cast<int>(i);
-  for (BarDrag<D>& drag : problem.bars.drag)
-    if (const int i = last[drag.source]; i >= 0) {
-      drag.force = body.bar_drag.drag[i].force, drag.w = body.bar_drag.drag[i].w;
-      if (const double size = drag.force.norm(); size > drag.limit) drag.force *= drag.limit / size;
+  for (PointTerm<D>& term : problem.bars)
+    if (const int i = last[term.source]; i >= 0) {
+      term.force = body.bar_drag[i].force, term.slip = body.bar_drag[i].slip;
+      project_force(term);
     }
 }
 

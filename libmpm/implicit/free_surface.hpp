@@ -19,10 +19,10 @@ namespace tremie::detail {
 /// Surface of what stands on the floor of a section (its lowest cells): from there up, where a cell is less
 /// than half full. What hangs on a wall higher up has none.
 template <class Geometry>
-std::vector<PenaltyPoint<Geometry::dim>> surface_of_pool(const ImplicitBody<Geometry>& body, double dt) {
+std::vector<PointTerm<Geometry::dim>> surface_of_pool(const ImplicitBody<Geometry>& body, double dt) {
   constexpr int D = Geometry::dim, up = Geometry::up;
   static_assert(D == 2, "a section has one direction across");
-  std::vector<PenaltyPoint<D>> surface;
+  std::vector<PointTerm<D>> surface;
   const auto& grid = body.grid;
   const double section = grid.axes[0].h * grid.axes[1].h;
   const auto fill = [&](int c) { return body.quadrature.V_cell[c] / section; };
@@ -39,12 +39,10 @@ std::vector<PenaltyPoint<Geometry::dim>> surface_of_pool(const ImplicitBody<Geom
     for (const Vec<D>& across : {quadrature_point<D>(0), quadrature_point<D>(power(2, D) - 1)}) {
       Vec<D> s = across;
       s[up] = std::min(1.0, fill(top));
-      PenaltyPoint<D> point;
+      PointTerm<D> point;
       point.cell = top;
       point.N = stencil<D>(grid.axes, grid.cell_index[top], s).N;
-      point.velocity.setZero();
-      point.stiffness.setZero();
-      point.stiffness(up, up) = -0.5 * body.mix.density * body.gravity[up] * grid.axes[1 - up].h * dt;
+      point.penalty(up, up) = -0.5 * body.mix.density * body.gravity[up] * grid.axes[1 - up].h * dt;
       surface.push_back(point);
     }
   }

@@ -34,17 +34,16 @@ void add_side_walls(double W, const YieldLaw& law, const std::vector<Vec<Geometr
     }
   fold_mirrors<D>(grid, V);
   fold_mirrors<D>(grid, limit);
-  problem.drag.resize(V.size());
   for (std::size_t i = 0; i < V.size(); ++i) {
     const double tau_y = V[i] > 0.0 ? 0.5 * W * limit[i] / V[i] : 0.0;
     const double mu = problem.mu + viscosity(law, 6.0 * v[i].norm() / W, tau_y);
-    problem.drag[i] = 12.0 * mu / (W * W) * V[i];
-    FrictionNode<D> held;
+    NodeTerm<D> held;
     held.node = static_cast<int>(i);
     held.normal_axis = -1;
     held.reach = W / std::sqrt(12.0);
     held.limit = limit[i];
-    problem.friction.push_back(held);
+    held.viscous = 12.0 * mu / (W * W) * V[i];
+    problem.wall_nodes.push_back(held);
   }
 }
 
@@ -69,19 +68,20 @@ void pose(ImplicitBody<Geometry>& body, const YieldLaw& law, const StepSettings&
   body.v = v_old;
   add_gravity(body, v_old, dt);
   posed.emplace(YieldProblem<Geometry>{
-      body.grid, body.quadrature, body.nodes, dt, body.mix.mu, body.mix.K, {}, {}, {}, {}, {}, {}});
+      body.grid, body.quadrature, body.nodes, dt, body.mix.mu, body.mix.K, {}, {}, {}, {}, {}, {}, {}});
   posed->eta += viscosity(
       law, std::clamp(body.shear_rate, viscosity_scale_rates[0], viscosity_scale_rates[1]), body.mix.tau_0);
   posed->zeta = settings.alternating_viscosity * posed->eta;
-  apply_flat_walls<D>(body.grid, body.walls, posed->fixed, posed->friction, body.v);
+  apply_flat_walls<D>(body.grid, body.walls, posed->fixed, posed->wall_nodes, body.v);
   apply_blocks<D>(body.grid, posed->fixed, body.v);
   fill_mirrors<D>(body.grid, body.v);
   if (settings.side_wall_distance > 0.0) add_side_walls(settings.side_wall_distance, law, body.v, *posed);
+  posed->drag = viscous_drag(posed->wall_nodes, body.v.size());
   posed->bound = find_penalty_points(body.grid, body.nodes, body.boundary, dt, settings.boundary_stiffness);
   if (!body.bars.empty()) add_bars(body, law, *posed);
   if constexpr (D == 2 && requires { Geometry::up; })
     if (settings.moving_surface) posed->surface = surface_of_pool(body, dt);
-  carry_friction<Geometry>(body.friction, old_nodes, body.grid, posed->friction);
+  carry_over_terms<Geometry>(body.wall_nodes, old_nodes, settings.wall_law, body.grid, posed->wall_nodes);
   posed->contact = find_contact(body.grid, body.points, wall, body.time + dt, dt, settings.wall_gap,
                                 settings.wall_penalty, body.mix.K);
   update_active<D>(posed->contact, body.grid.cell_nodes, body.v);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "libmpm/body/body.hpp"
+#include "libmpm/boundary/wall_law.hpp"
 #include "libmpm/implicit/shifting/particle_shifting_3d.hpp"
 #include "libmpm/implicit/solvers/admm_factorised.hpp"
 #include "libmpm/implicit/solvers/admm_matrix_free.hpp"
@@ -30,9 +31,9 @@ struct StepSettings {
   double time_left = 1e300;        ///< no step goes beyond it [s]
   double cfl = 0.6;                ///< largest move in a step, in cells
   double growth = 1.3;             ///< largest ratio of successive steps
-  double detached = 0.0;  ///< share of the points that may be drops in the air (detached_particles.hpp)
-  double friction_coefficient = 0.0;
-  bool keep_forces = false;            ///< fill Body::wall_force and Body::dissipation
+  double detached = 0.0;     ///< share of the points that may be drops in the air (detached_particles.hpp)
+  WallLaw wall_law;          ///< along faces of FaceKind::wall_law
+  bool keep_forces = false;  ///< fill Body::wall_force and Body::dissipation
   double boundary_stiffness = 1000.0;  ///< of walls inside the grid, in m/dt
   double alternating_viscosity = 0.0;  ///< zeta of yield_problem.hpp, in eta; plane strain alone
   bool cut_cell_rule = false;       ///< stresses of partly filled cells where the points are; sections alone
@@ -49,11 +50,12 @@ struct ImplicitBody : Body<Geometry> {
   static constexpr int D = Geometry::dim;
   Quadrature<Geometry> quadrature{};
   AdmmState<Geometry> admm_state{};
-  std::vector<FrictionNode<D>> friction{};
-  std::vector<PenaltyPoint<D>> bound{};  ///< walls inside the grid that touched concrete in the last step
-  SlenderBars<D> bar_drag{};             ///< of the points of bars that touched concrete in the last step
-  double time_error = 0.0;               ///< of the last step: its local error, if it was asked for [m]
-  double shear_rate = 0.0;               ///< volume mean of the last step [1/s]
+  // Wall terms of the last step where there was concrete:
+  std::vector<NodeTerm<D>> wall_nodes{};  ///< along flat walls and between side walls
+  std::vector<PointTerm<D>> bound{};      ///< walls inside the grid
+  std::vector<PointTerm<D>> bar_drag{};   ///< bars
+  double time_error = 0.0;                ///< of the last step: its local error, if it was asked for [m]
+  double shear_rate = 0.0;                ///< volume mean of the last step [1/s]
   BlockSystem<D> system{};
   std::conditional_t<D == 3, MatrixFreeSystem, Nothing> matrix_free{};  ///< for large bodies in 3D
 };

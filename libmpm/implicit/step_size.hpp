@@ -1,6 +1,6 @@
 #pragma once
 
-// How long a step may be.
+// How long a step may be, and whether it was too long.
 
 #include <algorithm>
 #include <cmath>
@@ -66,6 +66,28 @@ double choose_dt(const ImplicitBody<Geometry>& body, const StepSettings& setting
     if (body.dt == 0.0 && g > 0.0) dt = std::min(dt, 0.25 * std::sqrt(reach / g));
   }
   return std::min(dt, settings.time_left);
+}
+
+/// True if the step would move more concrete than the share that may be drops in the air by more than `cells` cells, or
+/// any of it to a non-finite position. Nodes with next to no mass do not count: what they do moves no point.
+template <class Geometry>
+bool runs_away(const ImplicitBody<Geometry>& body, double share, double dt, double cells = 100.0) {
+  const double reach = cells * body.grid.cell_size_min();
+  double heaviest = 0.0, total = 0.0, gone = 0.0;
+  for (double m : body.nodes.mass) heaviest = std::max(heaviest, m), total += m;
+  for (std::size_t i = 0; i < body.v.size(); ++i) {
+    if (!body.v[i].allFinite()) return true;
+    const double m = body.nodes.mass[i];
+    if (Geometry::advects && m > 1e-3 * heaviest && body.v[i].norm() * dt > reach) gone += m;
+  }
+  return gone > share * total;
+}
+
+/// Whether a long step carries more than some drops beyond a cell, or anything beyond ten: the speeds that it
+/// was chosen for say nothing of what comes loose in it.
+template <class Geometry>
+bool starts_to_fall(const ImplicitBody<Geometry>& body, const StepSettings& settings, double dt) {
+  return runs_away(body, detached_share, dt, 1.0) || runs_away(body, settings.detached, dt, 10.0);
 }
 
 }  // namespace tremie::detail

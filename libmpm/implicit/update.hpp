@@ -8,12 +8,12 @@ namespace tremie::detail {
 
 /// Forces of the flat walls, which balance what is left of every prescribed component, and the dissipated
 /// power.
-template <class Geometry>
+template <class Form, class Geometry>
 void keep_forces(const YieldProblem<Geometry>& problem, const YieldLaw& law, ImplicitBody<Geometry>& body) {
   constexpr int D = Geometry::dim;
   body.dissipation = 0.0;
   const auto stress = [&](int c, int k, const Vec<Geometry::n_strain>& q) -> Vec<Geometry::n_strain> {
-    return problem.mu * q + stress_of(law, body.admm_state, c, k);
+    return problem.mu * q + Form::stress(law, body.admm_state, c, k);
   };
   for (int c = 0; c < problem.grid.n_cells(); ++c)
     for (int k = 0; k < power(2, D); ++k) {
@@ -49,39 +49,6 @@ void update_flocculation(const ImplicitBody<Geometry>& body, double dt, Points<G
     points.lambda[p] = flocculation_step(points.lambda[p], *body.mix.thixotropy, body.mix.tau_0,
                                          points.gamma_dot[p], gamma_dot[p], dt);
   points.gamma_dot.swap(gamma_dot);
-}
-
-/// Mean shear rate of every cell over its quadrature points, and the volume mean of all [1/s].
-template <class Geometry>
-double shear_rates(const YieldProblem<Geometry>& problem, const StepSettings& settings,
-                   const ImplicitBody<Geometry>& body, std::vector<double>& of_cell) {
-  double sum = 0.0, volume = 0.0;
-  if constexpr (Geometry::dim == 3)
-    if (by_iteration(body, settings)) {
-      body.matrix_free.shear_rates(problem, body.v, of_cell, sum);
-      return sum;
-    }
-  of_cell.assign(body.grid.cell_index.size(), 0.0);
-  for (int c = 0; c < problem.grid.n_cells(); ++c)
-    for (int k = 0; k < power(2, Geometry::dim); ++k) {
-      const double gamma_dot = strain_rate(problem, body.v, c, k).norm();
-      of_cell[c] += gamma_dot / power(2, Geometry::dim);
-      sum += problem.quadrature.V[c][k] * gamma_dot;
-      volume += problem.quadrature.V[c][k];
-    }
-  return volume > 0.0 ? sum / volume : 0.0;
-}
-
-/// Displacements that even out the fill of the cells.
-template <class Geometry>
-std::vector<Vec<Geometry::dim>> particle_shift(const YieldProblem<Geometry>& problem,
-                                               const StepSettings& settings,
-                                               const std::vector<double>& gamma_dot,
-                                               ImplicitBody<Geometry>& body) {
-  const CellFill cells = cell_fill(problem, body.points, gamma_dot, settings.particle_shifting);
-  if constexpr (Geometry::dim == 3)
-    if (by_iteration(body, settings)) return shifting_displacement_3d(problem, cells, body.matrix_free);
-  return shifting_displacement(problem, cells, body.system);
 }
 
 }  // namespace tremie::detail

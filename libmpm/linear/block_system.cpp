@@ -168,7 +168,7 @@ void BlockSystem<D>::add_mirrored_cell(int cell, const CellMatrix& K) {
   for (int a = 0; a < n_local; ++a) {
     if (unknown_[nodes[a]] == nodes[a]) continue;
     const auto m = std::lower_bound(mirrors_.begin(), mirrors_.end(), nodes[a],
-                                    [](const MirrorNode<D>& one, int node) { return one.node < node; });
+                                    [](const MirrorNode<D>& mirror, int node) { return mirror.node < node; });
     sign.template segment<D>(a * D) = m->sign;
   }
   const CellMatrix mirrored = sign.asDiagonal() * K * sign.asDiagonal();

@@ -1,6 +1,6 @@
 #pragma once
 
-// Eight numbers side by side, for loops over material points: one arithmetic operation for all of them where the
+// Numbers side by side, eight of them for loops over material points: one arithmetic operation for all of them where the
 // processor has wide registers, the same bits where it has not.
 
 #include <array>
@@ -22,6 +22,12 @@ inline f64x8 all_lanes(double x) { return f64x8{x, x, x, x, x, x, x, x}; }
 /// Eight in single precision, and eight of a type.
 using f32x8 [[gnu::vector_size(32)]] = float;
 using i32x8 [[gnu::vector_size(32)]] = int;
+
+// Four numbers, as a node has them, and sixteen.
+using f64x4 [[gnu::vector_size(32)]] = double;
+using f32x4 [[gnu::vector_size(16)]] = float;
+using f32x16 [[gnu::vector_size(64)]] = float;
+
 template <class Real>
 using SimdOf = std::conditional_t<std::is_same_v<Real, float>, f32x8, f64x8>;
 
@@ -36,7 +42,7 @@ inline f64x8 min(const f64x8& a, const f64x8& b) { return a < b ? a : b; }
 inline f32x8 max(const f32x8& a, const f32x8& b) { return a > b ? a : b; }
 inline f32x8 min(const f32x8& a, const f32x8& b) { return a < b ? a : b; }
 
-/// The number type of a vector of them, or of one.
+/// Scalar type of a SIMD vector or of a scalar.
 template <class T>
 using ScalarOf = std::conditional_t<std::is_same_v<T, f32x8>, float, double>;
 
@@ -64,9 +70,9 @@ inline double sum(const f64x8& a) {
   return s;
 }
 
-/// Whole numbers that are kept as numbers of another kind.
+/// The lanes as integers, where they hold whole numbers of another type.
 template <class T>
-std::array<int, f64x8_size> to_whole(const T& a) {
+std::array<int, f64x8_size> to_integers(const T& a) {
   const auto converted = __builtin_convertvector(a, i32x8);
   std::array<int, f64x8_size> whole;
   std::memcpy(whole.data(), &converted, sizeof converted);

@@ -22,7 +22,7 @@ std::array<std::array<double, 3>, D> node_positions(const std::array<Axis, D>& a
 /// Shape values of one point with the arms x_i - x_p and the stencil's inverse inertia in each direction.
 template <int D>
 struct PointStencil {
-  std::array<SplineValues, D> one;
+  std::array<SplineValues, D> spline;
   std::array<std::array<double, 3>, D> arm;
   Vec<D> inverse_inertia;
 
@@ -30,11 +30,11 @@ struct PointStencil {
                const std::array<std::array<double, 3>, D>& xi, const Vec<D>& x) {
     const Vec<D> s = local_coordinates<D>(axes, cell, x);
     for (int d = 0; d < D; ++d) {
-      one[d] = splines(axes[d], cell[d], s[d]);
+      spline[d] = splines(axes[d], cell[d], s[d]);
       double inertia = 0.0;
       for (int k = 0; k < 3; ++k) {
         arm[d][k] = xi[d][k] - x[d];
-        inertia += one[d].N[k] * arm[d][k] * arm[d][k];
+        inertia += spline[d].N[k] * arm[d][k] * arm[d][k];
       }
       // On a wall one spline is 1 and the others 0: no slope can be seen there, and none is given.
       inverse_inertia[d] = inertia > 1e-12 * axes[d].h * axes[d].h ? 1.0 / inertia : 0.0;
@@ -44,18 +44,18 @@ struct PointStencil {
   SpaceWeights with_arms() const {
     SpaceWeights w;
     for (int d = 0; d < D; ++d)
-      for (int k = 0; k < 3; ++k) w.N[d][k] = one[d].N[k], w.slope[d][k] = one[d].N[k] * arm[d][k];
+      for (int k = 0; k < 3; ++k) w.N[d][k] = spline[d].N[k], w.slope[d][k] = spline[d].N[k] * arm[d][k];
     return w;
   }
   SpaceWeights with_slopes() const {
     SpaceWeights w;
     for (int d = 0; d < D; ++d)
-      for (int k = 0; k < 3; ++k) w.N[d][k] = one[d].N[k], w.slope[d][k] = one[d].dN[k];
+      for (int k = 0; k < 3; ++k) w.N[d][k] = spline[d].N[k], w.slope[d][k] = spline[d].dN[k];
     return w;
   }
   double N(const Index<D>& o) const {
     double n = 1.0;
-    for (int d = 0; d < D; ++d) n *= one[d].N[o[d]];
+    for (int d = 0; d < D; ++d) n *= spline[d].N[o[d]];
     return n;
   }
   Vec<D> arms(const Index<D>& o) const {
@@ -66,9 +66,9 @@ struct PointStencil {
   Vec<D> gradient(const Index<D>& o) const {
     Vec<D> g;
     for (int d = 0; d < D; ++d) {
-      g[d] = one[d].dN[o[d]];
+      g[d] = spline[d].dN[o[d]];
       for (int e = 0; e < D; ++e)
-        if (e != d) g[d] *= one[e].N[o[e]];
+        if (e != d) g[d] *= spline[e].N[o[e]];
     }
     return g;
   }

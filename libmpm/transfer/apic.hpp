@@ -49,9 +49,9 @@ namespace detail {
 /// Nodal vectors of the nodes of a cell, the control points of its splines.
 template <int D>
 std::array<Vec<D>, power(3, D)> at_controls(const ActiveGrid<D>& grid, const std::vector<Vec<D>>& v, int c) {
-  std::array<Vec<D>, power(3, D)> u;
-  for (std::size_t k = 0; k < u.size(); ++k) u[k] = v[grid.cell_nodes[c][k]];
-  return u;
+  std::array<Vec<D>, power(3, D)> at_nodes;
+  for (std::size_t k = 0; k < at_nodes.size(); ++k) at_nodes[k] = v[grid.cell_nodes[c][k]];
+  return at_nodes;
 }
 inline CellQuads at_controls(const ActiveGrid<3>& grid, const std::vector<Vec<3>>& v, int c) {
   return of_cell(grid, v, c);

@@ -117,21 +117,21 @@ void weigh(const StencilFrame<Real, D>& frame, const std::array<f64x8, D>& x, We
     const StencilAxis<Real>& axis = frame.axis[d];
     const bool gimp = frame.kind == ShapeFunctions::gimp;
     const V X = axis.place(x[d]), at = min(max(gimp ? nearest(X) : floor(X), low), high);
-    const auto one =
+    const auto at_axis =
         gimp ? detail::gimp_weights(axis, at, X - at) : detail::b_spline_weights(axis, at, X - at);
     base = base * tile_span + (at + 1);
     if (!gimp && axis.walls) weights.middle_counts = false;
     weights.inertia[d] = V{};
     for (int k = 0; k < 3; ++k) {
-      weights.w[d][k] = one.w[k];
-      if (slopes) weights.dw[d][k] = axis.ih * one.dw[k];
+      weights.w[d][k] = at_axis.w[k];
+      if (slopes) weights.dw[d][k] = axis.ih * at_axis.dw[k];
       if (!arms) continue;
-      const V arm = axis.h * one.arm[k];
-      weights.wa[d][k] = one.w[k] * arm;
+      const V arm = axis.h * at_axis.arm[k];
+      weights.wa[d][k] = at_axis.w[k] * arm;
       weights.inertia[d] += weights.wa[d][k] * arm;
     }
   }
-  weights.base = to_whole(base);
+  weights.base = to_integers(base);
 }
 
 /// Cells of a tile in each direction that a point may have its pressure in.
@@ -146,7 +146,7 @@ std::array<int, f64x8_size> find_pressure_cells(const StencilFrame<Real, D>& fra
   const V low = Real(frame.kind == ShapeFunctions::gimp ? -2 : -1) - V{}, high = tile_cells - V{};
   for (int d = 0; d < D; ++d)
     cell = cell * tile_pressure_cells + (min(max(floor(frame.axis[d].place(x[d])), low), high) + 2);
-  return to_whole(cell);
+  return to_integers(cell);
 }
 
 }  // namespace tremie

@@ -59,9 +59,9 @@ inline void spread(const SpaceWeights& w, const Quad& value, const std::array<Qu
 }
 
 inline CellQuads of_cell(const ActiveGrid<3>& grid, const std::vector<Vec<3>>& v, int c) {
-  CellQuads u;
-  for (std::size_t k = 0; k < 27; ++k) u[k] = to_quad(v[grid.cell_nodes[c][k]]);
-  return u;
+  CellQuads at_nodes;
+  for (std::size_t k = 0; k < 27; ++k) at_nodes[k] = to_quad(v[grid.cell_nodes[c][k]]);
+  return at_nodes;
 }
 
 }  // namespace tremie::detail

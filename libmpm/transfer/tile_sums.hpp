@@ -251,15 +251,15 @@ struct WeightsOfLanes {
     for (int n = 0; n < N; ++n) row_of(a[n][D - 1], a_row[n]);
   }
   [[gnu::always_inline]] PointWeights<Real, D, N> operator[](int l) const {
-    PointWeights<Real, D, N> one;
-    one.w_row = w_row[l];
-    for (int n = 0; n < N; ++n) one.a_row[n] = a_row[n][l];
+    PointWeights<Real, D, N> lane;
+    lane.w_row = w_row[l];
+    for (int n = 0; n < N; ++n) lane.a_row[n] = a_row[n][l];
     for (int d = 0; d < D - 1; ++d)
       for (int k = 0; k < 3; ++k) {
-        one.w[d][k] = weights.w[d][k][l];
-        for (int n = 0; n < N; ++n) one.a[n][d][k] = a[n][d][k][l];
+        lane.w[d][k] = weights.w[d][k][l];
+        for (int n = 0; n < N; ++n) lane.a[n][d][k] = a[n][d][k][l];
       }
-    return one;
+    return lane;
   }
 };
 
@@ -277,13 +277,13 @@ template <class Real>
 template <class Real, int D, int N>
 [[gnu::noinline]] void gather(const NodeCube<Real, D>& v, const Weights<Real, D>& weights,
                               const OtherWeights<Real, N>& a, AtPoints<Real, D, N>& points) {
-  const detail::WeightsOfLanes<Real, D, N> one(weights, a);
+  const detail::WeightsOfLanes<Real, D, N> lanes(weights, a);
   GatheredRows<Real, D, N> of;
   StencilRows<Real, D> rows;
   for (int l = 0, loaded = -1; l < f64x8_size; ++l) {
     const int base = weights.base[static_cast<std::size_t>(l)];
     if (base != loaded) rows.load(&v[static_cast<std::size_t>(loaded = base)]);
-    gather_rows<D, N, Real>(rows, one[l], l, of);
+    gather_rows<D, N, Real>(rows, lanes[l], l, of);
   }
   const auto& w = weights.w[D - 1];
   SimdOf<Real> node[3][4];
@@ -315,11 +315,11 @@ template <class Real, int D, int N, bool outer>
   for (int l = 0; l < n;) {
     const int base = weights.base[static_cast<std::size_t>(l)];
     do {
-      AtPoint<Real, D, N> one;
-      one.value = value[l];
+      AtPoint<Real, D, N> point;
+      point.value = value[l];
       for (int s = 0; s < N; ++s)
-        for (int d = 0; d < D; ++d) one.along[s][d] = along[s][d][l];
-      scatter<D, N, outer, Real>(of[l], one, rows);
+        for (int d = 0; d < D; ++d) point.along[s][d] = along[s][d][l];
+      scatter<D, N, outer, Real>(of[l], point, rows);
     } while (++l < n && weights.base[static_cast<std::size_t>(l)] == base);
     add_rows<D, outer, Real>(rows, &sums[static_cast<std::size_t>(base)]);
   }

@@ -47,7 +47,7 @@ inline Body<ThreeD> collapsing_block() {
   body.mix.thixotropy = Thixotropy{1.3, 0.01};
   body.gravity[2] = -g;
   for (Axis& a : body.grid.axes) a = {.h = 0.02, .low = FaceKind::free_slip};
-  body.grid.axes[2].low = FaceKind::friction;
+  body.grid.axes[2].low = FaceKind::wall_law;
   bodies::fill_box<ThreeD>(body, Vec<3>::Zero(), Vec<3>(0.1, 0.1, 0.2), 2,
                            [](const auto& x) { return 2400.0 * g * (0.2 - x[2]); });
   body.points.lambda.assign(body.points.size(), 2.0);

@@ -93,7 +93,7 @@ std::array<double, 2> couette_errors(int cells) {
     const double v = r / mu * (0.5 * c * (1.0 / (r * r) - 1.0 / (b * b)) - tau_0 * std::log(b / r));
     error += (body.points.v[p] - v / r * Vec<3>(-x[1], x[0], 0.0)).squaredNorm(), norm += v * v;
   }
-  for (const PenaltyPoint<3>& at : body.bound) {
+  for (const PointTerm<3>& at : body.bound) {
     const auto source = static_cast<std::size_t>(at.source);
     const Vec<3> x = body.boundary[source].x - axis, force = wall_force<3>(at, body.grid.cell_nodes, body.v);
     if (source < inner) torque += x[0] * force[1] - x[1] * force[0];
@@ -124,11 +124,11 @@ double speed_on_a_slope(double degrees) {
   body.mix = concrete(5e4, 100.0);
   body.gravity = 9.81 * Vec<3>(0.8 * std::sin(theta), 0.6 * std::sin(theta), -std::cos(theta));
   for (int d = 0; d < 2; ++d) body.grid.axes[d].h = 0.025;
-  body.grid.axes[2] = {.h = 0.025, .low = FaceKind::friction};
+  body.grid.axes[2] = {.h = 0.025, .low = FaceKind::wall_law};
   fill_box(body, Vec<3>(Vec<3>::Zero()), Vec<3>(0.1, 0.1, 0.05), 2,
            [&](const Vec<3>& x) { return 2400.0 * 9.81 * std::cos(theta) * (0.05 - x[2]); });
   StepSettings settings = by_iteration(1e-5, 0.01);
-  settings.friction_coefficient = 0.4;
+  settings.wall_law = Coulomb{0.4};
   int unconverged = 0;
   for (int i = 0; i < 25; ++i) unconverged += !implicit_step(body, ExactBingham{}, settings).converged;
   EXPECT_EQ(unconverged, 0);

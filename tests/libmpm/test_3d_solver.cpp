@@ -4,6 +4,7 @@
 #include <omp.h>
 
 #include "apparatus/verification/references/bodies.hpp"
+#include "libmpm/implicit/by_iteration.hpp"
 #include "libmpm/implicit/pose.hpp"
 
 namespace tremie {

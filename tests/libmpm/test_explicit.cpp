@@ -132,7 +132,7 @@ TEST(ExplicitSingle, CollapsesAsInDoublePrecision) {
     for (const bool single : {false, true}) {
       const Scheme scheme{StressUpdate::first, false, kind, true, single};
       ExplicitSettings settings = settings_of(scheme, 1e-3);
-      settings.friction_coefficient = 0.3;
+      settings.wall_law = Coulomb{0.3};
       auto body = collapsing_block();
       EXPECT_FALSE(advance(body, settings, shape_of<3>(kind), 100).failed);
       ends[single ? 1 : 0] = body.points;
@@ -245,7 +245,7 @@ TYPED_TEST(ExplicitSpaces, StableUpToTheLimit) {
 // own.
 TEST(ExplicitWalls, HollowCellsHoldAsFullOnes) {
   omp_set_num_threads(1);
-  for (const FaceKind floor : {FaceKind::no_slip, FaceKind::friction, FaceKind::free_slip}) {
+  for (const FaceKind floor : {FaceKind::no_slip, FaceKind::wall_law, FaceKind::free_slip}) {
     Body<PlaneStrain> body;
     body.mix = concrete(54.0, 35.8);
     body.grid.axes[0] = {.h = 0.02};
@@ -255,8 +255,8 @@ TEST(ExplicitWalls, HollowCellsHoldAsFullOnes) {
     const detail::CellFills<PlaneStrain> fills(state);
     for (int i = 0; i < 5; ++i) {
       const bool inside = i > 0 && i < 4 && floor != FaceKind::free_slip;
-      EXPECT_NEAR(hold_of<PlaneStrain>(fills, body.grid.axes, {i, 0}), inside ? 2.0 : 1.0, 1e-12);
-      EXPECT_EQ(hold_of<PlaneStrain>(fills, body.grid.axes, {i, 1}), 1.0);
+      EXPECT_NEAR(represented_volume<PlaneStrain>(fills, body.grid.axes, {i, 0}), inside ? 2.0 : 1.0, 1e-12);
+      EXPECT_EQ(represented_volume<PlaneStrain>(fills, body.grid.axes, {i, 1}), 1.0);
     }
   }
 }

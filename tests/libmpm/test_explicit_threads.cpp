@@ -17,7 +17,7 @@ TEST(ExplicitThreads, SameBits) {
       of_singles{StressUpdate::first, false, ShapeFunctions::gimp, true, true};
   for (const Scheme& scheme : {of_splines, of_flip, of_singles}) {
     ExplicitSettings settings = settings_of(scheme, 1e-3);
-    settings.friction_coefficient = 0.3;
+    settings.wall_law = Coulomb{0.3};
     Points<3> first;
     for (const int threads : {1, 3}) {
       omp_set_num_threads(threads);

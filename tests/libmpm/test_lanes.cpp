@@ -43,7 +43,7 @@ TEST(LaneFunctions, ExpAndMeanDecay) {
 TEST(LaneFunctions, FloorAndNearest) {
   const f64x8 x = {-2.0, -1.5, -0.1, 0.0, 0.5, 1.0, 2.5, 1e6 + 0.5}, f = floor(x), n = nearest(x);
   const f32x8 y = to_real<float>(x), g = floor(y), m = nearest(y);
-  const auto whole = to_whole(g);
+  const auto whole = to_integers(g);
   for (std::size_t l = 0; l < f64x8_size; ++l) {
     EXPECT_EQ(f[l], std::floor(x[l]));
     EXPECT_EQ(n[l], std::nearbyint(x[l]));

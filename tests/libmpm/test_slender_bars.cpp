@@ -46,9 +46,7 @@ double drag_of_row(double h, int cells, double along, double Bi) {
   settings.admm.max_iterations = 5000;
   EXPECT_TRUE(implicit_step(body, ExactBingham{}, settings).converged);
   double force = 0.0;
-  const auto& bars = body.bar_drag;
-  for (std::size_t i = 0; i < bars.drag.size(); ++i)
-    force -= bar_force<D>(bars.points[i], bars.drag[i], body.grid.cell_nodes, body.v)[0];
+  for (const PointTerm<D>& bar : body.bar_drag) force -= bar_force<D>(bar, body.grid.cell_nodes, body.v)[0];
   return force / (mu * speed * (D == 3 ? high[D - 1] : 1.0));
 }
 

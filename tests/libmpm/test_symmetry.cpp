@@ -57,13 +57,13 @@ StepSettings settings_with(int direct_below) {
   settings.admm.max_iterations = 4000;
   settings.particle_shifting.on = true;
   settings.fixed_dt = 0.01;
-  settings.friction_coefficient = 0.3;
+  settings.wall_law = Coulomb{0.3};
   return settings;
 }
 
 // The factorised systems are the same but for the order of their sums. The body slumps at 0.3 m/s.
 TEST(Symmetry, QuarterIsTheWholeWithFactorisedSystems) {
-  for (const FaceKind floor : {FaceKind::no_slip, FaceKind::friction})
+  for (const FaceKind floor : {FaceKind::no_slip, FaceKind::wall_law})
     EXPECT_LE(difference_after(2, slumping(true, floor), slumping(false, floor), settings_with(1'000'000)),
               1e-9);
 }

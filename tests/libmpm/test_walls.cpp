@@ -19,7 +19,7 @@ ImplicitBody<PlaneStrain> block_on_a_slope(double theta) {
   body.mix = concrete(5e4, 100.0);
   body.gravity = {g * std::sin(theta), -g * std::cos(theta)};
   body.grid.axes[0] = {.h = 0.025};
-  body.grid.axes[1] = {.h = 0.025, .low = FaceKind::friction};
+  body.grid.axes[1] = {.h = 0.025, .low = FaceKind::wall_law};
   fill_box(body, {0.0, 0.0}, {0.2, 0.1}, 2,
            [&](const auto& x) { return 2400.0 * g * std::cos(theta) * (0.1 - x[1]); });
   return body;
@@ -31,7 +31,7 @@ double speed_on_a_slope(double theta, YieldMethod method) {
   auto body = block_on_a_slope(theta);
   StepSettings settings;
   settings.method = method;
-  settings.friction_coefficient = coefficient;
+  settings.wall_law = Coulomb{coefficient};
   settings.fixed_dt = 0.01;
   int unconverged = 0;
   for (int i = 0; i < 50; ++i) unconverged += !implicit_step(body, ExactBingham{}, settings).converged;
@@ -127,6 +127,39 @@ TEST(RigidWalls, HoldAPressureInALongStep) {
     EXPECT_GE(contact.stiffness, 99.9 * 2400.0 * 1e-4 / dt) << dt;
   }
   EXPECT_NEAR(contact_of_one(gap, p, 0.003).stiffness / (100.0 * 0.24 / 0.003), 1.0, 1e-12);
+}
+
+// Two terms at a node are one drag: towards the mean of the walls' velocities, by the drag of each.
+TEST(WallTerms, DragOfTermsAtOneNodeAddsUp) {
+  NodeTerm<2> moves, stands, yields;
+  moves.node = stands.node = 1;
+  moves.viscous = 2.0, moves.velocity = {3.0, 0.0};
+  stands.viscous = 4.0;
+  EXPECT_TRUE(viscous_drag<2>({yields}, 2).empty());
+  const auto drag = viscous_drag<2>({moves, stands, yields}, 2);
+  ASSERT_EQ(drag.size(), 2U);
+  EXPECT_EQ(drag[0].k, 0.0);
+  EXPECT_EQ(drag[1].k, 6.0);
+  EXPECT_EQ(drag[1].pull, Vec<2>(6.0, 0.0));
+}
+
+// At a given velocity the dual force of a term comes to the yield force along the slip, the split slip velocity to the
+// slip; below the yield force there is none, and the force is what would be needed.
+TEST(WallTerms, TheUpdateFindsTheYieldForce) {
+  NodeTerm<2> term;
+  term.normal_axis = 1, term.limit = 2.0, term.stiffness = 0.5, term.velocity = {1.0, 0.0};
+  std::vector<NodeTerm<2>> terms{term};
+  const std::vector<Vec<2>> v{Vec<2>(4.0, 7.0)};
+  bool settled = false;
+  for (int i = 0; i < 50; ++i) settled = update_admm<2>({}, v, 1.0, 1e-6, terms);
+  EXPECT_TRUE(settled);
+  EXPECT_NEAR(terms[0].force[0], 2.0, 1e-9);
+  EXPECT_EQ(terms[0].force[1], 0.0);
+  EXPECT_NEAR(terms[0].slip[0], 3.0, 1e-9);
+  terms = {term};
+  EXPECT_FALSE(update_admm<2>({}, v, 1.0, 1e-6, terms));
+  EXPECT_EQ(terms[0].force[0], 1.5);
+  EXPECT_EQ(terms[0].slip, Vec<2>(0.0, 0.0));
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ ImplicitBody<Geometry> block(double h) {
   body.mix.thixotropy = Thixotropy{};
   body.gravity[up] = -9.81;
   for (Axis& a : body.grid.axes) a = {.h = h, .low = D == 3 ? FaceKind::symmetry : FaceKind::free_slip};
-  body.grid.axes[up] = {.h = h, .low = FaceKind::friction};
+  body.grid.axes[up] = {.h = h, .low = FaceKind::wall_law};
   Vec<D> high = Vec<D>::Constant(0.08);
   high[up] = 0.12;
   fill_box<Geometry>(body, Vec<D>::Zero(), high, 3);
@@ -54,7 +54,7 @@ void implicit_steps(double h, int direct_below, bool bar, bool band = true) {
   settings.admm.max_iterations = 40;
   if (!band) settings.admm.most_band_operations = 0.0;
   settings.fixed_dt = 0.01;
-  settings.wall_gap = 0.3 * h, settings.friction_coefficient = 0.3;
+  settings.wall_gap = 0.3 * h, settings.wall_law = Coulomb{0.3};
   for (int i = 0; i < 4; ++i) implicit_step(body, ExactBingham{}, settings, wall_at<Geometry::dim>(0.085));
 }
 
@@ -62,7 +62,7 @@ void explicit_steps(bool single) {
   auto body = collapsing_block();
   ExplicitSettings settings =
       settings_of({StressUpdate::first, false, ShapeFunctions::gimp, true, single}, 1e-4);
-  settings.friction_coefficient = 0.3, settings.wall_gap = 0.002;
+  settings.wall_law = Coulomb{0.3}, settings.wall_gap = 0.002;
   auto state = start_explicit(body, ExactBingham{}, settings, shape_of<3>(ShapeFunctions::gimp));
   for (int i = 0; i < 20; ++i) explicit_step(body, law, settings, state, wall_at<3>(0.1));
 }

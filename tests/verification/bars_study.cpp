@@ -53,8 +53,7 @@ Drag by_law(int cells, double Bi) {
   const bool converged = implicit_step(body, ExactBingham{}, creeping()).converged;
   const double cpu_s = seconds() - start;
   double force = 0.0;
-  for (std::size_t i = 0; i < body.bar_drag.drag.size(); ++i)
-    force -= bar_force<2>(body.bar_drag.points[i], body.bar_drag.drag[i], body.grid.cell_nodes, body.v)[0];
+  for (const auto& bar : body.bar_drag) force -= bar_force<2>(bar, body.grid.cell_nodes, body.v)[0];
   return {force / (mu * speed), cpu_s, converged};
 }
 

@@ -13,12 +13,11 @@
 namespace tremie::cone {
 namespace {
 
-/// Whether the floor bears less than shears the body, which then slides: at most the friction of its weight
-/// over its area. A regularised law is sheared by any stress; flocculation only adds to the yield stress.
+/// Whether the floor bears less than shears the body, which then slides: at most what its law makes of its weight over its
+/// area. A regularised law is sheared by any stress; flocculation only adds to the yield stress.
 bool slides(const Scene& scene, double depth) {
-  if (scene.floor.contact != ContactKind::friction) return scene.floor.contact == ContactKind::free_slip;
   const double shears = is_exact(scene.model.law) ? scene.mix.tau_0 : 0.0;
-  return scene.floor.coefficient * scene.mix.density * gravity * depth <= shears;
+  return bears(scene.floor.contact, scene.mix.density * gravity * depth) <= shears;
 }
 
 bool in_a_section(const Scene& scene) { return scene.model.space == SpaceKind::axisymmetric; }

@@ -102,7 +102,7 @@ double cpu_of_a_point(const Scene& scene) {
   // In three dimensions a cell costs the same however many points it has.
   const auto [across, up] = scene.model.points_per_cell;
   if (scene.model.space != SpaceKind::axisymmetric) return 3.0e-5 / (across * across * up);
-  return scene.floor.contact == ContactKind::friction ? 1.2e-6 : 0.75e-6;
+  return face(scene.floor.contact) == FaceKind::wall_law ? 1.2e-6 : 0.75e-6;
 }
 
 }  // namespace

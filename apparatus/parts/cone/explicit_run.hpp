@@ -24,7 +24,7 @@ inline ExplicitSettings explicit_settings(const Scene& scene) {
   settings.single_precision = scene.model.precision == PrecisionKind::single_sums;
   settings.keep_affine = false;
   settings.keep_shear_rates = true;
-  settings.friction_coefficient = common.friction_coefficient;
+  settings.wall_law = common.wall_law;
   settings.wall_gap = common.wall_gap;
   settings.wall_speed = scene.lift_speed.value_or(0.0);
   return settings;

@@ -44,9 +44,7 @@ scene::Stage stage_of(const Scene& scene) {
 std::vector<std::string> uses(const Scene& scene) {
   const Model& model = scene.model;
   std::vector<std::string> lines{scene::flocculation_use(scene.mix)};
-  lines.push_back(scene.floor.contact == ContactKind::friction
-                      ? "floor friction: Coulomb's, at every floor node"
-                      : "floor friction: left out (floor.contact)");
+  lines.push_back(std::string("floor friction: ") + use(scene.floor.contact));
   lines.push_back(scene.lift_speed ? "cone: a moving rigid wall"
                                    : "cone: left out (test.lift_speed = \"instant\")");
   lines.push_back(model.space == SpaceKind::axisymmetric

@@ -30,7 +30,7 @@ Body<Geometry> filled_cone(const Scene& scene) {
                          .low = D == 2              ? FaceKind::free_slip
                                 : is_quarter(scene) ? plane
                                                     : FaceKind::open};
-  body.grid.axes[up] = {.h = h_up, .low = test_run::face_of(scene.floor.contact)};
+  body.grid.axes[up] = {.h = h_up, .low = face(scene.floor.contact)};
   const auto [n, n_up] = scene.model.points_per_cell;
   if constexpr (D == 2)
     fill(scene.cone, scene.mix, gravity, h / n, h_up / n_up, body.points);
@@ -69,7 +69,7 @@ inline StepSettings step_settings(const Scene& scene) {
   // In three dimensions the local error chooses the step once the collapse is over, from short ones on.
   if (scene.model.space != SpaceKind::axisymmetric)
     settings.dt_max = 0.03 * scene.model.step_scale, settings.time_error = 0.005;
-  settings.friction_coefficient = scene.floor.coefficient;
+  settings.wall_law = scene.floor.contact;
   settings.settle_on_floor = true;
   settings.wall_gap = 0.5 * scene.model.cell[0] / scene.model.points_per_cell[0];
   return settings;

@@ -170,7 +170,7 @@ std::array<double, power(2, Geometry::dim)> full_volumes(
 
 inline double sum_of_volumes(const auto& V) {
   double sum = 0.0;
-  for (double one : V) sum += one;
+  for (double V_k : V) sum += V_k;
   return sum;
 }
 

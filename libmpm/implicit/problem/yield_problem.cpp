@@ -31,14 +31,15 @@ Eigen::VectorXd residual_of_cells(const YieldProblem<Geometry>& problem,
   Eigen::VectorXd R(grid.n_nodes() * D);
   for (int i = 0; i < grid.n_nodes(); ++i)
     R.segment<D>(i * D) = problem.nodes.mass[i] / problem.dt * (problem.nodes.v[i] - v[i]);
-  for (std::size_t i = 0; i < problem.drag.size(); ++i)
-    R.segment<D>(static_cast<Eigen::Index>(i) * D) -= problem.drag[i] * v[i];
+  for (std::size_t i = 0; i < problem.drag.size(); ++i) {
+    auto of_node = R.segment<D>(static_cast<Eigen::Index>(i) * D);
+    of_node -= problem.drag[i].k * v[i];
+    of_node += problem.drag[i].pull;
+  }
   for (int c = 0; c < grid.n_cells(); ++c)
     for (int i = 0; i < n_local; ++i) R.segment<D>(grid.cell_nodes[c][i] * D) += local[c][i];
   add_contact_forces<D>(problem.contact, grid.cell_nodes, v, R);
-  add_penalty_forces<D>(problem.bound, grid.cell_nodes, v, R);
-  add_penalty_forces<D>(problem.surface, grid.cell_nodes, v, R);
-  add_penalty_forces<D>(problem.bars.points, grid.cell_nodes, v, R);
+  for (const auto& terms : problem.points()) add_penalty_forces<D>(terms, grid.cell_nodes, v, R);
   fold_mirrors<D>(grid, R);
   return R;
 }
@@ -78,11 +79,9 @@ void assemble_cells(const YieldProblem<Geometry>& problem, const CellTangents<Ge
     for (int d = 0; d < D; ++d)
       system.add_diagonal(i, d,
                           std::max(trace, problem.nodes.mass[i]) / problem.dt +
-                              (problem.drag.empty() ? 0.0 : problem.drag[i]));
+                              (problem.drag.empty() ? 0.0 : problem.drag[i].k));
   add_contact_stiffness<D>(problem.contact, system);
-  add_penalty_stiffness<D>(problem.bound, system);
-  add_penalty_stiffness<D>(problem.surface, system);
-  add_penalty_stiffness<D>(problem.bars.points, system);
+  for (const auto& terms : problem.points()) add_penalty_stiffness<D>(terms, system);
 }
 
 #define TREMIE_YIELD_PROBLEM_IN(Geometry)                                                                    \

@@ -4,7 +4,7 @@
 //
 //   1/2 (v - v*)' M (v - v*) / dt  +  sum_q V_q [mu/2 gamma_dot^2 + Phi(gamma_dot)]
 //     +  sum_c V_c [K dt/2 (div v)^2 - p div v]  +  sum_q V_q zeta/2 (div_q v - div v)^2
-//     +  contact  +  friction of walls  +  drag of side walls and bars,
+//     +  contact  +  wall terms (boundary/wall_term.hpp),
 //
 // Phi the potential of the yield law, gamma_dot = |q| at quadrature point q, one divergence a cell. A velocity
 // that alternates from node to node has none in any cell: nothing but the shear stress resists it, and in a
@@ -15,11 +15,12 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <span>
 #include <vector>
 
-#include "libmpm/boundary/boundary_points.hpp"
 #include "libmpm/boundary/contact.hpp"
-#include "libmpm/boundary/slender_bars.hpp"
+#include "libmpm/boundary/node_terms.hpp"
+#include "libmpm/boundary/point_terms.hpp"
 #include "libmpm/grid/active_grid.hpp"
 #include "libmpm/implicit/matrix_free/admm_state.hpp"
 #include "libmpm/implicit/problem/quadrature.hpp"
@@ -51,20 +52,22 @@ struct YieldProblem {
   double dt, mu;
   double K;                 ///< of the systems: the mix's, or as much as they can bear (admm_matrix_free.hpp)
   std::vector<char> fixed;  ///< a flag a component: prescribed by a wall
-  std::vector<ContactPoint<D>> contact;   ///< moving rigid walls
-  std::vector<FrictionNode<D>> friction;  ///< Coulomb friction on flat walls, yield drag of side walls
-  std::vector<PenaltyPoint<D>> bound;     ///< walls inside the grid
-  std::vector<PenaltyPoint<D>> surface;   ///< head of the moving free surface, in a section
-  std::vector<double> drag;               ///< viscous drag of side walls, a node each [kg/s]; empty: none
-  double zeta = 0.0;                      ///< [Pa s], plane strain alone
-  std::vector<double> p_offset = {};      ///< of the cells' pressures [Pa]; empty: those before the step
-  double K_share = 1.0;                   ///< K over the mix's
-  SlenderBars<D> bars = {};               ///< thinner than the grid resolves; ADMM alone
+  std::vector<ContactPoint<D>> contact;  ///< moving rigid walls
+  std::vector<NodeTerm<D>> wall_nodes;   ///< along flat walls, and between side walls
+  std::vector<NodeDrag<D>> drag;         ///< their viscous drag, a node each; empty: none
+  std::vector<PointTerm<D>> bound;       ///< walls inside the grid
+  std::vector<PointTerm<D>> surface;     ///< head of the moving free surface, in a section
+  std::vector<PointTerm<D>> bars;        ///< thinner than the grid resolves; ADMM alone
+  double zeta = 0.0;                     ///< [Pa s], plane strain alone
+  std::vector<double> p_offset = {};     ///< of the cells' pressures [Pa]; empty: those before the step
+  double K_share = 1.0;                  ///< K over the mix's
   double eta =
       mu;  ///< viscosity that scales stresses: mu, and the law's at the rate of the last step, within viscosity_scale_rates
 
   /// Pressure of cell c without divergence.
   double offset(int c) const { return p_offset.empty() ? quadrature.p[c] : p_offset[c]; }
+  /// All terms at points, in the order in which they are added up.
+  std::array<std::span<const PointTerm<D>>, 3> points() const { return {bound, surface, bars}; }
 };
 
 struct SolveReport {
@@ -124,9 +127,8 @@ void assemble_cells(const YieldProblem<Geometry>& problem, const CellTangents<Ge
 
 }  // namespace detail
 
-/// Nodal forces at velocities v of everything but yield and friction, which each solver adds in its own way
-/// (Newton: add_friction_forces(), ADMM: add_friction_forces_admm()): inertia, pressure, zeta, walls inside the grid, the
-/// head of the free surface, moving contact, bars, drag; plus the deviatoric forces of the stresses that
+/// Nodal forces at velocities v of everything but the yield forces, which each solver adds in its own way (Newton:
+/// add_node_forces_newton(), ADMM: add_node_forces_admm()): inertia, pressure, zeta, drag, moving contact, terms at points; plus the deviatoric forces of the stresses that
 /// `stress(c, k, q)` returns for the strain rate q. Each pushes along its axis where it is positive; zero in equilibrium.
 template <class Geometry, class Stress>
 Eigen::VectorXd residual(const YieldProblem<Geometry>& problem, const std::vector<Vec<Geometry::dim>>& v,

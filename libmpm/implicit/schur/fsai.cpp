@@ -86,13 +86,13 @@ void Fsai::build(const SchurMatrix& S) {
 
 /// y = F x along a column.
 void Fsai::multiply_column(CellColumns& layout, const Column& column) const {
-  using Batch16 = Eigen::Map<const Lanes<float>>;
+  using LanesAt = Eigen::Map<const Lanes<float>>;
   const int size = column.size(), begin = layout.begin_of(column);
   const float* const own = of_column(column);
   for (int i = 0; i < size; i += batch_size) {
     Lanes<float> sum = Lanes<float>::Zero();
     for (int k = 0; k < kept; ++k)
-      sum += Batch16(own + k * size + i) * Batch16(&layout.x[begin + layout.place_at(ahead[k]) + i]);
+      sum += LanesAt(own + k * size + i) * LanesAt(&layout.x[begin + layout.place_at(ahead[k]) + i]);
     detail::store_lanes(&layout.y[begin + i], sum, size - i);
   }
 }
@@ -100,14 +100,14 @@ void Fsai::multiply_column(CellColumns& layout, const Column& column) const {
 /// x = F' y along a column: what those behind have for it. Before a column's first cell entries of others are
 /// read, finite and times zero; what whole batches have beyond an end is not stored.
 void Fsai::transposed_column(CellColumns& layout, const Column& column) const {
-  using Batch16 = Eigen::Map<const Lanes<float>>;
+  using LanesAt = Eigen::Map<const Lanes<float>>;
   const int size = column.size(), begin = layout.begin_of(column);
   const float* const own = of_column(column);
   float* const x = &layout.x[begin];
   const float* const y = &layout.y[begin];
   for (int i = 0; i < size; i += batch_size) {
-    Lanes<float> sum = Batch16(own + i) * Batch16(y + i);
-    for (int d = 1; d <= CellColumns::reach; ++d) sum += Batch16(own + d * size + i - d) * Batch16(y + i - d);
+    Lanes<float> sum = LanesAt(own + i) * LanesAt(y + i);
+    for (int d = 1; d <= CellColumns::reach; ++d) sum += LanesAt(own + d * size + i - d) * LanesAt(y + i - d);
     detail::store_lanes(x + i, sum, size - i);
   }
   for (int k = 1 + CellColumns::reach; k < kept; ++k) {
@@ -118,7 +118,7 @@ void Fsai::transposed_column(CellColumns& layout, const Column& column) const {
     const float* const its = of_column(behind) + (k * behind.size() + low - behind.low);
     const float* const its_y = &layout.y[layout.begin_of(behind) + low - behind.low];
     for (int i = 0; i < end - low; i += batch_size)
-      detail::add_lanes(x + (low - column.low + i), Batch16(its + i) * Batch16(its_y + i), end - low - i);
+      detail::add_lanes(x + (low - column.low + i), LanesAt(its + i) * LanesAt(its_y + i), end - low - i);
   }
 }
 

@@ -28,8 +28,8 @@ void SchurMatrix::add(const ActiveGrid<3>& grid, int c, int other, float value) 
 /// ahead; `in_chunk`: where the column begins in its chunk. Beyond the ends of a column entries of others are
 /// read, finite and times zero, or for places that have no cell.
 void SchurMatrix::multiply_column(const Column& column, float* in_chunk) {
-  using Batch16 = Eigen::Map<const Lanes<float>>;
-  const auto at = [](const float* from) { return Batch16(from); };
+  using LanesAt = Eigen::Map<const Lanes<float>>;
+  const auto at = [](const float* from) { return LanesAt(from); };
   const auto add_to = [](float* y, const Lanes<float>& more) { Eigen::Map<Lanes<float>>{y} += more; };
   const int size = column.size();
   const float* const x = &layout.x[layout.begin_of(column)];

@@ -109,16 +109,16 @@ std::vector<Vec<Geometry::dim>> shifting_displacement(const YieldProblem<Geometr
   for (int i = 0; i < grid.n_nodes(); ++i)
     for (int d = 0; d < D; ++d) system.add_diagonal(i, d, problem.nodes.mass[i]);
   // Walls inside the grid let nothing through here either.
-  std::vector<PenaltyPoint<D>> bound = problem.bound;
-  for (PenaltyPoint<D>& b : bound) b.stiffness *= problem.dt;
+  std::vector<PointTerm<D>> bound = problem.bound;
+  for (PointTerm<D>& t : bound) t.penalty *= problem.dt;
   add_penalty_stiffness<D>(bound, system);
   system.fix(fixed);
-  std::vector<Vec<D>> u(grid.node_index.size(), Vec<D>::Zero());
-  if (!system.factorise()) return u;
+  std::vector<Vec<D>> displacement(grid.node_index.size(), Vec<D>::Zero());
+  if (!system.factorise()) return displacement;
   const Eigen::VectorXd solution = system.solve(R);
-  for (int i = 0; i < grid.n_nodes(); ++i) u[i] = solution.segment<D>(i * D);
-  fill_mirrors<D>(grid, u);
-  return u;
+  for (int i = 0; i < grid.n_nodes(); ++i) displacement[i] = solution.segment<D>(i * D);
+  fill_mirrors<D>(grid, displacement);
+  return displacement;
 }
 
 namespace detail {

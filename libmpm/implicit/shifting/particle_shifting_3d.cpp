@@ -15,7 +15,7 @@ struct EveningMatrix {
   const DivergenceOperator& rows;
   std::vector<Quadrature<ThreeD>::DivergenceRows> b;  ///< as many as there are different ones
   std::vector<double> mass;                           ///< of the nodes
-  std::vector<PenaltyPoint<3>> bound;
+  std::vector<PointTerm<3>> bound;
 
   void make_rows() {
     b.resize(rows.n_rows());
@@ -74,7 +74,7 @@ std::vector<Vec<3>> shifting_displacement_3d(const YieldProblem<ThreeD>& problem
   resize_for_overwrite(matrix.mass, problem.nodes.mass.size());
   for (std::size_t i = 0; i < matrix.mass.size(); ++i)
     matrix.mass[i] = std::max(trace, problem.nodes.mass[i]);
-  for (PenaltyPoint<3>& wall : matrix.bound) wall.stiffness *= problem.dt;
+  for (PointTerm<3>& wall : matrix.bound) wall.penalty *= problem.dt;
 
   std::vector<Mat<3, 3>> G(grid.node_index.size());
 #pragma omp parallel for schedule(static)
@@ -82,9 +82,9 @@ std::vector<Vec<3>> shifting_displacement_3d(const YieldProblem<ThreeD>& problem
   add_penalty_blocks(matrix.bound, grid.cell_nodes, G);
   fold_mirrors(grid, G);
   invert_blocks(fixed, G);
-  std::vector<Vec<3>> u(grid.node_index.size(), Vec<3>::Zero());
+  std::vector<Vec<3>> displacement(grid.node_index.size(), Vec<3>::Zero());
   if (!preconditioner.build(grid, system.batches, problem.quadrature, G, cells.stiffness, fill_stiffness))
-    return u;
+    return displacement;
   release(G);
   matrix.make_rows();
 
@@ -99,8 +99,8 @@ std::vector<Vec<3>> shifting_displacement_3d(const YieldProblem<ThreeD>& problem
   };
   conjugate_gradients([&](const Eigen::VectorXd& p, Eigen::VectorXd& Ap) { matrix.multiply(p, Ap); },
                       precondition, {.reduction = 1e-6, .most = 50}, R, x);
-  for (int i = 0; i < grid.n_nodes(); ++i) u[i] = x.segment<3>(3 * i);
-  return u;
+  for (int i = 0; i < grid.n_nodes(); ++i) displacement[i] = x.segment<3>(3 * i);
+  return displacement;
 }
 
 }  // namespace tremie

@@ -15,7 +15,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libmpm/boundary/friction.hpp"
 #include "libmpm/constitutive/yield_law.hpp"
 #include "libmpm/implicit/problem/yield_problem.hpp"
 
@@ -115,14 +114,15 @@ SolveReport solve_admm(YieldProblem<Geometry>& problem, const AdmmSettings& sett
     const double tolerated = form.tolerated_energy(residuals);
     const double left = form.solve(tolerated, v);
     const bool contact_changed = update_active<D>(problem.contact, problem.grid.cell_nodes, v);
-    const bool friction_settled =
-        update_friction_admm<D>(problem.friction, v, settings.over_relaxation, settings.tolerance);
-    const bool bars_settled = update_bars_admm<D>(problem.grid.cell_nodes, v, settings.over_relaxation,
-                                                  settings.tolerance, problem.bars);
+    const bool nodes_settled = update_admm<D>(problem.grid.cell_nodes, v, settings.over_relaxation,
+                                              settings.tolerance, problem.wall_nodes);
+    const bool bars_settled = update_admm<D>(problem.grid.cell_nodes, v, settings.over_relaxation,
+                                             settings.tolerance, problem.bars);
+    set_targets(problem.bars);
     residuals = form.update(v);
     if (contact_changed && !form.contact_changed()) return report;
     report.converged =
-        residuals.within(settings.tolerance) && friction_settled && bars_settled && !contact_changed &&
+        residuals.within(settings.tolerance) && nodes_settled && bars_settled && !contact_changed &&
         std::max(left, residuals.pressure) <= std::min(tolerated, form.tolerated_energy(residuals));
     if (report.converged) break;
   }

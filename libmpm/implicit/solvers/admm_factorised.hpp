@@ -69,12 +69,12 @@ struct FactorisedAdmm {
   double r = detail::penalty(problem, settings.penalty);
 
   bool prepare() {
-    set_bar_stiffness(problem.mu + r, problem.bars);
+    set_point_stiffness_admm(problem.mu + r, problem.bars);
     assemble(
         problem, [&](int, int) { return problem.mu + r; }, system);
-    if (!problem.friction.empty())
-      add_friction_stiffness_admm<D>(problem.grid, detail::volumes_around_nodes(problem), problem.mu + r,
-                                     problem.friction, system);
+    if (!problem.wall_nodes.empty())
+      add_node_stiffness_admm<D>(detail::volumes_around_nodes(problem), problem.mu + r, problem.wall_nodes,
+                                 system);
     system.fix(problem.fixed);
     return system.factorise();
   }
@@ -85,7 +85,7 @@ struct FactorisedAdmm {
       return problem.mu * q + state.stress[c][k] + r * (q - state.rate[c][k]);
     };
     Eigen::VectorXd R = residual(problem, v, stress);
-    add_friction_forces_admm<D>(problem.friction, v, R);
+    add_node_forces_admm<D>(problem.wall_nodes, v, R);
     mask(problem.fixed, R);
     const Eigen::VectorXd dv = system.solve(R);
     for (int i = 0; i < problem.grid.n_nodes(); ++i) v[i] += dv.segment<D>(i * D);

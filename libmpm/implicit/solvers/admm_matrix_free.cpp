@@ -166,10 +166,11 @@ void residual_3d(const YieldProblem<ThreeD>& problem, const std::vector<Vec<3>>&
 #pragma omp parallel for schedule(static)
   for (int i = 0; i < problem.grid.n_nodes(); ++i)
     R.segment<3>(3 * i) = problem.nodes.mass[i] / problem.dt * (problem.nodes.v[i] - v[i]) -
-                          (problem.drag.empty() ? 0.0 : problem.drag[i]) * v[i] + R.segment<3>(3 * i);
-  add_penalty_forces<3>(problem.bound, problem.grid.cell_nodes, v, R);
-  add_penalty_forces<3>(problem.bars.points, problem.grid.cell_nodes, v, R);
-  add_friction_forces_admm<3>(problem.friction, v, R);
+                          (problem.drag.empty() ? 0.0 : problem.drag[i].k) * v[i] + R.segment<3>(3 * i);
+  for (std::size_t i = 0; i < problem.drag.size(); ++i)
+    R.segment<3>(3 * static_cast<Eigen::Index>(i)) += problem.drag[i].pull;
+  for (const auto& terms : problem.points()) add_penalty_forces<3>(terms, problem.grid.cell_nodes, v, R);
+  add_node_forces_admm<3>(problem.wall_nodes, v, R);
   fold_mirrors<3>(problem.grid, R);
   mask(problem.fixed, R);
 }
@@ -178,7 +179,7 @@ void residual_3d(const YieldProblem<ThreeD>& problem, const std::vector<Vec<3>>&
 
 bool MatrixFreeAdmm::prepare() {
   detail::lower_modulus(settings.most_bulk_stiffness, eta_system, problem);
-  set_bar_stiffness(eta_system, problem.bars);
+  set_point_stiffness_admm(eta_system, problem.bars);
   system.set_up(problem, settings.most_band_operations);
   return system.prepare(problem, eta_system);
 }

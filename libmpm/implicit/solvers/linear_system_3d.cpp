@@ -4,10 +4,10 @@
 
 namespace tremie {
 
-void add_penalty_blocks(const std::vector<PenaltyPoint<3>>& bound,
+void add_penalty_blocks(std::span<const PointTerm<3>> terms,
                         const std::vector<std::array<int, 27>>& cell_nodes, std::vector<Mat<3, 3>>& blocks) {
-  for (const PenaltyPoint<3>& b : bound)
-    for (int k = 0; k < 27; ++k) blocks[cell_nodes[b.cell][k]] += b.N[k] * b.N[k] * b.stiffness;
+  for (const PointTerm<3>& t : terms)
+    for (int k = 0; k < 27; ++k) blocks[cell_nodes[t.cell][k]] += t.N[k] * t.N[k] * t.penalty;
 }
 
 void invert_blocks(const std::vector<char>& fixed, std::vector<Mat<3, 3>>& G) {
@@ -47,14 +47,14 @@ bool MatrixFreeSystem::prepare(YieldProblem<ThreeD>& problem, double eta_system)
 #pragma omp parallel for schedule(static)
   for (int i = 0; i < n; ++i)
     diagonal.segment<3>(3 * i).setConstant(std::max(trace, problem.nodes.mass[i]) / problem.dt +
-                                           (problem.drag.empty() ? 0.0 : problem.drag[i]));
-  if (!problem.friction.empty()) {
+                                           (problem.drag.empty() ? 0.0 : problem.drag[i].k));
+  if (!problem.wall_nodes.empty()) {
     std::vector<double> V(n, 0.0);
     for (int c = 0; c < problem.grid.n_cells(); ++c)
       for (int i : problem.grid.cell_nodes[c]) V[i] += problem.quadrature.V_cell[c] / 27;
     fold_mirrors<3>(problem.grid, V);
     Diagonal to{diagonal};
-    add_friction_stiffness_admm<3>(problem.grid, V, eta_system, problem.friction, to);
+    add_node_stiffness_admm<3>(V, eta_system, problem.wall_nodes, to);
   }
   free_.resize(4 * n), free_diagonal_.resize(4 * n);
 #pragma omp parallel for schedule(static)
@@ -114,8 +114,7 @@ std::vector<Mat<3, 3>> MatrixFreeSystem::node_blocks(const YieldProblem<ThreeD>&
     for (int k = 0; k < 27; ++k)
       G[grid.cell_nodes[c.cell][k]] += c.stiffness * N[k] * N[k] * c.normal * c.normal.transpose();
   }
-  add_penalty_blocks(problem.bound, grid.cell_nodes, G);
-  add_penalty_blocks(problem.bars.points, grid.cell_nodes, G);
+  for (const auto& terms : problem.points()) add_penalty_blocks(terms, grid.cell_nodes, G);
   fold_mirrors(grid, G);
   invert_blocks(problem.fixed, G);
   return G;
@@ -155,9 +154,8 @@ void MatrixFreeSystem::multiply(const YieldProblem<ThreeD>& problem, const Eigen
         free_diagonal_.segment<4>(4 * i).cwiseProduct(x.segment<4>(4 * i)) +
         free_.segment<4>(4 * i).cwiseProduct(batches.reduction().sum_at<float, 4>(i, forces));
   });
-  if (!problem.bound.empty() || !problem.bars.points.empty()) {
-    add_penalty_products(problem.bound, problem.grid.cell_nodes, x, out);
-    add_penalty_products(problem.bars.points, problem.grid.cell_nodes, x, out);
+  if (!problem.bound.empty() || !problem.bars.empty()) {
+    for (const auto& terms : problem.points()) add_penalty_products(terms, problem.grid.cell_nodes, x, out);
     for_each_block(out.size(), [&](Eigen::Index i, Eigen::Index size) {
       out.segment(i, size) = out.segment(i, size).cwiseProduct(free_.segment(i, size));
     });

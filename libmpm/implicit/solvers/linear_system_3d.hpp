@@ -4,7 +4,6 @@
 
 #include <vector>
 
-#include "libmpm/boundary/friction.hpp"
 #include "libmpm/implicit/problem/yield_problem.hpp"
 #include "libmpm/implicit/schur/preconditioner.hpp"
 #include "libmpm/linear/conjugate_gradients.hpp"
@@ -13,17 +12,17 @@ namespace tremie {
 
 /// Adds what walls inside the grid do to the field x.
 template <class Vector>
-void add_penalty_products(const std::vector<PenaltyPoint<3>>& bound,
+void add_penalty_products(std::span<const PointTerm<3>> terms,
                           const std::vector<std::array<int, 27>>& cell_nodes, const Vector& x, Vector& out) {
   using Scalar = typename Vector::Scalar;
   constexpr int stride = node_stride<Scalar>;
-  for (const PenaltyPoint<3>& b : bound) {
+  for (const PointTerm<3>& t : terms) {
     Vec<3> u = Vec<3>::Zero();
     for (int k = 0; k < 27; ++k)
-      u += b.N[k] * x.template segment<3>(stride * cell_nodes[b.cell][k]).template cast<double>();
-    u = b.stiffness * u;
+      u += t.N[k] * x.template segment<3>(stride * cell_nodes[t.cell][k]).template cast<double>();
+    u = t.penalty * u;
     for (int k = 0; k < 27; ++k)
-      out.template segment<3>(stride * cell_nodes[b.cell][k]) += (b.N[k] * u).template cast<Scalar>();
+      out.template segment<3>(stride * cell_nodes[t.cell][k]) += (t.N[k] * u).template cast<Scalar>();
   }
 }
 
@@ -35,10 +34,10 @@ void add_at_contact(const ContactPoint<3>& c, const std::array<int, 27>& nodes, 
   force << (f * c.normal).cast<Scalar>(), Scalar(0);
   for (std::size_t i = 0, k = 0; i < 3; ++i)
     for (std::size_t j = 0; j < 3; ++j) {
-      const Four line = static_cast<Scalar>(c.one[0][i] * c.one[1][j]) * force;
+      const Four line = static_cast<Scalar>(c.along[0][i] * c.along[1][j]) * force;
       for (std::size_t l = 0; l < 3; ++l, ++k)
         Eigen::Map<Four>(to + 4 * static_cast<std::ptrdiff_t>(nodes[k])) +=
-            static_cast<Scalar>(c.one[2][l]) * line;
+            static_cast<Scalar>(c.along[2][l]) * line;
     }
 }
 
@@ -49,9 +48,9 @@ inline double normal_velocity(const ContactPoint<3>& c, const std::array<int, 27
     for (std::size_t j = 0; j < 3; ++j) {
       Eigen::Vector4f line = Eigen::Vector4f::Zero();
       for (std::size_t l = 0; l < 3; ++l, ++k)
-        line += static_cast<float>(c.one[2][l]) *
+        line += static_cast<float>(c.along[2][l]) *
                 Eigen::Map<const Eigen::Vector4f>(x + 4 * static_cast<std::ptrdiff_t>(nodes[k]));
-      u += static_cast<float>(c.one[0][i] * c.one[1][j]) * line;
+      u += static_cast<float>(c.along[0][i] * c.along[1][j]) * line;
     }
   return c.normal.dot(u.head<3>().cast<double>());
 }
@@ -62,12 +61,12 @@ template <class Use>
 void for_each_contact(const std::vector<ContactPoint<3>>& contact, const NodeReduction& reduction, int chunk,
                       Use use) {
   auto c = std::lower_bound(contact.begin(), contact.end(), reduction.first_cell(chunk),
-                            [](const ContactPoint<3>& one, int cell) { return one.cell < cell; });
+                            [](const ContactPoint<3>& point, int cell) { return point.cell < cell; });
   for (; c != contact.end() && c->cell < reduction.last_cell(chunk); ++c)
     if (c->active) use(*c);
 }
 
-void add_penalty_blocks(const std::vector<PenaltyPoint<3>>& bound,
+void add_penalty_blocks(std::span<const PointTerm<3>> terms,
                         const std::vector<std::array<int, 27>>& cell_nodes, std::vector<Mat<3, 3>>& blocks);
 
 /// Inverts node blocks in place; what a wall prescribes becomes zero.
@@ -149,7 +148,7 @@ class MatrixFreeSystem {
   long long products = 0;
 
  private:
-  /// What add_friction_stiffness_admm() adds to.
+  /// What add_node_stiffness_admm() adds to.
   struct Diagonal {
     Eigen::VectorXd& value;
     void add_diagonal(int node, int d, double x) { value[3 * node + d] += x; }

@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libmpm/boundary/friction.hpp"
 #include "libmpm/constitutive/yield_law.hpp"
 #include "libmpm/implicit/problem/yield_problem.hpp"
 
@@ -42,11 +41,14 @@ double energy(const YieldProblem<Geometry>& problem, const YieldLaw& law,
                           potential(law, gamma_dot, quad.tau_y[c][k]) + 0.5 * problem.zeta * excess * excess);
     }
   }
-  for (std::size_t i = 0; i < problem.drag.size(); ++i) sum += 0.5 * problem.drag[i] * v[i].squaredNorm();
+  for (std::size_t i = 0; i < problem.drag.size(); ++i) {
+    sum += 0.5 * problem.drag[i].k * v[i].squaredNorm();
+    sum -= problem.drag[i].pull.dot(v[i]);
+  }
   return sum + penalty_energy<Geometry::dim>(problem.bound, problem.grid.cell_nodes, v) +
          penalty_energy<Geometry::dim>(problem.surface, problem.grid.cell_nodes, v) +
          contact_energy<Geometry::dim>(problem.contact, problem.grid.cell_nodes, v) +
-         friction_energy<Geometry::dim>(problem.friction, v);
+         node_energy<Geometry::dim>(problem.wall_nodes, v);
 }
 
 /// The dual's share of the tangent, kept inside |s| <= f so that the tangent stays positive.
@@ -92,7 +94,7 @@ void project_dual_stress(YieldProblem<Geometry>& problem, const YieldLaw& law,
       const double gamma_dot = is_viscous(law) ? strain_rate(problem, v, c, k).norm() : 0.0;
       inside(admm_state.stress[c][k], dual_limit(law, gamma_dot, problem.quadrature.tau_y[c][k]));
     }
-  for (auto& f : problem.friction) inside(f.force, f.limit);
+  for (NodeTerm<Geometry::dim>& t : problem.wall_nodes) project_force(t);
 }
 
 }  // namespace detail
@@ -113,7 +115,7 @@ SolveReport solve_newton(YieldProblem<Geometry>& problem, const YieldLaw& law, c
   for (; report.iterations < settings.max_iterations; ++report.iterations) {
     update_active<D>(problem.contact, problem.grid.cell_nodes, v);
     Eigen::VectorXd R = residual(problem, v, stress);
-    add_friction_forces<D>(problem.friction, v, R);
+    add_node_forces_newton<D>(problem.wall_nodes, v, R);
     mask(problem.fixed, R);
     report.converged = R.lpNorm<1>() <= settings.tolerance * force_scale;
     if (report.converged) break;
@@ -126,15 +128,15 @@ SolveReport solve_newton(YieldProblem<Geometry>& problem, const YieldLaw& law, c
               admm_state.stress[c][k]);
         },
         system);
-    for (const FrictionNode<D>& f : problem.friction)
-      system.add_node_block(f.node, friction_tangent<D>(f, sliding(f, v)));
+    for (const NodeTerm<D>& t : problem.wall_nodes)
+      system.add_node_block(t.node, node_tangent<D>(t, slip_velocity(t, v)));
     system.fix(problem.fixed);
     if (!system.factorise()) return report;
     const Eigen::VectorXd dv = system.solve(R);
     for (std::size_t i = 0; i < v.size(); ++i) step[i] = dv.segment<D>(static_cast<Eigen::Index>(i) * D);
     fill_mirrors<D>(problem.grid, step);
     detail::step_dual_stress(problem, law, v, step, admm_state);
-    update_friction_newton<D>(problem.friction, v, dv);
+    update_newton<D>(v, dv, problem.wall_nodes);
 
     const double slope = R.dot(dv), start = detail::energy(problem, law, v);
     for (double t = 1.0; t > 1e-6; t *= 0.5) {

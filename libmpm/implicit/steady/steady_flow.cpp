@@ -71,7 +71,7 @@ SolveReport solve_steady_flow(SteadyBody& body, const YieldLaw& law, double rate
   body.system.set_pattern(body.grid);
   FactorisedAdmm<Cylindrical> form{*problem, law, settings, body.system, body.admm_state};
   const SolveReport report = solve_admm(*problem, settings, form, body.v);
-  detail::keep_forces(*problem, law, body);
+  detail::keep_forces<detail::ByFactors>(*problem, law, body);
   return report;
 }
 

@@ -1,0 +1,49 @@
+#pragma once
+
+// The registry of wall laws: one line a law. What a law states is in wall_law_interface.hpp. Implicit and explicit steps
+// and the scene's keys go through this variant and name no law.
+
+#include <cstddef>
+#include <variant>
+
+#include "libmpm/boundary/coulomb.hpp"
+#include "libmpm/boundary/free_slip.hpp"
+#include "libmpm/boundary/no_slip.hpp"
+
+namespace tremie {
+
+using WallLaw = std::variant<NoSlip, Coulomb, FreeSlip>;
+
+/// Calls visit(L{}) for every law L of the registry.
+template <std::size_t i = 0, class Visit>
+void for_each_wall_law(Visit visit) {
+  if constexpr (i < std::variant_size_v<WallLaw>) {
+    visit(std::variant_alternative_t<i, WallLaw>{});
+    for_each_wall_law<i + 1>(visit);
+  }
+}
+
+inline FaceKind face(const WallLaw& law) {
+  return std::visit([](const auto& l) { return l.face; }, law);
+}
+inline double yield_force(const WallLaw& law, double pressing) {
+  return std::visit(
+      [&](const auto& l) {
+        if constexpr (requires { l.yield_force(pressing); })
+          return l.yield_force(pressing);
+        else
+          return 0.0;
+      },
+      law);
+}
+inline bool follows_pressure(const WallLaw& law) {
+  return std::visit([](const auto& l) { return l.follows_pressure; }, law);
+}
+inline double bears(const WallLaw& law, double pressure) {
+  return std::visit([&](const auto& l) { return l.bears(pressure); }, law);
+}
+inline const char* use(const WallLaw& law) {
+  return std::visit([](const auto& l) { return l.use; }, law);
+}
+
+}  // namespace tremie
