@@ -1,39 +1,15 @@
 #include "apparatus/common/law_keys.hpp"
 
-#include <algorithm>
 #include <optional>
-#include <string>
-#include <string_view>
 
 namespace tremie::scene {
 namespace {
 
 constexpr std::string_view plastic_viscosity = "mix.plastic_viscosity";
 
-/// "model" and "regularisation" of "model.regularisation".
-std::string_view section_of(std::string_view key) { return key.substr(0, key.find('.')); }
-std::string name_of(std::string_view key) { return std::string(key.substr(key.find('.') + 1)); }
-
-template <class L>
-Key scene_key(const LawKey<L>& of_law) {
-  Key key{.name = name_of(of_law.name)};
-  key.kind = of_law.unit.empty() ? Kind::number : Kind::quantity;
-  if (!of_law.unit.empty()) key.dimension = dimension_of(of_law.unit);
-  key.range = {.low = of_law.low, .high = of_law.high, .low_open = of_law.low_open};
-  key.fallback = of_law.fallback;
-  key.example = of_law.example;
-  key.help = of_law.help;
-  return key;
-}
-
 Key* find(std::vector<Key>& keys, const std::string& name) {
   const auto found = std::find_if(keys.begin(), keys.end(), [&](const Key& k) { return k.name == name; });
   return found == keys.end() ? nullptr : &*found;
-}
-
-template <class T>
-void add_once(std::vector<T>& list, const T& item) {
-  if (std::find(list.begin(), list.end(), item) == list.end()) list.push_back(item);
 }
 
 std::vector<std::string> law_words() {

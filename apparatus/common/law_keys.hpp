@@ -4,6 +4,9 @@
 // [model] beside model.yield, and those of [mix] that take the place of plastic_viscosity. Those of the wall laws
 // (libmpm/boundary/wall_law_interface.hpp): parameters of [floor] beside floor.contact.
 
+#include <algorithm>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "apparatus/scene/keys.hpp"
@@ -12,6 +15,28 @@
 #include "libmpm/constitutive/yield_law.hpp"
 
 namespace tremie::scene {
+
+/// "mix.thixotropy" and "exponent" of "mix.thixotropy.exponent".
+inline std::string_view section_of(std::string_view key) { return key.substr(0, key.rfind('.')); }
+inline std::string name_of(std::string_view key) { return std::string(key.substr(key.rfind('.') + 1)); }
+
+/// The key of a parameter of a law or of kinetics.
+template <class L>
+Key scene_key(const LawKey<L>& of_law) {
+  Key key{.name = name_of(of_law.name)};
+  key.kind = of_law.unit.empty() ? Kind::number : Kind::quantity;
+  if (!of_law.unit.empty()) key.dimension = dimension_of(of_law.unit);
+  key.range = {.low = of_law.low, .high = of_law.high, .low_open = of_law.low_open};
+  key.fallback = of_law.fallback;
+  key.example = of_law.example;
+  key.help = of_law.help;
+  return key;
+}
+
+template <class T>
+void add_once(std::vector<T>& list, const T& item) {
+  if (std::find(list.begin(), list.end(), item) == list.end()) list.push_back(item);
+}
 
 /// model.yield and the laws' parameters in [model].
 std::vector<Key> law_model_keys();

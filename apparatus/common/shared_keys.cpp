@@ -7,13 +7,12 @@
 #include <cmath>
 
 #include "apparatus/common/law_keys.hpp"
+#include "apparatus/common/thixotropy_keys.hpp"
 #include "libmpm/constitutive/equation_of_state.hpp"
 
 namespace tremie::scene {
 namespace {
 
-const Words<Kinetics> kinetics_words{
-    {"gated", Kinetics::gated}, {"roussel", Kinetics::roussel}, {"power", Kinetics::power}};
 const Words<SpaceKind> space_words{{"axisymmetric", SpaceKind::axisymmetric},
                                    {"quarter", SpaceKind::quarter},
                                    {"full", SpaceKind::full},
@@ -87,53 +86,6 @@ Section material_section(const std::string& bulk_modulus) {
   return section;
 }
 
-Section thixotropy_section() {
-  return {
-      .name = "mix.thixotropy",
-      .help =
-          "Thixotropy; these are Mix A's numbers. Leave the table out, and no flocculation is stored or "
-          "computed.",
-      .keys =
-          {
-              {.name = "structuration_rate",
-               .dimension = Dimension::structuration,
-               .range = not_negative,
-               .required = true,
-               .example = "1.3 Pa/s",
-               .help = "A_thix, at rest"},
-              {.name = "destructuration",
-               .kind = Kind::number,
-               .range = not_negative,
-               .fallback = "0.01",
-               .help = "alpha; 0.01 is the paper's, measured spreads after a rest want 1 or more"},
-              {.name = "kinetics", .kind = Kind::choice, .words = names(kinetics_words), .fallback = "gated"},
-              {.name = "critical_shear_rate",
-               .dimension = Dimension::rate,
-               .range = positive,
-               .fallback = "0.1 1/s",
-               .only_with = Condition{"kinetics", {"gated", "power"}},
-               .help = "build-up below it, breakdown above; power: no gate where it is left out"},
-              {.name = "exponent",
-               .kind = Kind::number,
-               .range = between(1.0, 20.0),
-               .required = true,
-               .only_with = Condition{"kinetics", {"power"}},
-               .example = "3.5",
-               .help = "n: breakdown by alpha lambda^n gamma_dot"},
-              {.name = "saturation",
-               .kind = Kind::number,
-               .range = positive,
-               .only_with = Condition{"kinetics", {"power"}},
-               .help = "lambda_max; none where it is left out"},
-              {.name = "initial_flocculation",
-               .kind = Kind::number,
-               .range = not_negative,
-               .fallback = "0",
-               .help = "lambda before the rest"},
-          },
-      .optional = true};
-}
-
 /// K by youngs_modulus and poisson_ratio, or as given; the later layer wins.
 void settle_bulk_modulus(Values& values) {
   const char *K = "mix.bulk_modulus", *E = "mix.youngs_modulus", *nu = "mix.poisson_ratio";
@@ -162,15 +114,7 @@ Schema mix_sections(const std::string& bulk_modulus) {
 void settle_mix(Values& values) {
   settle_bulk_modulus(values);
   settle_law(values);
-  const char* gate = "mix.thixotropy.critical_shear_rate";
-  if (values.has(gate) && !values.given(gate) && values.word("mix.thixotropy.kinetics") == "power")
-    values.drop(gate);
-  if (values.has_section("mix.thixotropy") && values.number("mix.yield_stress") == 0.0) {
-    values.fail("mix.yield_stress",
-                "is 0 with [mix.thixotropy]: the flocculation state grows by A_thix/tau_0 and has no value; "
-                "give a yield "
-                "stress greater than 0 Pa, or leave [mix.thixotropy] out (thixotropy = false)");
-  }
+  settle_thixotropy(values);
 }
 
 Mix read_mix(const Values& values) {
@@ -180,19 +124,7 @@ Mix read_mix(const Values& values) {
   mix.mu = values.has("mix.plastic_viscosity") ? values.number("mix.plastic_viscosity")
                                                : newtonian(read_law(values));
   mix.K = values.number("mix.bulk_modulus");
-  if (!values.has_section("mix.thixotropy")) return mix;
-  Thixotropy t;
-  t.A_thix = values.number("mix.thixotropy.structuration_rate");
-  t.alpha = values.number("mix.thixotropy.destructuration");
-  t.kinetics = values.choice("mix.thixotropy.kinetics", kinetics_words);
-  if (values.has("mix.thixotropy.critical_shear_rate"))
-    t.gamma_c = values.number("mix.thixotropy.critical_shear_rate");
-  else if (t.kinetics == Kinetics::power)
-    t.gamma_c = 0.0;
-  if (values.has("mix.thixotropy.exponent")) t.exponent = values.number("mix.thixotropy.exponent");
-  if (values.has("mix.thixotropy.saturation")) t.saturation = values.number("mix.thixotropy.saturation");
-  t.initial_flocculation = values.number("mix.thixotropy.initial_flocculation");
-  mix.thixotropy = t;
+  mix.thixotropy = read_thixotropy(values);
   return mix;
 }
 

@@ -77,8 +77,8 @@ std::optional<double> couette_reference(const Scene& scene, const Instrument& in
   flow.thixotropy = *scene.mix.thixotropy;
   double& lambda = flow.thixotropy.initial_flocculation;
   lambda = flocculation_after_rest(lambda, flow.thixotropy, scene.mix.tau_0, scene.rest);
-  if (flow.thixotropy.alpha == 0.0) {  // nothing breaks it down: the same everywhere
-    if (!has_gate(flow.thixotropy))
+  if (!breaks_down(flow.thixotropy.kinetics)) {  // nothing breaks it down: the same everywhere
+    if (!gate(flow.thixotropy.kinetics))
       lambda = flocculation_after_rest(lambda, flow.thixotropy, scene.mix.tau_0, scene.duration);
     bingham.tau_0 = static_yield_stress(lambda, bingham.tau_0);
     return reiner_riwlin(bingham, omega, instrument).torque;

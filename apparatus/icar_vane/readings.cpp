@@ -34,7 +34,7 @@ VaneInput vane_input(const Scene& scene) {
   const Thixotropy& t = *scene.mix.thixotropy;
   in.flocculation = flocculation_after_rest(t.initial_flocculation, t, scene.mix.tau_0, scene.rest);
   in.static_yield_stress = (1.0 + *in.flocculation) * scene.mix.tau_0;
-  in.alpha = t.alpha;
+  in.alpha = destructuration(t.kinetics);
   return in;
 }
 

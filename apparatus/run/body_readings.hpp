@@ -21,6 +21,7 @@ void rest(Body<Geometry>& body, double duration) {
   body.points.lambda.assign(body.points.size(),
                             flocculation_after_rest(t.initial_flocculation, t, body.mix.tau_0, duration));
   body.points.gamma_dot.assign(body.points.size(), 0.0);
+  body.points.lambda_parts.assign(lambda_parts(t.kinetics), std::vector<double>(body.points.size()));
 }
 
 template <int D>

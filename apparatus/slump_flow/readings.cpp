@@ -104,11 +104,12 @@ std::vector<std::string> remarks_on(const cone::Scene& scene, const std::optiona
         "Not compared with a measurement. With a rheometer's values the spreads of three measured concretes "
         "were computed 5 to 12 % short fresh, and some 40 % after 240 s of rest; values estimated from a "
         "spread leave that difference out.");
-  if (scene.rest > 0.0 && scene.mix.thixotropy && !(measured && measured->on.empty()))
+  const auto alpha = scene.mix.thixotropy ? destructuration(scene.mix.thixotropy->kinetics) : std::nullopt;
+  if (scene.rest > 0.0 && alpha && !(measured && measured->on.empty()))
     remarks.push_back(fmt::format(
         "The destructuration α (here {:.3g}) decides how much of what built up at rest is left after the "
         "lift. It is seldom measured: see what 0.01 and 1 give.",
-        scene.mix.thixotropy->alpha));
+        *alpha));
   if (near_500(r))
     remarks.push_back(
         "The spread ends so near to 500 mm that t500, or whether there is one, hangs on its last "

@@ -24,7 +24,7 @@ const char* const no_site = "none: no mix, speed, rest";
 /// Mix A after 240 s of rest at 0.25 rev/s, the gated kinetics.
 CouetteDecay mix_a_decay(double alpha) {
   const double tau_0 = 54.0, A_thix = 1.3, rest = 240.0;
-  CouetteFlow flow{{tau_0, 35.8}, {A_thix, alpha, Kinetics::gated, 0.1, A_thix * rest / tau_0}, {}, {}};
+  CouetteFlow flow{{tau_0, 35.8}, {A_thix, GatedKinetics{alpha}, A_thix * rest / tau_0}, {}, {}};
   flow.omega = 0.5 * std::numbers::pi;
   return thixotropic_couette(flow, std::vector<double>{0.0, site_time});
 }

@@ -41,24 +41,36 @@
 //
 // and may state simd_secant(gamma_dot, tau_y) for points side by side, where one by one is too slow for it.
 
+#include <cstddef>
 #include <limits>
 #include <string_view>
+#include <variant>
 
 namespace tremie {
 
 /// A parameter of the law L as a scene gives it: "model.…" beside model.yield, "mix.…" in place of
-/// mix.plastic_viscosity.
+/// mix.plastic_viscosity, "mix.thixotropy.…" of kinetics (kinetics_interface.hpp).
 template <class L>
 struct LawKey {
-  std::string_view name;      ///< dotted, "model.regularisation"
-  double L::*member;          ///< SI
-  std::string_view unit;      ///< SI unit as the scene writes it; empty: a plain number
-  std::string_view fallback;  ///< as the scene would write it; empty: must be given
-  std::string_view example;
-  std::string_view help;
+  std::string_view name = {};      ///< dotted, "model.regularisation"
+  double L::*member = nullptr;     ///< SI
+  std::string_view unit = {};      ///< SI unit as the scene writes it; empty: a plain number
+  std::string_view fallback = {};  ///< as the scene would write it; empty: must be given, if not optional
+  std::string_view example = {};
+  std::string_view help = {};
   double low = 0.0, high = std::numeric_limits<double>::infinity();
   bool low_open = true;
+  bool optional = false;  ///< left out, it is what the law's struct has
 };
+
+/// Calls visit(T{}) for every type T of a registry, which is a variant.
+template <class Registry, std::size_t i = 0, class Visit>
+void for_each_of(Visit visit) {
+  if constexpr (i < std::variant_size_v<Registry>) {
+    visit(std::variant_alternative_t<i, Registry>{});
+    for_each_of<Registry, i + 1>(visit);
+  }
+}
 
 inline constexpr double unbounded = std::numeric_limits<double>::infinity();
 

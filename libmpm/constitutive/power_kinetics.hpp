@@ -7,10 +7,19 @@
 // n = 1 without lambda_max is Roussel's equation. Shear rates in 1/s, times in s; lambda has no unit.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
 #include <utility>
 
-namespace tremie::detail {
+#include "libmpm/constitutive/gate.hpp"
+#include "libmpm/constitutive/kinetics_interface.hpp"
+
+namespace tremie {
+
+namespace detail {
 
 /// The constants of the equation over one step.
 struct PowerRates {
@@ -35,19 +44,19 @@ inline double power_break(double lambda, const PowerRates& p, double shear) {
 
 /// phi_k(z) = int_0^1 e^(z(1-s)) s^(k-1)/(k-1)! ds, which exponential methods weight their stages with.
 struct PhiFunctions {
-  double one, three, four;
+  double phi_1, phi_3, phi_4;
 };
 
 inline PhiFunctions phi_functions(double z) {
   if (std::abs(z) > 1.0) {
-    const double one = std::expm1(z) / z, three = ((one - 1.0) / z - 0.5) / z;
-    return {one, three, (three - 1.0 / 6.0) / z};
+    const double phi_1 = std::expm1(z) / z, phi_3 = ((phi_1 - 1.0) / z - 0.5) / z;
+    return {phi_1, phi_3, (phi_3 - 1.0 / 6.0) / z};
   }
-  double four = 1.0;  // 24 phi_4 = 1 + z/5 (1 + z/6 (1 + ...))
-  for (int k = 18; k >= 5; --k) four = 1.0 + four * z / k;
-  four /= 24.0;
-  const double three = 1.0 / 6.0 + z * four;
-  return {1.0 + z * (0.5 + z * three), three, four};
+  double phi_4 = 1.0;  // 24 phi_4 = 1 + z/5 (1 + z/6 (1 + ...))
+  for (int k = 18; k >= 5; --k) phi_4 = 1.0 + phi_4 * z / k;
+  phi_4 /= 24.0;
+  const double phi_3 = 1.0 / 6.0 + z * phi_4;
+  return {1.0 + z * (0.5 + z * phi_3), phi_3, phi_4};
 }
 
 /// du/dt = linear u - bend u^power + constant, concave in u >= 0: the equation in u = lambda (build-up from below), or
@@ -64,11 +73,11 @@ inline std::pair<double, double> exponential_rosenbrock(const ConcaveRate& f, do
   const double slope = f.linear - d_bent, rate = f.constant + f.linear * u - bent;
   const auto left_out = [&](double v) { return bent + d_bent * (v - u) - f.bend * std::pow(v, f.power); };
   const PhiFunctions half = phi_functions(0.5 * slope * h), whole = phi_functions(slope * h);
-  const double middle = left_out(std::max(0.0, u + 0.5 * h * half.one * rate));
-  const double end = left_out(std::max(0.0, u + h * whole.one * (rate + middle)));
-  const double third = h * whole.three * (16.0 * middle - 2.0 * end),
-               fourth = h * whole.four * (12.0 * end - 48.0 * middle);
-  return {std::max(0.0, u + h * whole.one * rate + third + fourth), std::abs(fourth)};
+  const double middle = left_out(std::max(0.0, u + 0.5 * h * half.phi_1 * rate));
+  const double end = left_out(std::max(0.0, u + h * whole.phi_1 * (rate + middle)));
+  const double third = h * whole.phi_3 * (16.0 * middle - 2.0 * end),
+               fourth = h * whole.phi_4 * (12.0 * end - 48.0 * middle);
+  return {std::max(0.0, u + h * whole.phi_1 * rate + third + fourth), std::abs(fourth)};
 }
 
 /// Build-up and breakdown over dt, the shear rate linear in time: second order in dt, at constant rate within 1e-8
@@ -108,17 +117,57 @@ inline double power_step(double lambda, const PowerRates& p, double gamma_0, dou
   return lambda;
 }
 
-/// Build-up below the critical shear rate, breakdown above it; exact where the rate is linear in time.
-inline double gated_power_step(double lambda, const PowerRates& p, double gamma_c, double gamma_0,
-                               double gamma_1, double dt) {
-  const bool rest_0 = gamma_0 < gamma_c, rest_1 = gamma_1 < gamma_c;
-  const auto piece = [&](double value, bool rest, double g0, double g1, double duration) {
-    return rest ? power_build(value, p, duration) : power_break(value, p, 0.5 * duration * (g0 + g1));
-  };
-  if (rest_0 == rest_1) return piece(lambda, rest_0, gamma_0, gamma_1, dt);
-  const double theta = std::clamp((gamma_c - gamma_0) / (gamma_1 - gamma_0), 0.0, 1.0);
-  lambda = piece(lambda, rest_0, gamma_0, gamma_c, theta * dt);
-  return piece(lambda, rest_1, gamma_c, gamma_1, (1.0 - theta) * dt);
-}
+}  // namespace detail
 
-}  // namespace tremie::detail
+struct PowerKinetics {
+  double alpha = 0.01;    ///< destructuration parameter
+  double gamma_c = 0.0;   ///< critical shear rate of the gate [1/s]; 0: no gate
+  double exponent = 1.0;  ///< n
+  double saturation = std::numeric_limits<double>::infinity();  ///< lambda_max
+
+  static constexpr std::string_view word = "power";
+  static constexpr std::size_t state_size = 1;
+  static constexpr DecayFitRules decay_fit{.free_exponent = true, .contains = "roussel"};
+  static constexpr std::array<LawKey<PowerKinetics>, 4> keys() {
+    using K = PowerKinetics;
+    return {{destructuration_key<K>(),
+             {.name = "mix.thixotropy.critical_shear_rate",
+              .member = &K::gamma_c,
+              .unit = "1/s",
+              .help = "power: no gate where it is left out",
+              .optional = true},
+             {"mix.thixotropy.exponent", &K::exponent, "", "", "3.5",
+              "n: breakdown by alpha lambda^n gamma_dot", 1.0, 20.0, false},
+             {.name = "mix.thixotropy.saturation",
+              .member = &K::saturation,
+              .help = "lambda_max; none where it is left out",
+              .optional = true}}};
+  }
+  /// Without a gate and without a saturation.
+  static PowerKinetics fitted(double alpha, double exponent, double) { return {alpha, 0.0, exponent}; }
+
+  std::optional<double> gate() const { return gamma_c > 0.0 ? std::optional(gamma_c) : std::nullopt; }
+  bool breaks_down() const { return alpha != 0.0; }
+  double after_rest(double lambda, double A_thix, double tau_0, double duration) const {
+    return detail::power_build(lambda, rates(A_thix / tau_0), duration);
+  }
+
+  /// Exact where the rate is linear in time, with a gate; else detail::power_step.
+  double update(double lambda, double build_rate, double gamma_0, double gamma_1, double dt) const {
+    const detail::PowerRates p = rates(build_rate);
+    if (!gate()) return detail::power_step(lambda, p, gamma_0, gamma_1, dt);
+    return detail::split_at_gate(
+        lambda, gamma_c, gamma_0, gamma_1, dt,
+        [&](double value, double duration) { return detail::power_build(value, p, duration); },
+        [&](double value, double duration, double sum) {
+          return detail::power_break(value, p, 0.5 * duration * sum);
+        });
+  }
+
+ private:
+  detail::PowerRates rates(double build_rate) const {
+    return {build_rate, 1.0 / saturation, alpha, exponent};
+  }
+};
+
+}  // namespace tremie

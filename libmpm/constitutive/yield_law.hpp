@@ -21,12 +21,9 @@ using YieldLaw = std::variant<ExactBingham,     //
                               RegularisedHerschelBulkley>;
 
 /// Calls visit(L{}) for every law L of the registry.
-template <std::size_t i = 0, class Visit>
+template <class Visit>
 void for_each_law(Visit visit) {
-  if constexpr (i < std::variant_size_v<YieldLaw>) {
-    visit(std::variant_alternative_t<i, YieldLaw>{});
-    for_each_law<i + 1>(visit);
-  }
+  for_each_of<YieldLaw>(visit);
 }
 
 // The functions of law_interface.hpp for a law that is known at run time. Loops over many points visit the variant

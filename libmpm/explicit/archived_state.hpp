@@ -13,6 +13,7 @@ void visit(Archive& archive, LanePoints<D>& points) {
     for (std::vector<f64x8>& array : *arrays) archive(array);
   for (std::vector<f64x8>& array : points.C) archive(array);
   archive(points.mass, points.V0, points.ln_J, points.lambda, points.gamma_dot, points.id, points.n);
+  for (std::vector<f64x8>& part : points.lambda_parts) archive(part);
 }
 
 /// The axes are the scene's.
@@ -34,9 +35,10 @@ void visit(Archive& archive, ExplicitState<Geometry>& state) {
   archive(state.holding, state.near_wall, state.wall_drift, state.sorts);
 }
 
-/// The body's points are those on the tiles.
+/// The body's points are those on the tiles; as many parts of lambda as the scene's kinetics have.
 template <class Geometry>
 void visit_explicit(Archive& archive, Body<Geometry>& body, ExplicitState<Geometry>& state) {
+  if (const auto& t = body.mix.thixotropy) state.points.lambda_parts.resize(lambda_parts(t->kinetics));
   archive(body.time, body.dt, state);
   if (archive.reads()) write_back(state, body);
 }

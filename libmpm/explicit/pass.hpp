@@ -4,7 +4,7 @@
 // Shape functions and sums over nodes are computed in Real; places, volumes, flocculation and the law in double
 // precision.
 
-#include "libmpm/constitutive/simd_laws.hpp"
+#include "libmpm/constitutive/flocculation.hpp"
 #include "libmpm/explicit/cell_pressures.hpp"
 #include "libmpm/geometry/gradients.hpp"
 

@@ -26,6 +26,7 @@ struct LanePoints {
   std::vector<f64x8> mass, V0, ln_J;  ///< [kg], [m^3], ln(V/V0)
   std::vector<f64x8> lambda;          ///< empty without thixotropy
   std::vector<f64x8> gamma_dot;       ///< [1/s]; empty where neither thixotropy nor a frame needs them
+  std::vector<std::vector<f64x8>> lambda_parts;
   std::vector<std::array<std::int32_t, f64x8_size>> id;  ///< place in the Points that it came from
   std::size_t n = 0;                                     ///< number of real points
 
@@ -73,6 +74,9 @@ void for_each_quantity(LanePoints<D>& lanes, Points<D>& points, Visit visit) {
   visit(as_span(lanes.ln_J), points.ln_J);
   visit(as_span(lanes.lambda), points.lambda);
   visit(as_span(lanes.gamma_dot), points.gamma_dot);
+  const std::size_t parts = std::max(lanes.lambda_parts.size(), points.lambda_parts.size());
+  lanes.lambda_parts.resize(parts), points.lambda_parts.resize(parts);
+  for (std::size_t k = 0; k < parts; ++k) visit(as_span(lanes.lambda_parts[k]), points.lambda_parts[k]);
 }
 
 }  // namespace detail

@@ -47,6 +47,7 @@ void split_particle(Points<D>& points, int p, const Vec<D>& x) {
   const double lambda = points.lambda[p], gamma_dot = points.gamma_dot[p];
   points.lambda.push_back(lambda);
   points.gamma_dot.push_back(gamma_dot);
+  for (std::vector<double>& part : points.lambda_parts) part.push_back(part[p]);
 }
 
 }  // namespace detail

@@ -19,6 +19,7 @@ struct Points {
   std::vector<double> ln_J;       ///< ln(V / V0)
   std::vector<double> lambda;     ///< flocculation state; empty without thixotropy
   std::vector<double> gamma_dot;  ///< shear rate of the last step [1/s]; empty where nothing needs it
+  std::vector<std::vector<double>> lambda_parts;  ///< whose sum lambda is; none where it is one number
 
   std::size_t size() const { return x.size(); }
   bool thixotropic() const { return !lambda.empty(); }
@@ -46,6 +47,7 @@ void shrink(Points<D>& points) {
   for (std::vector<double>* array :
        {&points.mass, &points.V0, &points.ln_J, &points.lambda, &points.gamma_dot})
     array->shrink_to_fit();
+  for (std::vector<double>& part : points.lambda_parts) part.shrink_to_fit();
 }
 
 /// Adds a point at rest.

@@ -44,7 +44,7 @@ Layout first_guess(const Readings& r, const FitInput& in) {
   if (!in.tau_0) layout.free.insert(layout.free.begin(), i_tau_0);
   layout.free.push_back(i_lambda);
   layout.free.push_back(i_alpha);
-  if (in.kinetics == Kinetics::power) layout.free.push_back(i_exponent);
+  if (decay_fit(in.kinetics).free_exponent) layout.free.push_back(i_exponent);
   layout.all = {tau_0, mu, std::max(0.05, tau_start / tau_0 - 1.0), 0.0, 1.0};
   return layout;
 }
@@ -68,10 +68,10 @@ double absolute_error(const DecayModel& model, const Readings& r, const DecayPar
 }
 
 /// The sum of squares has side minima in alpha where nothing breaks down or all does at once: look over five
-/// decades; and, for the power kinetics, over n and what its slow tail leaves for the yield stress.
+/// decades; and, where n is free, over it and what its slow tail leaves for the yield stress.
 void search_valley(const DecayModel& model, const Readings& r, const FitInput& in, Layout& layout) {
   const double unit = 1.0 / (newtonian_shear_rate(*in.omega, in.instrument) * r.x.back());
-  const bool power = in.kinetics == Kinetics::power;
+  const bool power = decay_fit(in.kinetics).free_exponent;
   const DecayParameters first = layout.all;
   const double static_stress = (1.0 + first[i_lambda]) * first[i_tau_0];
   std::vector<double> fitted(r.size());

@@ -35,7 +35,7 @@ struct Layout {
 };
 
 struct DecayFit {
-  Kinetics kinetics = Kinetics::gated;
+  Kinetics kinetics = {};
   Layout layout;
   LeastSquaresFit fit;
 

@@ -32,10 +32,7 @@ double alpha_of(const DecayParameters& p) {
 Thixotropy thixotropy_of(const DecayParameters& p, const FitInput& in) {
   // at rest before the test lambda grew from 0 to lambda_0, equation (8)
   const double A_thix = in.rest ? p[2] * p[0] / *in.rest : 0.0;
-  Thixotropy t{A_thix, alpha_of(p), in.kinetics, in.gamma_c, p[2]};
-  t.exponent = p[4];
-  if (in.kinetics == Kinetics::power) t.gamma_c = 0.0;
-  return t;
+  return {A_thix, fitted(in.kinetics, alpha_of(p), p[4], in.gamma_c), p[2]};
 }
 
 DecayModel::DecayModel(const FitInput& input, const std::vector<double>& times, int intervals)

@@ -12,15 +12,14 @@
 namespace tremie::fitting {
 
 /// tau_0 [Pa], mu [Pa s], lambda_0, alpha lambda_0^(n-1), n. The fourth is the breakdown at the start: with it the
-/// fall of the first torque fixes one parameter whatever n; it is alpha itself where n = 1. n counts for the power
-/// kinetics alone.
+/// fall of the first torque fixes one parameter whatever n; it is alpha itself where n = 1. n counts for kinetics with a
+/// free exponent alone.
 using DecayParameters = std::array<double, 5>;
 
 /// alpha of the law from the fourth parameter.
 double alpha_of(const DecayParameters& p);
 
-/// The kinetics of in.kinetics with these parameters; A_thix from the rest, 0 where it is not known; the power kinetics
-/// without a gate.
+/// The kinetics of in.kinetics with these parameters; A_thix from the rest, 0 where it is not known.
 Thixotropy thixotropy_of(const DecayParameters& p, const FitInput& in);
 
 /// Solves the model on a fixed set of times, dense at the start, and interpolates to those of the record: one

@@ -27,15 +27,15 @@ enum class FlowLaw { bingham, herschel_bulkley, automatic };
 /// What is known besides the record.
 struct FitInput {
   Instrument instrument;
-  std::optional<double> tau_0;          ///< dynamic yield stress [Pa]
-  std::optional<double> mu;             ///< plastic viscosity [Pa s]
-  std::optional<double> omega;          ///< speed of a torque decay [rad/s]; a decay needs it
-  std::optional<double> rest;           ///< rest before a torque decay [s]
-  Kinetics kinetics = Kinetics::gated;  ///< power: without a gate and without a saturation
-  double max_aggregate = 0.0;           ///< largest grain [m]; 0: not known
-  bool choose_kinetics = false;         ///< fit each kinetics and take the one that the record supports best
-  FlowLaw law = FlowLaw::bingham;       ///< of a flow curve
-  double gamma_c = 0.1;                 ///< critical shear rate of the gate [1/s]
+  std::optional<double> tau_0;     ///< dynamic yield stress [Pa]
+  std::optional<double> mu;        ///< plastic viscosity [Pa s]
+  std::optional<double> omega;     ///< speed of a torque decay [rad/s]; a decay needs it
+  std::optional<double> rest;      ///< rest before a torque decay [s]
+  Kinetics kinetics = {};          ///< of a decay; their parameters are what the fit finds, and gamma_c
+  double max_aggregate = 0.0;      ///< largest grain [m]; 0: not known
+  bool choose_kinetics = false;    ///< fit each kinetics and take the one that the record supports best
+  FlowLaw law = FlowLaw::bingham;  ///< of a flow curve
+  double gamma_c = 0.1;            ///< critical shear rate of the gate [1/s]
 };
 
 struct Interval {

@@ -159,7 +159,7 @@ void report_parameters(const Readings& r, const Teller& told, const FitInput& in
   result.mu = in.mu ? given(mu) : told(mu, {0, 1, 0, 0, 0}, mu);
   result.lambda_0 = told(lambda_0, {0, 0, 1, 0, 0}, std::max(lambda_0, 0.5));
   result.static_yield_stress = told((1 + lambda_0) * tau_0, {1 + lambda_0, 0, tau_0, 0, 0}, stress);
-  const bool power = in.kinetics == Kinetics::power;
+  const bool power = decay_fit(in.kinetics).free_exponent;
   if (lambda_0 > 0.0 && breakdown > 0.0) {
     const DecayParameters gradient{0, 0, power ? (1.0 - n) * alpha / lambda_0 : 0.0, alpha / breakdown,
                                    power ? -std::log(lambda_0) * alpha : 0.0};
@@ -242,9 +242,7 @@ std::string misfit(const Readings& r, const LeastSquaresFit& f) {
   return misfit_of(x, residual, "the decay has another shape than these kinetics give it");
 }
 
-const char* name_of(Kinetics k) {
-  return k == Kinetics::power ? "power" : k == Kinetics::roussel ? "roussel" : "gated";
-}
+std::string name_of(const Kinetics& k) { return std::string(word(k)); }
 
 /// Root mean square over the readings that at least one of the models keeps: all are judged on the same readings.
 double common_mean_square(const std::vector<DecayFit>& fits, const LeastSquaresFit& judged, double& n) {
@@ -284,15 +282,14 @@ std::size_t choose(const Readings& r, const std::vector<DecayFit>& fits, FitResu
                                  finite ? std::optional(aicc[i] - aicc[best]) : std::nullopt,
                                  misfit(r, fits[i].fit).empty(), i == best});
   }
-  result.choice = std::string("kinetics ") + name_of(fits[best].kinetics) + ": the smallest AICc of " +
+  result.choice = "kinetics " + name_of(fits[best].kinetics) + ": the smallest AICc of " +
                   std::to_string(fits.size()) + " kinetics, on " + std::to_string(std::lround(independent)) +
                   " independent readings of " + std::to_string(std::lround(n)) +
                   " (the correlation of the noise taken off)";
   if (!std::isfinite(aicc[best])) {
-    result.choice = std::string("kinetics ") + name_of(fits[best].kinetics) +
-                    ", as nothing else was asked for; " + std::to_string(std::lround(independent)) +
-                    " independent readings of " + std::to_string(std::lround(n)) +
-                    " are too few to choose by AICc";
+    result.choice = "kinetics " + name_of(fits[best].kinetics) + ", as nothing else was asked for; " +
+                    std::to_string(std::lround(independent)) + " independent readings of " +
+                    std::to_string(std::lround(n)) + " are too few to choose by AICc";
     return best;
   }
   double second = std::numeric_limits<double>::infinity();
@@ -303,23 +300,26 @@ std::size_t choose(const Readings& r, const std::vector<DecayFit>& fits, FitResu
   return best;
 }
 
-/// Power kinetics contain Roussel's, n = 1: a fit of them that ended above those starts again from there.
-void start_power_from_roussel(const Readings& r, const FitInput& in, std::vector<DecayFit>& fits) {
-  const auto of = [&](Kinetics k) {
-    return std::find_if(fits.begin(), fits.end(), [k](const DecayFit& f) { return f.kinetics == k; });
-  };
-  const auto roussel = of(Kinetics::roussel), power = of(Kinetics::power);
-  double n = 0.0;
-  if (roussel == fits.end() || power == fits.end() ||
-      common_mean_square(fits, power->fit, n) <= common_mean_square(fits, roussel->fit, n))
-    return;
-  DecayFit again = *power;
-  again.layout.all = roussel->parameters();
-  again.layout.all[i_exponent] = 1.0;
-  for (std::size_t k = 0; k < again.layout.free.size(); ++k)
-    again.fit.parameters[k] = again.layout.all[again.layout.free[k]];
-  again = refined(r, in, again, 100);
-  if (common_mean_square(fits, again.fit, n) < common_mean_square(fits, power->fit, n)) *power = again;
+/// Kinetics that contain others at n = 1, as power contains Roussel's: a fit of them that ended above those starts again
+/// from there.
+void start_from_contained(const Readings& r, FitInput in, std::vector<DecayFit>& fits) {
+  for (DecayFit& fit : fits) {
+    const auto contained = std::find_if(fits.begin(), fits.end(), [&](const DecayFit& f) {
+      return word(f.kinetics) == decay_fit(fit.kinetics).contains;
+    });
+    double n = 0.0;
+    if (contained == fits.end() ||
+        common_mean_square(fits, fit.fit, n) <= common_mean_square(fits, contained->fit, n))
+      continue;
+    DecayFit again = fit;
+    again.layout.all = contained->parameters();
+    again.layout.all[i_exponent] = 1.0;
+    for (std::size_t k = 0; k < again.layout.free.size(); ++k)
+      again.fit.parameters[k] = again.layout.all[again.layout.free[k]];
+    in.kinetics = fit.kinetics;
+    again = refined(r, in, again, 100);
+    if (common_mean_square(fits, again.fit, n) < common_mean_square(fits, fit.fit, n)) fit = again;
+  }
 }
 
 /// Fits of the kinetics that are asked for, in order of their complexity; one that has no solution is left out.
@@ -327,20 +327,19 @@ std::vector<DecayFit> fit_candidates(const Readings& r, FitInput in) {
   if (!in.choose_kinetics) return {fit_decay(r, in)};
   std::vector<DecayFit> fits;
   std::string failure;
-  for (const Kinetics k : {Kinetics::gated, Kinetics::roussel, Kinetics::power}) {
+  for_each_kinetics([&](const auto& k) {
     in.kinetics = k;
     // without a rest nothing is known to build up, and Roussel's equation is the gated one
-    if (k == Kinetics::roussel && !in.rest) continue;
-    if (r.size() <= 2u + !in.tau_0 + !in.mu + (k == Kinetics::power)) continue;
+    if (k.decay_fit.needs_rest && !in.rest) return;
+    if (r.size() <= 2u + !in.tau_0 + !in.mu + k.decay_fit.free_exponent) return;
     try {
       fits.push_back(fit_decay(r, in));
     } catch (const std::runtime_error& error) {
       failure = error.what();
     }
-  }
+  });
   if (fits.empty()) throw std::runtime_error(failure);
-  in.kinetics = Kinetics::power;
-  start_power_from_roussel(r, in, fits);
+  start_from_contained(r, in, fits);
   return fits;
 }
 
@@ -386,7 +385,7 @@ FitResult fit_torque_decay(const TorqueRecord& record, const FitInput& input) {
   result.kind = RecordKind::torque_decay;
   const Readings r = readings_of(record, result);
   const std::size_t unknowns =
-      2u + !in.tau_0 + !in.mu + (!in.choose_kinetics && in.kinetics == Kinetics::power);
+      2u + !in.tau_0 + !in.mu + (!in.choose_kinetics && decay_fit(in.kinetics).free_exponent);
   if (r.size() <= unknowns)
     throw std::invalid_argument("a torque decay needs more than " + std::to_string(unknowns) + " rows for " +
                                 std::to_string(unknowns) + " unknowns; " + std::to_string(r.size()) +

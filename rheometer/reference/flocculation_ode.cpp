@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "rheometer/reference/kinetics_equations.hpp"
 #include "rheometer/reference/sundials_support.hpp"
 
 namespace tremie {
@@ -18,50 +19,41 @@ namespace {
 /// What the callbacks see: one piece of the history and the side of the gate that the integration is on.
 struct Problem {
   const ShearPiece* piece = nullptr;
-  bool gated = true;
-  double build_rate = 0.0, alpha = 0.0, gamma_c = 0.0;
-  double exponent = 1.0, inverse_saturation = 0.0;  ///< power alone
-  bool flowing = true;                              ///< gated alone
+  Kinetics kinetics;
+  double build_rate = 0.0;
+  bool flowing = true;  ///< gated alone
 
   double gamma_dot(double t) const { return piece->rate(std::clamp(t, 0.0, piece->duration)); }
-  bool builds() const { return !gated || !flowing; }
-  bool breaks() const { return !gated || flowing; }
-  /// lambda^n, and its derivative.
-  double broken(double lambda) const {
-    return exponent == 1.0 ? lambda : std::pow(std::max(lambda, 0.0), exponent);
-  }
-  double d_broken(double lambda) const {
-    return exponent == 1.0 ? 1.0 : exponent * std::pow(std::max(lambda, 0.0), exponent - 1.0);
-  }
+  bool gated() const { return gate(kinetics).has_value(); }
+  double gamma_c() const { return gate(kinetics).value_or(0.0); }
 };
 
 int right_hand_side(sunrealtype t, N_Vector y, N_Vector ydot, void* user) {
   const Problem& p = *static_cast<const Problem*>(user);
-  const double lambda = values(y)[0];
-  double rate = p.builds() ? p.build_rate * (1.0 - lambda * p.inverse_saturation) : 0.0;
-  if (p.breaks()) rate -= p.alpha * p.broken(lambda) * p.gamma_dot(t);
-  values(ydot)[0] = rate;
+  values(ydot)[0] =
+      kinetics_equations::rate_of_lambda(p.kinetics, p.build_rate, values(y)[0], p.gamma_dot(t), p.flowing);
   return 0;
 }
 
 int jacobian(sunrealtype t, N_Vector y, N_Vector, SUNMatrix J, void* user, N_Vector, N_Vector, N_Vector) {
   const Problem& p = *static_cast<const Problem*>(user);
-  double& d_rate = SUNDenseMatrix_Data(J)[0];
-  d_rate = p.builds() ? -p.build_rate * p.inverse_saturation : 0.0;
-  if (p.breaks()) d_rate -= p.alpha * p.d_broken(values(y)[0]) * p.gamma_dot(t);
+  const auto d =
+      kinetics_equations::derivatives_of(p.kinetics, p.build_rate, values(y)[0], p.gamma_dot(t), p.flowing);
+  SUNDenseMatrix_Data(J)[0] = d.build_by_lambda - d.k * d.broken_by_lambda;
   return 0;
 }
 
-int gate(sunrealtype t, N_Vector, sunrealtype* g, void* user) {
+int distance_to_gate(sunrealtype t, N_Vector, sunrealtype* g, void* user) {
   const Problem& p = *static_cast<const Problem*>(user);
-  g[0] = p.gamma_dot(t) - p.gamma_c;
+  g[0] = p.gamma_dot(t) - p.gamma_c();
   return 0;
 }
 
 /// A history that starts on gamma_c itself belongs to the side that it moves to.
 bool flows_at_start(const Problem& p) {
   const double start = p.gamma_dot(0.0);
-  return start == p.gamma_c ? p.gamma_dot(1e-6 * p.piece->duration) >= p.gamma_c : start > p.gamma_c;
+  const double gamma_c = p.gamma_c();
+  return start == gamma_c ? p.gamma_dot(1e-6 * p.piece->duration) >= gamma_c : start > gamma_c;
 }
 
 /// lambda relaxes on the time 1/(alpha gamma_dot), times lambda^(1-n)/n with a power; a piece that is much longer than this is stiff.
@@ -69,7 +61,8 @@ int method_for(const Problem& p, double lambda, OdeMethod wanted) {
   if (wanted != OdeMethod::automatic) return wanted == OdeMethod::bdf ? CV_BDF : CV_ADAMS;
   double fastest = 0.0;
   for (int i = 0; i <= 64; ++i) fastest = std::max(fastest, p.gamma_dot(p.piece->duration * i / 64.0));
-  return p.alpha * p.d_broken(lambda) * fastest * p.piece->duration > 100.0 ? CV_BDF : CV_ADAMS;
+  const auto d = kinetics_equations::derivatives_of(p.kinetics, p.build_rate, lambda, fastest, true);
+  return d.k * d.broken_by_lambda * p.piece->duration > 100.0 ? CV_BDF : CV_ADAMS;
 }
 
 class Integrator {
@@ -93,8 +86,8 @@ class Integrator {
     sundials_ok(CVodeSetMaxNumSteps(m, 50'000'000), "CVodeSetMaxNumSteps");
     sundials_ok(CVodeSetNonlinConvCoef(m, 1e-3), "CVodeSetNonlinConvCoef");
     sundials_ok(CVodeSetErrHandlerFn(m, quiet, nullptr), "CVodeSetErrHandlerFn");
-    if (problem.gated) {
-      sundials_ok(CVodeRootInit(m, 1, gate), "CVodeRootInit");
+    if (problem.gated()) {
+      sundials_ok(CVodeRootInit(m, 1, distance_to_gate), "CVodeRootInit");
       sundials_ok(CVodeSetNoInactiveRootWarn(m), "CVodeSetNoInactiveRootWarn");
     }
   }
@@ -155,23 +148,14 @@ class Integrator {
   long steps_before_ = 0, evaluations_before_ = 0;
 };
 
-void check(const Thixotropy& t, double tau_0, double lambda_0) {
-  const auto not_negative = [](double x) { return std::isfinite(x) && x >= 0.0; };
-  if (!(std::isfinite(tau_0) && tau_0 > 0.0))
-    throw std::invalid_argument(
-        "flocculation needs a yield stress greater than 0: lambda grows by A_thix/tau_0");
-  if (!not_negative(t.A_thix) || !not_negative(t.alpha) || !not_negative(t.gamma_c) ||
-      !not_negative(lambda_0))
-    throw std::invalid_argument("A_thix, alpha, the critical shear rate and lambda must not be negative");
-  if (!(t.exponent >= 1.0) || !(t.saturation > 0.0))
-    throw std::invalid_argument("the exponent must be at least 1 and the saturation greater than 0");
-}
-
 }  // namespace
 
 OdeResult flocculation_ode(std::span<const ShearPiece> history, const Thixotropy& thixotropy, double tau_0,
                            double lambda_0, std::span<const double> times, const OdeOptions& options) {
-  check(thixotropy, tau_0, lambda_0);
+  if (!(std::isfinite(tau_0) && tau_0 > 0.0))
+    throw std::invalid_argument(
+        "flocculation needs a yield stress greater than 0: lambda grows by A_thix/tau_0");
+  kinetics_equations::check(thixotropy, lambda_0);
   const double end = duration(history);
   if (!std::is_sorted(times.begin(), times.end()) ||
       (!times.empty() && (times.front() < 0.0 || times.back() > end * (1.0 + 1e-12))))
@@ -179,14 +163,7 @@ OdeResult flocculation_ode(std::span<const ShearPiece> history, const Thixotropy
 
   OdeResult result;
   result.lambda.reserve(times.size());
-  const bool power = thixotropy.kinetics == Kinetics::power;
-  Problem problem{nullptr,
-                  has_gate(thixotropy),
-                  thixotropy.A_thix / tau_0,
-                  thixotropy.alpha,
-                  thixotropy.gamma_c,
-                  power ? thixotropy.exponent : 1.0,
-                  power ? 1.0 / thixotropy.saturation : 0.0};
+  Problem problem{nullptr, thixotropy.kinetics, thixotropy.A_thix / tau_0};
   double lambda = lambda_0, start = 0.0;
   std::size_t next = 0;
   for (const ShearPiece& piece : history) {

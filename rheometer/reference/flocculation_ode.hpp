@@ -1,13 +1,8 @@
 #pragma once
 
 // The flocculation state as an ordinary differential equation, integrated by SUNDIALS CVODE: the reference
-// for the per-point update of libmpm/constitutive/flocculation.hpp, which it does not call. Its right-hand side is the
-// paper's:
-//
-//   roussel   d lambda/dt = A_thix/tau_0 - alpha lambda gamma_dot(t)                 equation (3)
-//   gated     d lambda/dt = A_thix/tau_0            where gamma_dot <  gamma_c       equation (3) at rest
-//             d lambda/dt = -alpha lambda gamma_dot where gamma_dot >= gamma_c       equation (4)
-//   power     d lambda/dt = A_thix/tau_0 (1 - lambda/lambda_max) - alpha lambda^n gamma_dot, gated where gamma_c > 0
+// for the per-point updates of libmpm/constitutive, which it does not call. Its right-hand side is that of
+// kinetics_equations.hpp.
 //
 // The gate is a discontinuity of the right-hand side. CVODE's root-finding stops on each crossing of gamma_c
 // and the integration starts anew behind it, so that no step straddles one.

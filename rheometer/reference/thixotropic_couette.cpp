@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "rheometer/reference/kinetics_equations.hpp"
 #include "rheometer/reference/sundials_support.hpp"
 
 namespace tremie {
@@ -17,8 +18,8 @@ namespace {
 /// The discretised gap. Unknowns: lambda at the n nodes, then s = T/(2 pi h R_i^2), the stress at the vane
 /// [Pa].
 struct Gap {
-  double tau_0 = 0.0, mu = 0.0, alpha = 0.0, build_rate = 0.0, gamma_c = 0.0, dx = 0.0;
-  double exponent = 1.0, inverse_saturation = 0.0;  ///< power alone
+  double tau_0 = 0.0, mu = 0.0, build_rate = 0.0, gamma_c = 0.0, dx = 0.0;
+  Kinetics kinetics;
   bool gated = true, find_gate = true;
   std::vector<double> x, stress_share;  ///< ln(r/R_i) and (R_i/r)^2 of the nodes
   std::vector<char> flowing;            ///< the gate's side, gated alone
@@ -31,24 +32,13 @@ struct Gap {
     return (y[nodes()] * stress_share[i] - (1.0 + y[i]) * tau_0) / mu;
   }
 
-  bool breaks(std::size_t i, double e) const {
+  bool flows(std::size_t i, double e) const {
     if (!gated) return true;
     return find_gate ? flowing[i] != 0 : e >= gamma_c;
   }
 
-  double build(double lambda) const { return build_rate * (1.0 - lambda * inverse_saturation); }
-
-  /// lambda^n, and its derivative.
-  double broken(double lambda) const {
-    return exponent == 1.0 ? lambda : std::pow(std::max(lambda, 0.0), exponent);
-  }
-  double d_broken(double lambda) const {
-    return exponent == 1.0 ? 1.0 : exponent * std::pow(std::max(lambda, 0.0), exponent - 1.0);
-  }
-
-  double kinetics(std::size_t i, double lambda, double e) const {
-    if (!breaks(i, e)) return build(lambda);
-    return (gated ? 0.0 : build(lambda)) - alpha * broken(lambda) * std::max(0.0, e);
+  double rate_of_lambda(std::size_t i, double lambda, double e) const {
+    return kinetics_equations::rate_of_lambda(kinetics, build_rate, lambda, std::max(0.0, e), flows(i, e));
   }
 };
 
@@ -114,7 +104,7 @@ void consistent_rates(const Gap& gap, double t, std::span<const double> y, std::
   speed_of(gap, y, &d_excess);
   double by_lambda = 0.0;
   for (std::size_t i = 0; i < gap.nodes(); ++i) {
-    rates[i] = gap.kinetics(i, y[i], gap.excess(i, y));
+    rates[i] = gap.rate_of_lambda(i, y[i], gap.excess(i, y));
     by_lambda -= d_excess[i] * gap.tau_0 / gap.mu * rates[i];
   }
   const double dt = 1e-6, d_omega = (gap.omega(t + dt) - gap.omega(t)) / dt;
@@ -124,12 +114,13 @@ void consistent_rates(const Gap& gap, double t, std::span<const double> y, std::
 int residual(sunrealtype t, N_Vector y_vector, N_Vector rates_vector, N_Vector result, void* user) {
   const Gap& gap = *static_cast<const Gap*>(user);
   const std::span<double> y = values(y_vector), rates = values(rates_vector), f = values(result);
-  for (std::size_t i = 0; i < gap.nodes(); ++i) f[i] = rates[i] - gap.kinetics(i, y[i], gap.excess(i, y));
+  for (std::size_t i = 0; i < gap.nodes(); ++i)
+    f[i] = rates[i] - gap.rate_of_lambda(i, y[i], gap.excess(i, y));
   f[gap.nodes()] = speed_of(gap, y, nullptr) - gap.omega(t);
   return std::isfinite(f[gap.nodes()]) ? 0 : 1;  // 1: IDA tries a smaller step
 }
 
-int gate(sunrealtype, N_Vector y_vector, N_Vector, sunrealtype* g, void* user) {
+int distance_to_gate(sunrealtype, N_Vector y_vector, N_Vector, sunrealtype* g, void* user) {
   const Gap& gap = *static_cast<const Gap*>(user);
   const std::span<double> y = values(y_vector);
   for (std::size_t i = 0; i < gap.nodes(); ++i) g[i] = gap.excess(i, y) - gap.gamma_c;
@@ -157,11 +148,12 @@ int solve_arrow(SUNLinearSolver solver, SUNMatrix, N_Vector x_vector, N_Vector b
   double pivot = speed_by_stress(gap, d_excess), right = b[n];
   for (std::size_t i = 0; i < n; ++i) {
     const double e = gap.excess(i, y);
-    const bool broken = gap.breaks(i, e);
-    if (!gap.gated || !broken) diagonal[i] += gap.build_rate * gap.inverse_saturation;
-    if (e > 0.0 && broken) {
-      diagonal[i] += gap.alpha * (gap.d_broken(y[i]) * e - gap.broken(y[i]) * gap.tau_0 / gap.mu);
-      column[i] = gap.alpha * gap.broken(y[i]) * gap.stress_share[i] / gap.mu;
+    const auto d = kinetics_equations::derivatives_of(gap.kinetics, gap.build_rate, y[i], std::max(0.0, e),
+                                                      gap.flows(i, e));
+    diagonal[i] -= d.build_by_lambda;
+    if (e > 0.0) {
+      diagonal[i] += d.k * (d.broken_by_lambda - d.broken_by_rate * gap.tau_0 / gap.mu);
+      column[i] = d.k * d.broken_by_rate * gap.stress_share[i] / gap.mu;
     }
     const double row = -d_excess[i] * gap.tau_0 / gap.mu;
     pivot -= row * column[i] / diagonal[i];
@@ -193,17 +185,11 @@ struct FreeIda {
 
 void check(const CouetteFlow& flow) {
   const auto positive = [](double v) { return std::isfinite(v) && v > 0.0; };
-  const auto not_negative = [](double v) { return std::isfinite(v) && v >= 0.0; };
   if (!positive(flow.bingham.tau_0) || !positive(flow.bingham.mu))
     throw std::invalid_argument("the yield stress and the plastic viscosity must be greater than 0");
   if (!flow.omega_of_time && !positive(flow.omega))
     throw std::invalid_argument("the speed must be greater than 0");
-  const Thixotropy& t = flow.thixotropy;
-  if (!not_negative(t.A_thix) || !not_negative(t.alpha) || !not_negative(t.gamma_c) ||
-      !not_negative(t.initial_flocculation))
-    throw std::invalid_argument("A_thix, alpha, the critical shear rate and lambda must not be negative");
-  if (!(t.exponent >= 1.0) || !(t.saturation > 0.0))
-    throw std::invalid_argument("the exponent must be at least 1 and the saturation greater than 0");
+  kinetics_equations::check(flow.thixotropy, flow.thixotropy.initial_flocculation);
 }
 
 Gap make_gap(const CouetteFlow& flow, double width, const CouetteOptions& options) {
@@ -211,14 +197,10 @@ Gap make_gap(const CouetteFlow& flow, double width, const CouetteOptions& option
   Gap gap;
   gap.tau_0 = flow.bingham.tau_0;
   gap.mu = flow.bingham.mu;
-  gap.alpha = t.alpha;
   gap.build_rate = t.A_thix / flow.bingham.tau_0;
-  gap.gamma_c = t.gamma_c;
-  gap.gated = has_gate(t);
-  if (t.kinetics == Kinetics::power) {
-    gap.exponent = t.exponent;
-    gap.inverse_saturation = 1.0 / t.saturation;
-  }
+  gap.kinetics = t.kinetics;
+  gap.gated = gate(t.kinetics).has_value();
+  gap.gamma_c = gate(t.kinetics).value_or(0.0);
   gap.find_gate = options.find_gate;
   gap.dx = width / options.intervals;
   for (int i = 0; i <= options.intervals; ++i) {
@@ -255,7 +237,7 @@ class Integrator {
                     m, [](int, const char*, const char*, char*, void*) {}, nullptr),
                 "IDASetErrHandlerFn");
     if (gap_.gated && gap_.find_gate) {
-      sundials_ok(IDARootInit(m, static_cast<int>(gap_.nodes()), gate), "IDARootInit");
+      sundials_ok(IDARootInit(m, static_cast<int>(gap_.nodes()), distance_to_gate), "IDARootInit");
       sundials_ok(IDASetNoInactiveRootWarn(m), "IDASetNoInactiveRootWarn");
     }
   }

@@ -3,12 +3,11 @@
 // A thixotropic Bingham material between a rotating cylinder R_i and a container R_o, without inertia: a
 // differential-algebraic system in r and t, integrated by SUNDIALS IDA.
 //
-//   mu gamma_dot + (1 + lambda) tau_0 = T/(2 pi r^2 h) where this yields, gamma_dot = 0 in the plug equations
-//   (2), (6) int gamma_dot/r dr = Omega(t) no slip d lambda/dt = A_thix/tau_0 - alpha lambda gamma_dot
-//   equation (3),
+//   mu gamma_dot + (1 + lambda) tau_0 = T/(2 pi r^2 h) where this yields, gamma_dot = 0 in the plug   equations (2), (6)
+//   int gamma_dot/r dr = Omega(t)                                                                     no slip
+//   d lambda/dt = A_thix/tau_0 - alpha lambda gamma_dot                                               equation (3),
 //
-// or the gated kinetics of the paper's algorithm, or the power kinetics (power_kinetics.hpp). Material moves in circles, so every radius keeps its own
-// lambda.
+// or any other kinetics of kinetics_equations.hpp. Material moves in circles, so every radius keeps its own lambda.
 //
 // Discretised on equal intervals of x = ln(r/R_i), where the constraint is int gamma_dot dx: lambda at the
 // nodes, the excess stress linear between them, its positive part integrated exactly (the plug's edge lies

@@ -36,9 +36,10 @@ TEST(SceneReader, DefaultsAreTheDocumentedOnes) {
   EXPECT_EQ(s.mix.density, 2400.0);
   EXPECT_EQ(s.mix.K, 1e6);
   EXPECT_EQ(s.mix.thixotropy->A_thix, 1.3);
-  EXPECT_EQ(s.mix.thixotropy->alpha, 0.01);
-  EXPECT_EQ(s.mix.thixotropy->kinetics, Kinetics::gated);
-  EXPECT_EQ(s.mix.thixotropy->gamma_c, 0.1);
+  EXPECT_EQ(destructuration(s.mix.thixotropy->kinetics), 0.01);
+  const auto* gated = std::get_if<GatedKinetics>(&s.mix.thixotropy->kinetics);
+  ASSERT_TRUE(gated);
+  EXPECT_EQ(gated->gamma_c, 0.1);
   EXPECT_EQ(s.rest, 0.0);
   EXPECT_EQ(s.duration, 30.0);
   EXPECT_EQ(s.lift_speed, 0.15);

@@ -28,7 +28,7 @@ Body<Geometry> block(bool thixotropic, int cells = Geometry::dim == 3 ? 12 : 60)
   bodies::fill_box<Geometry>(body, Vec<D>::Zero(), Vec<D>::Constant(height), 2,
                              [&](const auto& x) { return 2400.0 * 9.81 * (height - x[Geometry::up]); });
   if (!thixotropic) return body;
-  body.mix.thixotropy = Thixotropy{1.3, 0.01};
+  body.mix.thixotropy = Thixotropy{1.3, GatedKinetics{0.01}};
   body.points.lambda.assign(body.points.size(), 1.0);
   body.points.gamma_dot.assign(body.points.size(), 0.0);
   return body;

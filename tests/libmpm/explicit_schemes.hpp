@@ -44,7 +44,7 @@ inline ExplicitSettings settings_of(const Scheme& scheme, double dt) {
 inline Body<ThreeD> collapsing_block() {
   Body<ThreeD> body;
   body.mix = bodies::concrete(20.0, 5.0, 33e3);
-  body.mix.thixotropy = Thixotropy{1.3, 0.01};
+  body.mix.thixotropy = Thixotropy{1.3, GatedKinetics{0.01}};
   body.gravity[2] = -g;
   for (Axis& a : body.grid.axes) a = {.h = 0.02, .low = FaceKind::free_slip};
   body.grid.axes[2].low = FaceKind::wall_law;

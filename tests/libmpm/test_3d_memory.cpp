@@ -19,7 +19,7 @@ bool slumps(int n) {
   body.grid.axes[2].low = FaceKind::no_slip;
   bodies::fill_box<ThreeD>(body, Vec<3>::Zero(), Vec<3>::Constant(0.3), 2,
                            [&](const auto& x) { return 2400.0 * 9.81 * (0.3 - x[2]); });
-  body.mix.thixotropy = Thixotropy{1.3, 0.01};
+  body.mix.thixotropy = Thixotropy{1.3, GatedKinetics{0.01}};
   shrink(body.points);
   body.points.lambda.assign(body.points.size(), 0.0);
   body.points.gamma_dot.assign(body.points.size(), 0.0);

@@ -113,7 +113,7 @@ Points<2> spread_for_a_while(int threads) {
   omp_set_num_threads(threads);
   ImplicitBody<Axisymmetric> body;
   body.mix = concrete(54.0, 35.8);
-  body.mix.thixotropy = Thixotropy{.A_thix = 1.3, .alpha = 0.0358};
+  body.mix.thixotropy = Thixotropy{1.3, GatedKinetics{0.0358}};
   body.gravity = {0.0, -g};
   body.grid.axes[0] = {.h = 0.02, .low = FaceKind::free_slip};
   body.grid.axes[1] = {.h = 0.01, .low = FaceKind::no_slip};

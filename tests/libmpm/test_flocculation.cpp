@@ -11,8 +11,9 @@ namespace tremie {
 namespace {
 
 constexpr double tau_0 = 54.0;
-const Thixotropy roussel{.A_thix = 1.3, .alpha = 0.0358, .kinetics = Kinetics::roussel};
-const Thixotropy gated{.A_thix = 1.3, .alpha = 0.0358, .kinetics = Kinetics::gated, .gamma_c = 0.1};
+constexpr double alpha = 0.0358;
+const Thixotropy roussel{1.3, RousselKinetics{alpha}};
+const Thixotropy gated{1.3, GatedKinetics{alpha, 0.1}};
 
 using History = std::function<double(double)>;
 
@@ -26,7 +27,7 @@ double march(const Thixotropy& t, const History& rate, double lambda, double end
 /// d lambda/dt = A/tau_0 - alpha lambda gamma_dot by the classical Runge-Kutta method of fourth order.
 double runge_kutta(const History& rate, double lambda, double end, int steps) {
   const double h = end / steps;
-  const auto f = [&](double t, double y) { return roussel.A_thix / tau_0 - roussel.alpha * y * rate(t); };
+  const auto f = [&](double t, double y) { return roussel.A_thix / tau_0 - alpha * y * rate(t); };
   for (int i = 0; i < steps; ++i) {
     const double t = i * h, a = f(t, lambda), b = f(t + h / 2, lambda + h / 2 * a),
                  c = f(t + h / 2, lambda + h / 2 * b);
@@ -48,7 +49,7 @@ TEST(Flocculation, Rest) {
 TEST(Flocculation, ConstantRate) {
   for (double rate : {1e-9, 1e-4, 0.3, 12.43, 1e3})
     for (int steps : {1, 3, 100}) {
-      const double k = roussel.alpha * rate, L = roussel.A_thix / tau_0 / k, t = 20.0;
+      const double k = alpha * rate, L = roussel.A_thix / tau_0 / k, t = 20.0;
       const double exact = 5.78 * std::exp(-k * t) - L * std::expm1(-k * t);
       EXPECT_NEAR(march(
                       roussel, [&](double) { return rate; }, 5.78, t, steps) /
@@ -85,14 +86,14 @@ TEST(Flocculation, SecondOrderOnSmoothHistories) {
 
 // alpha gamma_dot dt = 1e6: lambda lands on the balance A/(tau_0 alpha g) and stays in [0, start + build-up].
 TEST(Flocculation, HugeSteps) {
-  const double rate = 1e4, dt = 1e6 / (roussel.alpha * rate);
-  EXPECT_NEAR(flocculation_step(5.78, roussel, tau_0, rate, rate, dt) / (1.3 / 54.0 / (roussel.alpha * rate)),
-              1.0, 1e-12);
+  const double rate = 1e4, dt = 1e6 / (alpha * rate);
+  EXPECT_NEAR(flocculation_step(5.78, roussel, tau_0, rate, rate, dt) / (1.3 / 54.0 / (alpha * rate)), 1.0,
+              1e-12);
   for (const Thixotropy& t : {roussel, gated})
     for (double k = 1e-12; k < 2e6; k *= 10.0)
       for (double g0 : {0.0, 0.05, 50.0})
         for (double g1 : {0.0, 0.05, 50.0}) {
-          const double step = k / (t.alpha * 50.0), lambda = flocculation_step(2.0, t, tau_0, g0, g1, step);
+          const double step = k / (alpha * 50.0), lambda = flocculation_step(2.0, t, tau_0, g0, g1, step);
           EXPECT_GE(lambda, 0.0);
           EXPECT_LE(lambda, (2.0 + t.A_thix / tau_0 * step) * (1.0 + 1e-12));
         }

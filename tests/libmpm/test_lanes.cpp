@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "libmpm/constitutive/simd_laws.hpp"
+#include "libmpm/constitutive/flocculation.hpp"
 #include "libmpm/constitutive/yield_law.hpp"
 #include "libmpm/explicit/tiled_particles.hpp"
 #include "libmpm/geometry/gradients.hpp"
@@ -74,9 +74,9 @@ TEST(LaneLaws, AsTheScalarLaws) {
 // Both kinetics at rates on either side of the gate and across it.
 TEST(LaneLaws, FlocculationAsTheScalarUpdate) {
   std::mt19937 random(3);
-  for (const Kinetics kinetics : {Kinetics::gated, Kinetics::roussel})
+  for (const Kinetics& kinetics : {Kinetics{GatedKinetics{0.03}}, Kinetics{RousselKinetics{0.03}}})
     for (int i = 0; i < 500; ++i) {
-      const Thixotropy t{1.3, 0.03, kinetics, 0.1, 0.0};
+      const Thixotropy t{1.3, kinetics};
       const f64x8 lambda = random_lanes(random, 0.0, 7.0);
       const f64x8 g0 = random_lanes(random, 0.0, i % 2 ? 0.2 : 10.0);
       const f64x8 g1 = random_lanes(random, 0.0, i % 3 ? 0.2 : 10.0);

@@ -46,7 +46,7 @@ inline std::vector<double> even_times(int n, double end) {
 
 /// Mix A after 240 s of rest at 0.25 rev/s; the torque of a grid eight times finer than the fit's.
 inline CouetteDecay exact_decay(const std::vector<double>& times) {
-  const CouetteFlow flow{mix_a, {1.3, alpha, Kinetics::gated, 0.1, lambda_0}, omega, {}};
+  const CouetteFlow flow{mix_a, {1.3, GatedKinetics{alpha}, lambda_0}, omega, {}};
   CouetteOptions options;
   options.intervals = 800;
   options.relative_tolerance = 1e-8;

@@ -238,7 +238,7 @@ TEST(Fit, SaysWhenTheSizesAreThoseOfAWrongUnit) {
 TEST(FitTorqueDecay, PowerKineticsFitNoWorseThanRoussels) {
   FitInput input = decay_input();
   input.choose_kinetics = true;
-  const CouetteFlow flow{mix_a, {1.3, 0.02, Kinetics::roussel, 0.1, lambda_0}, omega, {}};
+  const CouetteFlow flow{mix_a, {1.3, RousselKinetics{0.02}, lambda_0}, omega, {}};
   const FitResult f = fit(torque_decay(thixotropic_couette(flow, even_times(60, 60.0), {}), 0.003), input);
   ASSERT_EQ(f.candidates.size(), 3u);
   // each leaves out outliers of its own

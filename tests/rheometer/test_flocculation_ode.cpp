@@ -17,8 +17,9 @@ namespace tremie {
 namespace {
 
 constexpr double tau_0 = 54.0, tolerance = 1e-11;
-const Thixotropy roussel{1.3, 0.0358, Kinetics::roussel, 0.1, 0.0};
-const Thixotropy gated{1.3, 0.0358, Kinetics::gated, 0.1, 0.0};
+constexpr double alpha = 0.0358, gamma_c = 0.1;
+const Thixotropy roussel{1.3, RousselKinetics{alpha}};
+const Thixotropy gated{1.3, GatedKinetics{alpha, gamma_c}};
 
 std::vector<double> sample_times(double end, int n) {
   std::vector<double> t;
@@ -34,7 +35,7 @@ TEST(FlocculationOde, FollowsTheClosedFormAtConstantRate) {
     const auto result =
         flocculation_ode(segments({{20.0, gamma_dot, gamma_dot}}), roussel, tau_0, 5.78, times);
     for (std::size_t i = 0; i < times.size(); ++i) {
-      const double k = roussel.alpha * gamma_dot * times[i];
+      const double k = alpha * gamma_dot * times[i];
       const double build = k > 0.0 ? -std::expm1(-k) / k : 1.0;
       const double exact = 5.78 * std::exp(-k) + roussel.A_thix / tau_0 * times[i] * build;
       EXPECT_NEAR(result.lambda[i], exact, tolerance * 5.78) << gamma_dot << " 1/s at " << times[i] << " s";
@@ -72,7 +73,7 @@ TEST(FlocculationOde, FindsTheGateOfASmoothRate) {
   const double period = 2.0 * std::acos(-1.0);
   const std::vector<ShearPiece> history{{2.0 * period, [](double t) { return 2.0 - 2.0 * std::cos(t); }}};
   const auto result = flocculation_ode(history, gated, tau_0, 3.0, std::vector{period, 2.0 * period});
-  const double c = std::acos(1.0 - 0.5 * gated.gamma_c), build = 1.3 / 54.0 * c;
+  const double c = std::acos(1.0 - 0.5 * gamma_c), build = 1.3 / 54.0 * c;
   const auto area = [](double t) { return 2.0 * t - 2.0 * std::sin(t); };
   const double decay = std::exp(-0.0358 * (area(period - c) - area(c)));
   const double first = (3.0 + build) * decay + build, second = (first + build) * decay + build;
@@ -91,8 +92,7 @@ TEST(FlocculationOde, AHistoryThatStartsOnTheGateMovesToItsSide) {
 // alpha gamma_dot = 1e6 1/s: after the first microseconds lambda is A/(tau_0 alpha gamma_dot) for the rest of
 // the second.
 TEST(FlocculationOde, TakesBdfForAStiffHistoryAndAdamsForASoftOne) {
-  Thixotropy stiff = roussel;
-  stiff.alpha = 1.0;
+  const Thixotropy stiff{1.3, RousselKinetics{1.0}};
   const auto fast = flocculation_ode(segments({{1.0, 1e6, 1e6}}), stiff, tau_0, 5.0, std::vector{1.0});
   EXPECT_TRUE(fast.used_bdf);
   EXPECT_NEAR(fast.lambda[0], 1.3 / 54.0 / 1e6, tolerance);

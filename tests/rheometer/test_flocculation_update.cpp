@@ -1,4 +1,4 @@
-// The per-point updates of lambda (libmpm/constitutive/flocculation.hpp, flocculation_history.hpp) against closed forms
+// The per-point updates of lambda (libmpm/constitutive/flocculation.hpp) against closed forms
 // and against CVODE.
 
 #include <gtest/gtest.h>
@@ -6,18 +6,19 @@
 #include <cmath>
 #include <vector>
 
-#include "libmpm/constitutive/flocculation_history.hpp"
+#include "libmpm/constitutive/flocculation.hpp"
 #include "rheometer/reference/flocculation_ode.hpp"
 
 namespace tremie {
 namespace {
 
 constexpr double tau_0 = 54.0;
-const Thixotropy roussel{1.3, 0.0358, Kinetics::roussel, 0.1, 0.0};
-const Thixotropy gated{1.3, 0.0358, Kinetics::gated, 0.1, 0.0};
+constexpr double alpha = 0.0358;
+const Thixotropy roussel{1.3, RousselKinetics{alpha}};
+const Thixotropy gated{1.3, GatedKinetics{alpha, 0.1}};
 
 double closed_form(double lambda_0, const Thixotropy& t, double gamma_dot, double time) {
-  const long double k = static_cast<long double>(t.alpha) * gamma_dot * time;
+  const long double k = static_cast<long double>(alpha) * gamma_dot * time;
   const long double build = k > 0.0L ? -std::expm1(-k) / k : 1.0L;
   return static_cast<double>(lambda_0 * std::exp(-k) + t.A_thix / tau_0 * time * build);
 }
@@ -40,8 +41,7 @@ TEST(FlocculationUpdate, IsExactAtConstantRateForAnyStep) {
 // gamma_dot).
 TEST(FlocculationUpdate, NeitherOvershootsNorTurnsNegativeInAStiffStep) {
   for (const Thixotropy& t : {roussel, gated}) {
-    const double gamma_dot = 1e6 / t.alpha,
-                 floor = t.kinetics == Kinetics::roussel ? t.A_thix / tau_0 / 1e6 : 0.0;
+    const double gamma_dot = 1e6 / alpha, floor = !gate(t.kinetics) ? t.A_thix / tau_0 / 1e6 : 0.0;
     double lambda = 5.78;
     for (int i = 0; i < 5; ++i) {
       const double next = flocculation_step(lambda, t, tau_0, gamma_dot, gamma_dot, 1.0);
@@ -62,7 +62,7 @@ TEST(FlocculationUpdate, StaysPositiveAndBoundedForEveryStepAndRate) {
   for (const Thixotropy& t : {roussel, gated})
     for (double k = 1e-10; k < 2e6; k *= 10.0)
       for (unsigned pattern = 0; pattern < 256; ++pattern) {
-        const double dt = k / (t.alpha * 50.0), most = 2.0 + t.A_thix / tau_0 * dt;
+        const double dt = k / (alpha * 50.0), most = 2.0 + t.A_thix / tau_0 * dt;
         const auto rate = [&](double time) {
           return pattern >> static_cast<unsigned>(std::lround(7.0 * time / dt)) & 1u ? 50.0 : 0.0;
         };

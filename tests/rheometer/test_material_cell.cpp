@@ -15,7 +15,7 @@ Mix mix_a(bool thixotropic = true) {
   Mix mix;
   mix.tau_0 = 54.0;
   mix.mu = 35.8;
-  if (thixotropic) mix.thixotropy = Thixotropy{1.3, 0.01, Kinetics::gated, 0.1, 0.0};
+  if (thixotropic) mix.thixotropy = Thixotropy{1.3, GatedKinetics{0.01}};
   return mix;
 }
 
@@ -65,7 +65,7 @@ TEST(MaterialCell, TheHysteresisAreaIsThatBetweenTheBranches) {
   EXPECT_NEAR(*none.hysteresis_area, 0.0, 1e-9);
 
   Mix mix = mix_a();
-  mix.thixotropy = Thixotropy{0.0, 0.02, Kinetics::roussel, 0.1, 1.0};
+  mix.thixotropy = Thixotropy{0.0, RousselKinetics{0.02}, 1.0};
   const CellResult r = run_cell({mix, 0.0, loop, 1e-3}, ExactBingham{});
   // up: lambda = e^(-a g^2/2) at g = t; down: lambda = e^(-a (100 - g^2/2)), a = 0.02
   double area = 0.0;

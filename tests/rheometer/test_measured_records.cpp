@@ -179,8 +179,7 @@ TEST(Fit, GivesNoNumberThatARecordDoesNotHold) {
 // A power law's decay is told from an exponential one, and a speed that is given to fewer digits (0.005 %) moves no value
 // by more than a tenth of its interval.
 TEST(FitTorqueDecay, ChoosesTheKineticsAndIsNotMovedByTheLastDigitOfTheSpeed) {
-  CouetteFlow flow{mix_a, {0.0, 2e-4, Kinetics::power, 0.0, 8.0}, omega, {}};
-  flow.thixotropy.exponent = 3.0;
+  CouetteFlow flow{mix_a, {0.0, PowerKinetics{2e-4, 0.0, 3.0}, 8.0}, omega, {}};
   const std::vector<double> times = even_times(150, 30.0);
   TorqueRecord record;
   record.kind = RecordKind::torque_decay;

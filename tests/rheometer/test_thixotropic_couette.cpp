@@ -16,8 +16,10 @@ namespace {
 const Bingham mix_a{54.0, 35.8};
 const double rested = 1.3 * 240.0 / 54.0;
 
-CouetteFlow mix_a_rested(Kinetics kinetics = Kinetics::gated) {
-  return {mix_a, {1.3, 0.0358, kinetics, 0.1, rested}, angular_speed(0.25), {}};
+const Kinetics gated = GatedKinetics{0.0358}, roussel = RousselKinetics{0.0358};
+
+CouetteFlow mix_a_rested(const Kinetics& kinetics = gated) {
+  return {mix_a, {1.3, kinetics, rested}, angular_speed(0.25), {}};
 }
 
 // Mix A after 240 s of rest at 0.25 rev/s, computed independently: 2.36 -> 1.63 (5 s) -> 1.38 (10 s) -> 1.24
@@ -52,7 +54,7 @@ TEST(ThixotropicCouette, StartsAsReinerRiwlin) {
 // Without build-up, lambda decays to 0 wherever there is shear; fully sheared, that leaves the dynamic
 // Bingham material.
 TEST(ThixotropicCouette, EndsAsReinerRiwlinWhenAllIsSheared) {
-  CouetteFlow flow{mix_a, {0.0, 0.1, Kinetics::gated, 0.1, 1.0}, angular_speed(1.0), {}};
+  CouetteFlow flow{mix_a, {0.0, GatedKinetics{0.1}, 1.0}, angular_speed(1.0), {}};
   const CouetteDecay d = thixotropic_couette(flow, std::vector{400.0});
   EXPECT_NEAR(d.torque[0] / reiner_riwlin(mix_a, flow.omega).torque, 1.0, 1e-5);
   EXPECT_DOUBLE_EQ(d.sheared_radius[0], Instrument{}.container_radius);
@@ -63,7 +65,7 @@ TEST(ThixotropicCouette, EndsAsReinerRiwlinWhenAllIsSheared) {
 // torque. The rate varies by 2 % across the gap, the torque by less.
 TEST(ThixotropicCouette, ANarrowGapDecaysAsOneCell) {
   const Instrument narrow{0.100, 0.1, 0.101};
-  CouetteFlow flow{mix_a, {0.0, 0.02, Kinetics::gated, 0.1, 2.0}, 0.05, {}};
+  CouetteFlow flow{mix_a, {0.0, GatedKinetics{0.02}, 2.0}, 0.05, {}};
   const double gamma_dot = newtonian_shear_rate(flow.omega, narrow);
   const std::vector<double> times{2.0, 5.0, 10.0};
   const CouetteDecay d = thixotropic_couette(flow, times, narrow);
@@ -81,11 +83,11 @@ TEST(ThixotropicCouette, LambdaAtTheVaneFollowsTheFlocculationEquation) {
   o.keep_profiles = true;
   std::vector<double> times;
   for (int i = 0; i <= 400; ++i) times.push_back(0.05 * i);
-  const CouetteDecay d = thixotropic_couette(mix_a_rested(Kinetics::roussel), times, {}, o);
+  const CouetteDecay d = thixotropic_couette(mix_a_rested(roussel), times, {}, o);
   std::vector<ShearSegment> replay;
   for (std::size_t i = 1; i < times.size(); ++i)
     replay.push_back({0.05, d.profile[i - 1].gamma_dot[0], d.profile[i].gamma_dot[0]});
-  const Thixotropy kinetics{1.3, 0.0358, Kinetics::roussel, 0.1, 0.0};
+  const Thixotropy kinetics{1.3, roussel};
   const double lambda =
       flocculation_ode(linear_pieces(replay), kinetics, 54.0, rested, std::vector{20.0}).lambda[0];
   // a rate replayed piecewise linearly every 0.05 s is good to 1e-4
@@ -93,7 +95,7 @@ TEST(ThixotropicCouette, LambdaAtTheVaneFollowsTheFlocculationEquation) {
 }
 
 TEST(ThixotropicCouette, ConvergesInRadius) {
-  for (const Kinetics kinetics : {Kinetics::gated, Kinetics::roussel}) {
+  for (const Kinetics& kinetics : {gated, roussel}) {
     const std::vector<double> times{5.0, 10.0};
     std::vector<CouetteDecay> d;
     for (const int n : {100, 200, 400, 800}) {
@@ -132,7 +134,7 @@ TEST(ThixotropicCouette, ConvergesInTime) {
 // T Omega is all dissipated, mu gamma_dot^2 + (1 + lambda) tau_0 gamma_dot over the sheared volume. The
 // trapezium over 800 intervals with the plug's edge inside one is good to 1e-4; 1e-3 is asked for.
 TEST(ThixotropicCouette, TheTorqueSuppliesTheDissipatedPower) {
-  for (const Kinetics kinetics : {Kinetics::gated, Kinetics::roussel}) {
+  for (const Kinetics& kinetics : {gated, roussel}) {
     const CouetteFlow flow = mix_a_rested(kinetics);
     CouetteOptions o;
     o.intervals = 800;
@@ -145,7 +147,7 @@ TEST(ThixotropicCouette, TheTorqueSuppliesTheDissipatedPower) {
 }
 
 TEST(ThixotropicCouette, FollowsAChangingSpeed) {
-  CouetteFlow flow{mix_a, {0.0, 0.0, Kinetics::gated, 0.1, 0.0}, 0.0, [](double t) { return 0.5 + 0.2 * t; }};
+  CouetteFlow flow{mix_a, {0.0, GatedKinetics{0.0}, 0.0}, 0.0, [](double t) { return 0.5 + 0.2 * t; }};
   const std::vector<double> times{0.0, 3.0, 12.0};
   const CouetteDecay d = thixotropic_couette(flow, times);
   for (std::size_t i = 0; i < times.size(); ++i)

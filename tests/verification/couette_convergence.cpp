@@ -18,11 +18,13 @@ namespace {
 
 const std::vector<double> times{0.0, 5.0, 10.0, 20.0};
 
-CouetteFlow mix_a(Kinetics kinetics) {
-  return {{54.0, 35.8}, {1.3, 0.0358, kinetics, 0.1, 1.3 * 240.0 / 54.0}, angular_speed(0.25), {}};
+const Kinetics gated_kinetics = GatedKinetics{0.0358}, roussel_kinetics = RousselKinetics{0.0358};
+
+CouetteFlow mix_a(const Kinetics& kinetics) {
+  return {{54.0, 35.8}, {1.3, kinetics, 1.3 * 240.0 / 54.0}, angular_speed(0.25), {}};
 }
 
-CouetteDecay solve(Kinetics kinetics, int intervals, double tolerance) {
+CouetteDecay solve(const Kinetics& kinetics, int intervals, double tolerance) {
   CouetteOptions options;
   options.intervals = intervals;
   options.relative_tolerance = tolerance;
@@ -31,7 +33,7 @@ CouetteDecay solve(Kinetics kinetics, int intervals, double tolerance) {
   return thixotropic_couette(mix_a(kinetics), times, {}, options);
 }
 
-void write_rows(std::ofstream& out, Kinetics kinetics, const char* name, const CouetteDecay& finest) {
+void write_rows(std::ofstream& out, const Kinetics& kinetics, const char* name, const CouetteDecay& finest) {
   const auto row = [&](int intervals, double tolerance) {
     const CouetteDecay d = solve(kinetics, intervals, tolerance);
     out << "| " << name << " | " << intervals << " | " << std::setprecision(1) << std::scientific << tolerance
@@ -54,8 +56,8 @@ void write_decay(const std::string& directory) {
   out << "time_s,torque_gated_N_m,torque_roussel_N_m,sheared_radius_gated_mm,sheared_radius_roussel_mm\n";
   std::vector<double> t;
   for (int i = 0; i <= 200; ++i) t.push_back(0.1 * i);
-  const CouetteDecay gated = thixotropic_couette(mix_a(Kinetics::gated), t);
-  const CouetteDecay roussel = thixotropic_couette(mix_a(Kinetics::roussel), t);
+  const CouetteDecay gated = thixotropic_couette(mix_a(gated_kinetics), t);
+  const CouetteDecay roussel = thixotropic_couette(mix_a(roussel_kinetics), t);
   report::LineChart torque{.title = "Torque", .x_label = "time (s)", .y_label = "torque (N·m)", .curves = {}},
       sheared{.title = "Sheared as far as", .x_label = "time (s)", .y_label = "radius (mm)", .curves = {}};
   torque.curves = {curve("gated"),
@@ -87,7 +89,7 @@ void run(const std::string& directory) {
          "IDA's steps. The chart is couette_decay.svg.\n\n"
       << "| kinetics | intervals | tolerance | T(0) | T(5 s) | T(10 s) | T(20 s) | power | steps |\n"
          "|---|---|---|---|---|---|---|---|---|\n";
-  for (const auto& [kinetics, name] : {std::pair{Kinetics::gated, "gated"}, {Kinetics::roussel, "roussel"}}) {
+  for (const auto& [kinetics, name] : {std::pair{gated_kinetics, "gated"}, {roussel_kinetics, "roussel"}}) {
     const CouetteDecay finest = solve(kinetics, 3200, 1e-9);
     write_rows(out, kinetics, name, finest);
     out << "| " << name << " | 3200 | 1e-9 |" << std::setprecision(7);

@@ -54,7 +54,7 @@ Scene plane(double cell_mm, double duration) {
 Scene decay(double cell_mm) {
   Scene scene = plane(cell_mm, 20.0);
   scene.rest = 240.0;
-  scene.mix.thixotropy = Thixotropy{.A_thix = 1.3, .alpha = 0.0358};
+  scene.mix.thixotropy = Thixotropy{1.3, GatedKinetics{0.0358}};
   return scene;
 }
 

@@ -144,7 +144,7 @@ TEST(VanePlane, OrientationDoesNotMatter) {
 
 TEST(VanePlane, TheOtherWayRoundTheTorqueIsMinusTheSame) {
   Scene s = plane(54.0, 0.3);
-  s.mix.thixotropy = Thixotropy{.A_thix = 1.3, .alpha = 0.01};
+  s.mix.thixotropy = Thixotropy{1.3, GatedKinetics{0.01}};
   const auto there = run(s).series;
   s.speed = -s.speed;
   const auto back = run(s).series;
@@ -202,7 +202,7 @@ TEST(VaneCouette, WithoutBreakdownTheTorqueIsOfTheStaticYieldStress) {
   scene.model.space = SpaceKind::couette;
   scene.model.cell = {0.001, 0.001};
   scene.mix.tau_0 = 54.0, scene.mix.mu = mu;
-  scene.mix.thixotropy = Thixotropy{.A_thix = 1.3, .alpha = 0.0};
+  scene.mix.thixotropy = Thixotropy{1.3, GatedKinetics{0.0}};
   scene.rest = 240.0;
   scene.duration = 2.0;
   const Outcome outcome = run(scene);

@@ -90,9 +90,7 @@ FitInput input_of(const Options& o) {
   in.tau_0 = quantity("--yield-stress", o.yield_stress, Dimension::pressure);
   in.mu = quantity("--plastic-viscosity", o.plastic_viscosity, Dimension::viscosity);
   in.choose_kinetics = o.kinetics == "auto";
-  in.kinetics = o.kinetics == "roussel" ? Kinetics::roussel
-                : o.kinetics == "power" ? Kinetics::power
-                                        : Kinetics::gated;
+  in.kinetics = kinetics_named(o.kinetics).value_or(Kinetics{});
   in.max_aggregate = quantity("--max-aggregate", o.max_aggregate, Dimension::length).value_or(0.0);
   in.law = o.law == "auto"               ? FlowLaw::automatic
            : o.law == "herschel_bulkley" ? FlowLaw::herschel_bulkley
@@ -474,7 +472,9 @@ void add_command_fit(CLI::App& app, int& exit_code) {
   command.option("--rest", o->rest, "before a torque decay: \"240 s\"");
   command.option("--yield-stress", o->yield_stress, "dynamic, where it is known: \"54 Pa\"");
   command.option("--plastic-viscosity", o->plastic_viscosity, "where it is known: \"35.8 Pa.s\"");
-  command.choice("--kinetics", o->kinetics, {"auto", "gated", "roussel", "power"}, "of the flocculation");
+  std::vector<std::string> kinetics = kinetics_words();
+  kinetics.insert(kinetics.begin(), "auto");
+  command.choice("--kinetics", o->kinetics, kinetics, "of the flocculation");
   command.choice("--law", o->law, {"auto", "bingham", "herschel_bulkley"},
                  "of a flow curve: the law, or both compared");
   command.option("--critical-shear-rate", o->critical_shear_rate,

@@ -44,12 +44,10 @@ double quantity(const std::string& name, const std::string& text, const std::str
   }
 }
 
-Kinetics kinetics_named(const std::string& name) {
-  if (name == "gated") return Kinetics::gated;
-  if (name == "roussel") return Kinetics::roussel;
-  if (name == "power") return Kinetics::power;
-  throw scene::InputError(
-      fmt::format("kinetics: \"{}\" is not allowed; allowed: \"gated\", \"roussel\", \"power\"", name));
+Kinetics kinetics_of(const std::string& name) {
+  if (const auto kinetics = kinetics_named(name)) return *kinetics;
+  throw scene::InputError(fmt::format("kinetics: \"{}\" is not allowed; allowed: \"{}\"", name,
+                                      fmt::join(kinetics_words(), "\", \"")));
 }
 
 FlowLaw law_named(const std::string& name) {
@@ -69,7 +67,7 @@ FitInput input_of(const Instrument& instrument, Optional omega, Optional rest, O
           .mu = mu,
           .omega = omega,
           .rest = rest,
-          .kinetics = choose ? Kinetics::gated : kinetics_named(kinetics),
+          .kinetics = choose ? Kinetics{} : kinetics_of(kinetics),
           .max_aggregate = max_aggregate.value_or(0.0),
           .choose_kinetics = choose,
           .law = law_named(law),
@@ -174,8 +172,12 @@ void add_rheometer(py::module_& module) {
   py::class_<Thixotropy>(module, "Thixotropy")
       .def(py::init([](double A_thix, double alpha, const std::string& kinetics, double gamma_c,
                        double exponent, Optional saturation) {
-             Thixotropy t{A_thix, alpha, kinetics_named(kinetics), gamma_c, 0.0, exponent};
-             if (saturation) t.saturation = *saturation;
+             Thixotropy t{A_thix, kinetics_of(kinetics)};
+             const auto set = [&](const char* name, Optional value) {
+               if (double* member = parameter(t.kinetics, name); member && value) *member = *value;
+             };
+             set("destructuration", alpha), set("critical_shear_rate", gamma_c);
+             set("exponent", exponent), set("saturation", saturation);
              return t;
            }),
            "A_thix"_a, "alpha"_a, "kinetics"_a, "gamma_c"_a, "exponent"_a, "saturation"_a);

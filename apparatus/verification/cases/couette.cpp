@@ -78,7 +78,7 @@ double decay_error(const std::vector<icar_vane::Sample>& s, const CouetteDecay& 
 
 icar_vane::Scene decay_scene(double cell_mm) {
   icar_vane::Scene scene = scene_of({54.0, 35.8}, 0.25, cell_mm);
-  scene.mix.thixotropy = Thixotropy{.A_thix = 1.3, .alpha = 0.0358};
+  scene.mix.thixotropy = Thixotropy{1.3, GatedKinetics{0.0358}};
   scene.rest = 240.0;
   scene.duration = 20.0;
   scene.with_reference = false;
@@ -101,7 +101,7 @@ Problem decay(Depth depth) {
   options.intervals = 800;
   options.relative_tolerance = 1e-8;
   const double lambda = flocculation_after_rest(0.0, {.A_thix = 1.3}, 54.0, 240.0);
-  CouetteFlow flow{{54.0, 35.8}, {1.3, 0.0358, Kinetics::gated, 0.1, lambda}, angular_speed(0.25), {}};
+  CouetteFlow flow{{54.0, 35.8}, {1.3, GatedKinetics{0.0358}, lambda}, angular_speed(0.25), {}};
   const CouetteDecay at_once = thixotropic_couette(flow, times, {}, options);
   flow.omega_of_time = [&](double time) { return flow.omega * icar_vane::start_up(time); };
   const CouetteDecay started = thixotropic_couette(flow, times, {}, options);

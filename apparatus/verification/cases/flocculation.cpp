@@ -81,11 +81,12 @@ std::vector<double> every_second(double until) {
 /// Worst relative error of one step at a constant rate, over rates and step sizes, against the closed form.
 Problem constant_rate() {
   const double start = cpu_seconds();
-  const Thixotropy t{.A_thix = 1.3, .alpha = 0.0358, .kinetics = Kinetics::roussel};
+  constexpr double alpha = 0.0358;
+  const Thixotropy t{1.3, RousselKinetics{alpha}};
   double worst = 0.0;
   for (double rate = 1e-3; rate < 1e7; rate *= 10.0)
     for (double dt = 1e-6; dt < 1e3; dt *= 10.0) {
-      const long double k = static_cast<long double>(t.alpha) * rate * dt, build = 1.3L * dt / 54.0L;
+      const long double k = static_cast<long double>(alpha) * rate * dt, build = 1.3L * dt / 54.0L;
       const double exact = static_cast<double>(5.0L * std::exp(-k) - build * std::expm1(-k) / k);
       worst = std::max(worst, std::abs(flocculation_step(5.0, t, 54.0, rate, rate, dt) / exact - 1.0));
     }
@@ -103,9 +104,7 @@ Problem constant_rate() {
 
 Case flocculation_case(Depth depth) {
   Case result{2, "The flocculation state", {constant_rate()}};
-  const Thixotropy roussel{.A_thix = 1.3, .alpha = 0.0358, .kinetics = Kinetics::roussel};
-  Thixotropy gated = roussel;
-  gated.kinetics = Kinetics::gated;
+  const Thixotropy roussel{1.3, RousselKinetics{0.0358}}, gated{1.3, GatedKinetics{0.0358}};
   const ShearPiece cosine = {.duration = 20.0,
                              .rate = [](double t) { return 5.0 * (1.0 - std::cos(0.5 * t)); }};
   const study::Case smooth{

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "libmpm/constitutive/flocculation_history.hpp"
 #include "rheometer/reference/flocculation_ode.hpp"
+#include "rheometer/reference/kinetics_equations.hpp"
 
 namespace tremie::study {
 
@@ -44,13 +44,14 @@ inline double one_step_along(const Thixotropy& t, double lambda, const Step& s) 
 /// The whole step on the side of the gate that its mean rate is on.
 inline double one_step_without_split(const Thixotropy& t, double lambda, const Step& s) {
   const double mean = 0.5 * (s.g0 + s.g1);
-  return mean < t.gamma_c ? lambda + t.A_thix / tau_0 * s.dt : lambda * std::exp(-t.alpha * mean * s.dt);
+  const auto& k = std::get<GatedKinetics>(t.kinetics);
+  return mean < k.gamma_c ? lambda + t.A_thix / tau_0 * s.dt : lambda * std::exp(-k.alpha * mean * s.dt);
 }
 
 inline double one_step_of_euler(const Thixotropy& t, double lambda, const Step& s) {
-  const bool builds = t.kinetics == Kinetics::roussel || s.g0 < t.gamma_c;
-  const bool breaks = t.kinetics == Kinetics::roussel || s.g0 >= t.gamma_c;
-  return lambda + s.dt * ((builds ? t.A_thix / tau_0 : 0.0) - (breaks ? t.alpha * lambda * s.g0 : 0.0));
+  const bool flowing = s.g0 >= gate(t.kinetics).value_or(0.0);
+  return lambda +
+         s.dt * kinetics_equations::rate_of_lambda(t.kinetics, t.A_thix / tau_0, lambda, s.g0, flowing);
 }
 
 /// lambda at the case's times, in equal steps of about dt between them. Times and pieces end together.

@@ -16,25 +16,28 @@ struct User {
   bool flowing;
 };
 
+double gamma_c_of(const Thixotropy& t) { return gate(t.kinetics).value_or(0.0); }
+
 int right_hand_side(sunrealtype t, N_Vector y, N_Vector ydot, void* data) {
   const User& user = *static_cast<const User*>(data);
-  const bool roussel = user.thixotropy->kinetics == Kinetics::roussel;
-  double sum = roussel || !user.flowing ? user.thixotropy->A_thix / tau_0 : 0.0;
-  if (roussel || user.flowing) sum -= user.thixotropy->alpha * values(y)[0] * user.piece->rate(t);
-  values(ydot)[0] = sum;
+  values(ydot)[0] =
+      kinetics_equations::rate_of_lambda(user.thixotropy->kinetics, user.thixotropy->A_thix / tau_0,
+                                         values(y)[0], user.piece->rate(t), user.flowing);
   return 0;
 }
 
-int jacobian(sunrealtype t, N_Vector, N_Vector, SUNMatrix J, void* data, N_Vector, N_Vector, N_Vector) {
+int jacobian(sunrealtype t, N_Vector y, N_Vector, SUNMatrix J, void* data, N_Vector, N_Vector, N_Vector) {
   const User& user = *static_cast<const User*>(data);
-  const bool breaks = user.thixotropy->kinetics == Kinetics::roussel || user.flowing;
-  SUNDenseMatrix_Data(J)[0] = breaks ? -user.thixotropy->alpha * user.piece->rate(t) : 0.0;
+  const auto d =
+      kinetics_equations::derivatives_of(user.thixotropy->kinetics, user.thixotropy->A_thix / tau_0,
+                                         values(y)[0], user.piece->rate(t), user.flowing);
+  SUNDenseMatrix_Data(J)[0] = d.build_by_lambda - d.k * d.broken_by_lambda;
   return 0;
 }
 
-int gate(sunrealtype t, N_Vector, sunrealtype* g, void* data) {
+int distance_to_gate(sunrealtype t, N_Vector, sunrealtype* g, void* data) {
   const User& user = *static_cast<const User*>(data);
-  g[0] = user.piece->rate(t) - user.thixotropy->gamma_c;
+  g[0] = user.piece->rate(t) - gamma_c_of(*user.thixotropy);
   return 0;
 }
 
@@ -63,7 +66,7 @@ std::vector<double> by_arkode(const Case& c, double tolerance, bool stiff) {
   double piece_start = 0.0;
   std::size_t next = 0;
   for (const ShearPiece& piece : c.history) {
-    User user{&c.thixotropy, &piece, piece.rate(1e-6 * piece.duration) >= c.thixotropy.gamma_c};
+    User user{&c.thixotropy, &piece, piece.rate(1e-6 * piece.duration) >= gamma_c_of(c.thixotropy)};
     void* memory = ARKStepCreate(stiff ? nullptr : right_hand_side, stiff ? right_hand_side : nullptr, 0.0,
                                  y.get, context.get);
     SundialsMatrix J(SUNDenseMatrix(1, 1, context.get));
@@ -77,8 +80,8 @@ std::vector<double> by_arkode(const Case& c, double tolerance, bool stiff) {
       sundials_ok(ARKStepSetLinear(memory, 1), "ARKStepSetLinear");
       sundials_ok(ARKStepSetNonlinConvCoef(memory, 1e-3), "ARKStepSetNonlinConvCoef");
     }
-    if (c.thixotropy.kinetics == Kinetics::gated) {
-      sundials_ok(ARKStepRootInit(memory, 1, gate), "ARKStepRootInit");
+    if (gate(c.thixotropy.kinetics)) {
+      sundials_ok(ARKStepRootInit(memory, 1, distance_to_gate), "ARKStepRootInit");
       ARKStepSetNoInactiveRootWarn(memory);
     }
     while (next < c.times.size() && c.times[next] <= (piece_start + piece.duration) * (1.0 + 1e-12)) {
@@ -107,7 +110,7 @@ double by_cvode_step_by_step(const Case& c, double tolerance, double dt, std::sp
   sundials_ok(CVodeSetJacFn(memory, jacobian), "CVodeSetJacFn");
   for (std::size_t i = 1; i < rates.size(); ++i) {
     step = linear_piece({dt, rates[i - 1], rates[i]});
-    user.flowing = step.rate(0.5 * dt) >= c.thixotropy.gamma_c;
+    user.flowing = step.rate(0.5 * dt) >= gamma_c_of(c.thixotropy);
     double reached = 0.0;
     sundials_ok(CVodeReInit(memory, 0.0, y.get), "CVodeReInit");
     sundials_ok(CVodeSetStopTime(memory, dt), "CVodeSetStopTime");

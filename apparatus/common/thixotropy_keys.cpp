@@ -1,0 +1,93 @@
+#include "apparatus/common/thixotropy_keys.hpp"
+
+#include <string>
+#include <vector>
+
+#include "apparatus/common/law_keys.hpp"
+
+namespace tremie::scene {
+namespace {
+
+/// The keys that kinetics state, each once with the words of those that have it. Where all have it, it has no condition.
+std::vector<Key> kinetics_keys() {
+  std::vector<Key> keys;
+  for_each_kinetics([&](const auto& kinetics) {
+    for (const auto& stated : kinetics.keys()) {
+      Key key = scene_key(stated);
+      key.required = stated.fallback.empty() && !stated.optional;
+      key.only_with = Condition{"kinetics", {}};
+      auto known = std::find_if(keys.begin(), keys.end(), [&](const Key& k) { return k.name == key.name; });
+      if (known == keys.end())
+        known = keys.insert(keys.end(), key);
+      else if (known->help.find(key.help) == std::string::npos)
+        known->help += "; " + key.help;
+      known->only_with->words.emplace_back(kinetics.word);
+    }
+  });
+  for (Key& key : keys)
+    if (key.only_with->words.size() == kinetics_words().size()) key.only_with.reset();
+  return keys;
+}
+
+}  // namespace
+
+Section thixotropy_section() {
+  const Key structuration{.name = "structuration_rate",
+                          .dimension = Dimension::structuration,
+                          .range = not_negative,
+                          .required = true,
+                          .example = "1.3 Pa/s",
+                          .help = "A_thix, at rest"};
+  const Key choice{.name = "kinetics",
+                   .kind = Kind::choice,
+                   .words = kinetics_words(),
+                   .fallback = kinetics_words().front()};
+  const Key initial{.name = "initial_flocculation",
+                    .kind = Kind::number,
+                    .range = not_negative,
+                    .fallback = "0",
+                    .help = "lambda before the rest"};
+  std::vector<Key> keys{structuration};
+  const std::vector<Key> of_kinetics = kinetics_keys();
+  for (const Key& key : of_kinetics)
+    if (!key.only_with) keys.push_back(key);
+  keys.push_back(choice);
+  for (const Key& key : of_kinetics)
+    if (key.only_with) keys.push_back(key);
+  keys.push_back(initial);
+  return {.name = "mix.thixotropy",
+          .help =
+              "Thixotropy; these are Mix A's numbers. Leave the table out, and no flocculation is stored or "
+              "computed.",
+          .keys = keys,
+          .optional = true};
+}
+
+void settle_thixotropy(Values& values) {
+  if (!values.has_section("mix.thixotropy")) return;
+  for_each_kinetics([&](const auto& kinetics) {
+    if (kinetics.word != values.word("mix.thixotropy.kinetics")) return;
+    for (const auto& key : kinetics.keys())
+      if (key.optional && values.has(key.name) && !values.given(key.name)) values.drop(key.name);
+  });
+  if (values.number("mix.yield_stress") == 0.0)
+    values.fail("mix.yield_stress",
+                "is 0 with [mix.thixotropy]: the flocculation state grows by A_thix/tau_0 and has no value; "
+                "give a yield "
+                "stress greater than 0 Pa, or leave [mix.thixotropy] out (thixotropy = false)");
+}
+
+std::optional<Thixotropy> read_thixotropy(const Values& values) {
+  if (!values.has_section("mix.thixotropy")) return std::nullopt;
+  Thixotropy t{.A_thix = values.number("mix.thixotropy.structuration_rate"),
+               .initial_flocculation = values.number("mix.thixotropy.initial_flocculation")};
+  for_each_kinetics([&](auto kinetics) {
+    if (kinetics.word != values.word("mix.thixotropy.kinetics")) return;
+    for (const auto& key : kinetics.keys())
+      if (values.has(key.name)) kinetics.*key.member = values.number(key.name);
+    t.kinetics = kinetics;
+  });
+  return t;
+}
+
+}  // namespace tremie::scene
