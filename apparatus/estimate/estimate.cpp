@@ -134,7 +134,8 @@ bool cut_off(const SlumpTable& table, const Measured& m, const Grid& grid, const
   return false;
 }
 
-void check(const SlumpTable& table, const Measured& m, const Grid& grid, const Marginals& at, Estimate& e) {
+void check(const SlumpTable& table, const Measured& m, const Grid& grid, const Marginals& at,
+           MixEstimate& e) {
   const auto [low, high] = std::minmax_element(table.spread.begin(), table.spread.end());
   if (m.spread < *low || m.spread > *high)
     e.reasons.push_back(fmt::format("a spread of {:.0f} mm lies outside of the table, {:.0f} to {:.0f} mm",
@@ -160,9 +161,9 @@ void check(const SlumpTable& table, const Measured& m, const Grid& grid, const M
 }  // namespace
 
 /// Where t500 is of no use the spread alone tells, and it is said.
-static Estimate without_t500(const SlumpTable& table, Measured m) {
+static MixEstimate without_t500(const SlumpTable& table, Measured m) {
   m.t500.reset();
-  Estimate e = estimate(table, m);
+  MixEstimate e = estimate(table, m);
   e.reasons.push_back(
       fmt::format("t500 of a spread of {:.0f} mm hangs on its last millimetres, and the table ends there: it "
                   "was left out",
@@ -170,8 +171,8 @@ static Estimate without_t500(const SlumpTable& table, Measured m) {
   return e;
 }
 
-Estimate estimate(const SlumpTable& table, const Measured& m) {
-  Estimate e;
+MixEstimate estimate(const SlumpTable& table, const Measured& m) {
+  MixEstimate e;
   e.tau_0_thin_layer = thin_layer_yield_stress(m.spread, m.density);
   e.tau_0_plug = plug_yield_stress(m.spread, m.density);
   const Grid grid = grid_of(table, m.density);

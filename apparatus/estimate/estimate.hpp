@@ -22,13 +22,13 @@ struct Interval {
   double value = 0.0, low = 0.0, high = 0.0;  ///< the best fit (t500 given) or the median; 95 %
 };
 
-struct Estimate {
+struct MixEstimate {
   std::optional<Interval> tau_0, mu;  ///< empty where the table does not reach; mu also without t500
   double tau_0_thin_layer = 0.0, tau_0_plug = 0.0;  ///< closed forms
   std::vector<std::string> reasons;                 ///< why it is not to be trusted
 };
 
 /// Every tau_0 and mu of the table is as likely as any other before the measurement, on log scales.
-Estimate estimate(const SlumpTable& table, const Measured& measured);
+MixEstimate estimate(const SlumpTable& table, const Measured& measured);
 
 }  // namespace tremie::estimate

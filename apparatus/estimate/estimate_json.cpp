@@ -14,7 +14,7 @@ Json json_of(const std::optional<Interval>& i) {
 
 }  // namespace
 
-std::string estimate_json(const Estimate& e) {
+std::string estimate_json(const MixEstimate& e) {
   const Json json{{"results",
                    {{"yield_stress_Pa", json_of(e.tau_0)},
                     {"plastic_viscosity_Pa_s", json_of(e.mu)},

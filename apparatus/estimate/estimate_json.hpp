@@ -7,6 +7,6 @@
 namespace tremie::estimate {
 
 /// What `tremie estimate --json` prints: results and checks.reasons; null where the table does not reach.
-std::string estimate_json(const Estimate& estimate);
+std::string estimate_json(const MixEstimate& estimate);
 
 }  // namespace tremie::estimate

@@ -84,7 +84,7 @@ void add_mixes(const std::vector<NamedMix>& mixes, report::LineChart& chart) {
 }
 
 /// A point with the interval of either parameter.
-void add_estimate(const Estimate& e, report::LineChart& chart) {
+void add_estimate(const MixEstimate& e, report::LineChart& chart) {
   if (!e.tau_0 || !e.mu) return;
   chart.curves.push_back({"measured, with 95 %",
                           {e.mu->value},
@@ -128,7 +128,7 @@ Line t500_contour(const SlumpTable& table, double t500) {
 }
 
 std::string rheograph_svg(const SlumpTable& table, const std::vector<NamedMix>& mixes,
-                          const std::optional<Estimate>& estimate) {
+                          const std::optional<MixEstimate>& estimate) {
   report::LineChart chart{
       .title = fmt::format(
           "Slump flow and t500 of fresh concrete, {:.0f} kg/m³: exact Bingham, no slip, cone lifted "

@@ -26,6 +26,6 @@ Line t500_contour(const SlumpTable& table, double t500);
 /// The table at its density as a chart: contours, the slump flows that are accepted for tremie concrete shaded, mixes, and
 /// an estimate with its intervals.
 std::string rheograph_svg(const SlumpTable& table, const std::vector<NamedMix>& mixes,
-                          const std::optional<Estimate>& estimate);
+                          const std::optional<MixEstimate>& estimate);
 
 }  // namespace tremie::estimate

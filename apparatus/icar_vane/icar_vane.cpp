@@ -27,7 +27,7 @@ Sample read(const Body<typename Section::Geometry>& body, const Scene& scene, co
   s.torque_power = speed != 0.0 ? h * t.power / angular_speed(speed) : 0.0;
   s.momentum_rate = step.dt > 0.0 ? h * (t.angular_momentum - last_momentum) / step.dt : 0.0;
   s.shear_rate_mean = step.shear_rate_mean;
-  s.flocculation_mean = test_run::mean_flocculation(body.points);
+  s.flocculation_mean = experiment::mean_flocculation(body.points);
   s.flocculation_apparent = apparent_flocculation(scene, s.torque, speed);
   s.time_step = step.dt;
   s.iterations = step.iterations;
@@ -40,7 +40,7 @@ std::vector<ProfilePoint> profile(const Body<typename Section::Geometry>& body, 
                                   double cell) {
   const Vane& vane = section.vane;
   const auto& points = body.points;
-  const std::vector<double> gamma_dot = test_run::shear_rates_now(body);
+  const std::vector<double> gamma_dot = experiment::shear_rates_now(body);
   const std::size_t n = static_cast<std::size_t>(std::ceil(vane.container_radius / cell));
   std::vector<double> V(n, 0.0), v(n, 0.0), g(n, 0.0), l(n, 0.0);
   for (std::size_t p = 0; p < points.size(); ++p) {
@@ -88,8 +88,8 @@ template <class Section>
 Outcome run_section(const Scene& scene, const Section& section, const scene::Observer& observer) {
   using Geometry = typename Section::Geometry;
   ImplicitBody<Geometry> body{section.body_at_rest(scene)};
-  test_run::rest(body, scene.rest);
-  StepSettings settings = test_run::step_settings(scene.model);
+  experiment::rest(body, scene.rest);
+  StepSettings settings = experiment::step_settings(scene.model);
   settings.keep_forces = true;
   settings.cfl = reach;
 
@@ -97,35 +97,35 @@ Outcome run_section(const Scene& scene, const Section& section, const scene::Obs
   double turned = 0.0, speed = 0.0, momentum = 0.0;
   Schedule schedule{stages_of(scene)};
   body.dt = first_dt;
-  const test_run::Flow flow{.time = [&] { return body.time; },
-                            .unfinished =
-                                [&] {
-                                  if (schedule.follow(body.time)) body.dt = first_dt;
-                                  return schedule.at < schedule.stages.size();
-                                },
-                            .prepare =
-                                [&] {
-                                  const double left = schedule.stage_end() - body.time;
-                                  settings.dt_max =
-                                      left / std::ceil(left / (scene.model.step_scale * largest_dt) - 1e-9);
-                                  settings.fixed_dt = test_run::fixed_step(scene.model, left);
-                                  speed = schedule.speed(body.time);
-                                  section.turn(body, angular_speed(speed));
-                                },
-                            .advance =
-                                [&](Checks& checks, Cost& cost) {
-                                  const StepReport step = implicit_step(body, scene.model.law, settings);
-                                  turned += angular_speed(speed) * step.dt;
-                                  test_run::count_step(body, step, checks, cost);
-                                  return step;
-                                },
-                            .frame = [&] { return section.whole(test_run::frame_of(body), turned); },
-                            .state =
-                                [&](Archive& archive) {
-                                  archive(body, turned, momentum, outcome.series);
-                                  archive(schedule.at, schedule.stage_start, schedule.last_speed);
-                                }};
-  test_run::run_experiment(
+  const experiment::Flow flow{.time = [&] { return body.time; },
+                              .unfinished =
+                                  [&] {
+                                    if (schedule.follow(body.time)) body.dt = first_dt;
+                                    return schedule.at < schedule.stages.size();
+                                  },
+                              .prepare =
+                                  [&] {
+                                    const double left = schedule.stage_end() - body.time;
+                                    settings.dt_max =
+                                        left / std::ceil(left / (scene.model.step_scale * largest_dt) - 1e-9);
+                                    settings.fixed_dt = experiment::fixed_step(scene.model, left);
+                                    speed = schedule.speed(body.time);
+                                    section.turn(body, angular_speed(speed));
+                                  },
+                              .advance =
+                                  [&](Checks& checks, Cost& cost) {
+                                    const StepReport step = implicit_step(body, scene.model.law, settings);
+                                    turned += angular_speed(speed) * step.dt;
+                                    experiment::count_step(body, step, checks, cost);
+                                    return step;
+                                  },
+                              .frame = [&] { return section.whole(experiment::frame_of(body), turned); },
+                              .state =
+                                  [&](Archive& archive) {
+                                    archive(body, turned, momentum, outcome.series);
+                                    archive(schedule.at, schedule.stage_start, schedule.last_speed);
+                                  }};
+  experiment::run_experiment(
       flow, body, {whole_time(scene), scene.frame_interval, progress_text, /*from_start=*/false}, observer,
       [&](const StepReport& step) {
         const Torques t = section.torques(body);
@@ -153,7 +153,7 @@ void refuse_what_has_no_engine(const Scene& scene) {
         "allowed with mix.thixotropy: \"couette\", \"plane\"; or leave it out by --set mix.thixotropy=false");
   if (ends && scene.model.method == MethodKind::newton)
     throw std::invalid_argument("model.method: \"cylindrical\" runs with \"auto\" or \"admm\"");
-  test_run::refuse_what_has_no_engine(scene.model, "vane");
+  experiment::refuse_what_has_no_engine(scene.model, "vane");
   constexpr double most = 1e7;  // some 10 GB in a section
   const auto [n, n_around] = scene.model.points_per_cell;
   const double across = scene.vane.container_radius / scene.model.cell[0] * n;
@@ -186,19 +186,19 @@ Outcome run(const Scene& scene, const scene::Observer& observer) {
   return with_section(scene, [&](const auto& section) { return run_section(scene, section, observer); });
 }
 
-scene::Estimate estimate(const Scene& scene) {
+scene::CostEstimate estimate(const Scene& scene) {
   refuse_what_has_no_engine(scene);
   if (scene.model.space == SpaceKind::cylindrical) return estimate_with_ends(scene);
   return with_section(scene, [&](const auto& section) {
     auto body = section.body_at_rest(scene);
     activate(body.grid, body.points.x);
-    scene::Estimate e;
+    scene::CostEstimate e;
     e.points = static_cast<std::int64_t>(body.points.size());
     e.cells_active = body.grid.n_cells();
     e.bytes_per_point =
         bytes_per_point<std::decay_t<decltype(section)>::Geometry::dim>(scene.mix.thixotropy.has_value());
     for (const Stage& stage : stages_of(scene)) {
-      e.steps += test_run::whole_steps(stage.duration / largest_dt) + 15;
+      e.steps += experiment::whole_steps(stage.duration / largest_dt) + 15;
       e.time_expected += stage.duration;
     }
     e.steps_expected = e.steps;

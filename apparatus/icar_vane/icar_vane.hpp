@@ -100,12 +100,12 @@ struct Results {
   std::vector<ProfilePoint> profile;  ///< at the end
 };
 
-using Outcome = test_run::Record<Results, Sample>;
+using Outcome = experiment::Record<Results, Sample>;
 
 /// Runs the test; as cone::run.
 Outcome run(const Scene& scene, const scene::Observer& observer = {});
 
-scene::Estimate estimate(const Scene& scene);
+scene::CostEstimate estimate(const Scene& scene);
 
 /// Whole time of the schedule [s].
 double whole_time(const Scene& scene);

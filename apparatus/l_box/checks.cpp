@@ -24,7 +24,7 @@ std::vector<Sample>::const_iterator line_before(const std::vector<Sample>& serie
 double drop_at_rest(const Scene& scene, double h, double length) {
   const double floor_and_walls = (1.0 / h + (scene.side_walls_slip ? 0.0 : 2.0 / scene.box.width)) * length;
   const double bars = bar_yield_drag * scene.bars * bar_diameter / scene.box.width;
-  return scene.mix.tau_0 / (scene.mix.density * test_run::gravity) * (floor_and_walls + bars);
+  return scene.mix.tau_0 / (scene.mix.density * experiment::gravity) * (floor_and_walls + bars);
 }
 
 /// The fastest that the front was [m/s].

@@ -19,7 +19,7 @@ inline constexpr double longest_step = 0.3;      ///< [s]: in longer ones thin f
 
 template <class Geometry>
 StepSettings step_settings(const Scene& scene) {
-  StepSettings settings = test_run::step_settings(scene.model);
+  StepSettings settings = experiment::step_settings(scene.model);
   if (!scene.model.time_step) settings.detached = detached_share;
   settings.cut_cell_rule = true;   // what hangs on the column's walls is thinner than a cell
   settings.moving_surface = true;  // without it steps of tenths of a second carry a fluid past its level
@@ -47,8 +47,8 @@ void read_results(const Body<Geometry>& body, const Scene& scene, std::optional<
   r.h2 = last.h2;
   if (last.h2 && last.h1 > 0.0) r.passing_ratio = *last.h2 / last.h1;
   r.ratio_change = ratio_change(outcome.series);
-  r.t200 = test_run::time_of_passing(outcome.series, &Sample::front, 0.2);
-  r.t400 = test_run::time_of_passing(outcome.series, &Sample::front, 0.4);
+  r.t200 = experiment::time_of_passing(outcome.series, &Sample::front, 0.2);
+  r.t400 = experiment::time_of_passing(outcome.series, &Sample::front, 0.4);
   r.stopped_at = stopped_at;
   r.flocculation_mean_start = first.flocculation_mean;
   r.flocculation_mean_end = last.flocculation_mean;
@@ -63,32 +63,32 @@ Outcome run_in(const Scene& scene, const scene::Observer& observer) {
     if (!resolves_bars(body.grid.axes[1].h)) body.bars = parts::slender_bars(bars_of(scene), body.grid.axes);
 
   Outcome outcome;
-  const test_run::Flow flow{
+  const experiment::Flow flow{
       .time = [&] { return body.time; },
-      .unfinished = [&] { return test_run::has_time_left(body.time, scene.duration); },
+      .unfinished = [&] { return experiment::has_time_left(body.time, scene.duration); },
       .prepare =
           [&] {
             const double left = scene.duration - body.time;
             settings.dt_max =
-                std::min(longest_dt<Geometry>(scene, body.time), test_run::without_sliver(left, body.dt));
-            settings.fixed_dt = test_run::fixed_step(scene.model, left);
+                std::min(longest_dt<Geometry>(scene, body.time), experiment::without_sliver(left, body.dt));
+            settings.fixed_dt = experiment::fixed_step(scene.model, left);
             body.boundary = walls_inside<Geometry>(scene, body.grid.axes, body.time);
           },
       .advance =
           [&](Checks& checks, Cost& cost) {
             const StepReport step = implicit_step(body, scene.model.law, settings);
-            test_run::count_step(body, step, checks, cost);
-            test_run::watch_fixed_step(body, scene.model, step, checks);
+            experiment::count_step(body, step, checks, cost);
+            experiment::watch_fixed_step(body, scene.model, step, checks);
             return step;
           },
-      .frame = [&] { return test_run::frame_of(body); },
+      .frame = [&] { return experiment::frame_of(body); },
       // Drops from the films on the column's walls fall long after the concrete stands.
       .speed = [](const StepReport& step) { return step.bulk_speed; },
       .free_to_flow =
           [&] { return !scene.gate_speed || *scene.gate_speed * body.time > scene.box.channel_height; },
       .stands_since = [&] { return Geometry::dim == 3 ? stands_since(outcome.series) : std::nullopt; },
       .state = [&](Archive& archive) { archive(body, outcome.series); }};
-  test_run::run_experiment(
+  experiment::run_experiment(
       flow, body,
       {scene.duration, scene.frame_interval,
        [](const Sample& now) { return fmt::format("front {:.0f} mm", 1e3 * now.front); }},

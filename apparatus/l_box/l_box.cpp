@@ -22,26 +22,26 @@ double expected_time(const Scene& scene) {
 }
 
 template <class Geometry>
-void count(const Scene& scene, scene::Estimate& e) {
+void count(const Scene& scene, scene::CostEstimate& e) {
   const auto [h, h_up] = scene.model.cell;
   const auto [n, n_up] = scene.model.points_per_cell;
   double cells = scene.box.column_length * scene.box.column_height / (h * h_up), in_a_cell = n * n_up;
   if (Geometry::dim == 3) cells *= computed_width(scene) / h, in_a_cell *= n_up;
-  test_run::count_points(
+  experiment::count_points(
       cells, in_a_cell, [&] { return filled_column<Geometry>(scene); }, e);
   e.bytes_per_point = bytes_per_point<Geometry::dim>(scene.mix.thixotropy.has_value());
 }
 
 template <class Geometry>
-scene::Estimate estimate_in(const Scene& scene) {
-  scene::Estimate e;
+scene::CostEstimate estimate_in(const Scene& scene) {
+  scene::CostEstimate e;
   count<Geometry>(scene, e);
-  const StepSettings settings = test_run::step_settings(scene.model);
-  const double collapse = 0.5 * std::sqrt(test_run::gravity * scene.box.column_height) /
+  const StepSettings settings = experiment::step_settings(scene.model);
+  const double collapse = 0.5 * std::sqrt(experiment::gravity * scene.box.column_height) /
                           (settings.cfl * std::min(scene.model.cell[0], scene.model.cell[1]));
   const auto steps = [&](double share, double time, double dt) {
-    return test_run::whole_steps(scene.model.time_step ? time / *scene.model.time_step
-                                                       : share * collapse + time / dt);
+    return experiment::whole_steps(scene.model.time_step ? time / *scene.model.time_step
+                                                         : share * collapse + time / dt);
   };
   e.time_expected = expected_time(scene);
   e.point_step = in_space(scene) ? 1.6e-6 : 0.75e-6;
@@ -61,13 +61,13 @@ double gap_between_bars(const Scene& scene) {
 }
 
 Outcome run(const Scene& scene, const scene::Observer& observer) {
-  test_run::refuse_what_has_no_engine(scene.model, "L-box");
+  experiment::refuse_what_has_no_engine(scene.model, "L-box");
   omp_set_num_threads(scene.threads);
   return in_space(scene) ? run_3d(scene, observer) : run_plane(scene, observer);
 }
 
-scene::Estimate estimate(const Scene& scene) {
-  test_run::refuse_what_has_no_engine(scene.model, "L-box");
+scene::CostEstimate estimate(const Scene& scene) {
+  experiment::refuse_what_has_no_engine(scene.model, "L-box");
   return in_space(scene) ? estimate_in<ThreeD>(scene) : estimate_in<PlaneStrain>(scene);
 }
 

@@ -72,12 +72,12 @@ struct Results {
   double volume_in_channel = 0.0;              ///< at the end, over the whole width [m^3]
 };
 
-using Outcome = test_run::Record<Results, Sample>;
+using Outcome = experiment::Record<Results, Sample>;
 
 /// Runs the test; as cone::run.
 Outcome run(const Scene& scene, const scene::Observer& observer = {});
 
-scene::Estimate estimate(const Scene& scene);
+scene::CostEstimate estimate(const Scene& scene);
 
 /// The keys of `apparatus = "l_box"`, and the checked values as a scene; throws InputError where they do not fit each other.
 scene::ApparatusKeys keys();

@@ -70,13 +70,13 @@ Sample read(const Body<Geometry>& body, const Scene& scene, const StepReport& st
   };
   Sample s;
   s.time = body.time;
-  s.front = test_run::front_of(body.points, box.column_length, body.grid.axes[0].h);
+  s.front = experiment::front_of(body.points, box.column_length, body.grid.axes[0].h);
   s.h1 = depth_over(behind_the_gate(box));
   if (s.front > box.channel_length - 0.5 * off_the_walls) s.h2 = depth_over(at_the_end(box));
   s.max_speed = step.max_speed;
   s.shear_rate_mean = step.shear_rate_mean;
-  s.flocculation_mean = test_run::mean_flocculation(body.points);
-  s.volume_change = test_run::volume_change(body.points);
+  s.flocculation_mean = experiment::mean_flocculation(body.points);
+  s.volume_change = experiment::volume_change(body.points);
   s.time_step = step.dt;
   s.iterations = step.iterations;
   return s;

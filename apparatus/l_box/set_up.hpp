@@ -38,7 +38,7 @@ Body<Geometry> filled_column(const Scene& scene) {
   const Box& box = scene.box;
   Body<Geometry> body;
   body.mix = scene.mix;
-  body.gravity[up] = -test_run::gravity;
+  body.gravity[up] = -experiment::gravity;
   const auto [across, h_up] = scene.model.cell;
   const auto [n_along, n_up] = scene.model.points_per_cell;
   Vec<D> high;
@@ -58,9 +58,9 @@ Body<Geometry> filled_column(const Scene& scene) {
         std::max(1, static_cast<int>(std::lround(high[d] / body.grid.axes[d].h * (d == 0 ? n_along : n_up))));
   seed_box<Geometry>(
       Vec<D>::Zero(), high, n, scene.mix.density, scene.mix.K, [](const Vec<D>&) { return true; },
-      [&](const Vec<D>& x) { return scene.mix.density * test_run::gravity * (box.column_height - x[up]); },
+      [&](const Vec<D>& x) { return scene.mix.density * experiment::gravity * (box.column_height - x[up]); },
       body.points);
-  test_run::rest(body, scene.rest);
+  experiment::rest(body, scene.rest);
   return body;
 }
 

@@ -29,7 +29,7 @@ double frames_over(const Scene& scene, double time, double points) {
   const double interval = scene.output.frame_interval;
   if (interval > 0.0) return std::floor(time / interval) + 2.0;
   double n = 1.0;
-  for (double t = 0.0; t < time && n < most_counted; t = test_run::frame_after(t, 0.0)) n += 1.0;
+  for (double t = 0.0; t < time && n < most_counted; t = experiment::frame_after(t, 0.0)) n += 1.0;
   return std::ceil(n / (points > 20000.0 ? 3.0 : 2.0)) + 1.0;
 }
 
@@ -43,7 +43,7 @@ CostEstimate cost_of(const Scene& scene, const Estimate& e) {
   cost.cpu_low = cost.cpu / factor, cost.cpu_high = cost.cpu * factor;
   cost.cpu_most = factor * (start_and_end + per_step * static_cast<double>(e.steps));
   const bool explicit_scheme = model_of(scene).scheme != SchemeKind::implicit;
-  const bool space = test_run::is_3d(model_of(scene).space);
+  const bool space = experiment::is_3d(model_of(scene).space);
   const double shown_and_solver = explicit_scheme ? 320.0 : space ? 150.0 : 500.0;
   cost.memory = program + points * (static_cast<double>(e.bytes_per_point) + shown_and_solver);
   if (space && !explicit_scheme) cost.memory += solver_of_cell * static_cast<double>(e.cells_active);
@@ -69,7 +69,7 @@ void check_cost(const Scene& scene, int threads) {
   const auto e = estimate(scene);
   if (!e) return;
   const std::string against =
-      objection(cost_of(scene, *e), test_run::free_memory(std::max(1, threads)), std::max(1, threads));
+      objection(cost_of(scene, *e), experiment::free_memory(std::max(1, threads)), std::max(1, threads));
   if (!against.empty()) throw InputError(fmt::format("{}: the run {}; --force runs it", scene.path, against));
 }
 

@@ -67,9 +67,9 @@ void set_threads(Scene& scene, int threads) { scene.functions->threads(scene.tes
 
 int default_threads(const Scene& scene) {
   const SpaceKind space = model_of(scene).space;
-  if (!test_run::is_3d(space)) return 1;  // spares the estimate
-  return test_run::default_threads(estimate(scene)->points, space, model_of(scene).scheme,
-                                   test_run::free_processors());
+  if (!experiment::is_3d(space)) return 1;  // spares the estimate
+  return experiment::default_threads(estimate(scene)->points, space, model_of(scene).scheme,
+                                     experiment::free_processors());
 }
 
 Model& model_of(Scene& scene) { return scene.functions->model(scene.test); }
@@ -91,7 +91,7 @@ Outcome run(const Scene& scene, const Observer& observer, bool coarser) {
   return outcome;
 }
 
-std::optional<Estimate> estimate(const Scene& scene) {
+std::optional<CostEstimate> estimate(const Scene& scene) {
   if (!scene.functions->estimate) return std::nullopt;
   return as_input_error(scene, [&] { return scene.functions->estimate(scene.test); });
 }

@@ -11,7 +11,7 @@
 #include "libmpm/body/body.hpp"
 #include "libmpm/constitutive/flocculation.hpp"
 
-namespace tremie::test_run {
+namespace tremie::experiment {
 
 /// lambda of every point after a rest; nothing is stored for a mix without thixotropy.
 template <class Geometry>
@@ -76,4 +76,4 @@ double front_of(const Points<D>& points, double gate, double cell) {
   return std::max(0.0, x[i] - gate);
 }
 
-}  // namespace tremie::test_run
+}  // namespace tremie::experiment

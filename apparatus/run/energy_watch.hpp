@@ -10,7 +10,7 @@
 #include "apparatus/run/body_readings.hpp"
 #include "apparatus/run/step_settings.hpp"
 
-namespace tremie::test_run {
+namespace tremie::experiment {
 
 /// Kinetic and potential energy of the points [J]; heights from the floor.
 template <class Geometry>
@@ -62,4 +62,4 @@ class EnergyWatch {
   double allowed_, scale_, gained_ = 0.0;
 };
 
-}  // namespace tremie::test_run
+}  // namespace tremie::experiment

@@ -12,7 +12,7 @@
 #include "apparatus/run/run_loop.hpp"
 #include "apparatus/run/step_settings.hpp"
 
-namespace tremie::test_run {
+namespace tremie::experiment {
 
 /// What an apparatus' own run hands back, in SI units. SampleOfRun: a line of the series, with its `time` and `time_step` [s].
 template <class ResultsOfRun, class SampleOfRun>
@@ -67,4 +67,4 @@ void run_experiment(const Flow& flow, Body<Geometry>& body,
 /// Whether the schedule of a flow of this duration has time left [s].
 inline bool has_time_left(double time, double duration) { return time < duration * (1.0 - 1e-12); }
 
-}  // namespace tremie::test_run
+}  // namespace tremie::experiment

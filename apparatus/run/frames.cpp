@@ -3,7 +3,7 @@
 #include "libmpm/boundary/flat_walls.hpp"
 #include "libmpm/constitutive/equation_of_state.hpp"
 
-namespace tremie::test_run {
+namespace tremie::experiment {
 
 template <class Geometry>
 std::vector<double> shear_rates_now(const Body<Geometry>& body) {
@@ -58,4 +58,4 @@ TREMIE_FRAMES_IN(Polar)
 TREMIE_FRAMES_IN(ThreeD)
 #endif
 
-}  // namespace tremie::test_run
+}  // namespace tremie::experiment

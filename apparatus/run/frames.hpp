@@ -10,7 +10,7 @@
 #include "apparatus/common/model.hpp"
 #include "libmpm/body/body.hpp"
 
-namespace tremie::test_run {
+namespace tremie::experiment {
 
 /// Place of a point for the frames: an axisymmetric section lies in the plane (r, 0, z), a plane one in (x,
 /// y, 0), circling concrete on the line (r, 0, 0).
@@ -37,4 +37,4 @@ std::vector<double> shear_rates_now(const Body<Geometry>& body);
 template <class Geometry>
 Frame frame_of(const Body<Geometry>& body);
 
-}  // namespace tremie::test_run
+}  // namespace tremie::experiment

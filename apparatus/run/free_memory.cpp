@@ -9,7 +9,7 @@
 #include <iterator>
 #include <limits>
 
-namespace tremie::test_run {
+namespace tremie::experiment {
 namespace {
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
@@ -54,4 +54,4 @@ double free_memory(int threads) {
   return free_memory(text_of("/proc/meminfo"), text_of("/sys/fs/cgroup/memory.max"), of_process(threads));
 }
 
-}  // namespace tremie::test_run
+}  // namespace tremie::experiment

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <thread>
 
-namespace tremie::test_run {
+namespace tremie::experiment {
 namespace {
 
 std::string first_line(const char* file) {
@@ -46,4 +46,4 @@ int free_processors() {
                          first_line("/sys/fs/cgroup/cpu.max"));
 }
 
-}  // namespace tremie::test_run
+}  // namespace tremie::experiment

@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace tremie::test_run {
+namespace tremie::experiment {
 
 /// Processors that a run may have: what the process may use (its affinity, its control group's quota) less what others
 /// keep busy, at least 1. Beside a busy process a second thread makes a run slower, not faster: its pauses hold up the
@@ -12,4 +12,4 @@ int free_processors(int hardware_threads, const std::string& loadavg, const std:
 /// The same with what this machine says now; a system without these files counts as idle.
 int free_processors();
 
-}  // namespace tremie::test_run
+}  // namespace tremie::experiment

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-namespace tremie::test_run {
+namespace tremie::experiment {
 
 /// When a reading of the series first passed a value on its way up, between two lines by a straight line [s]; empty where it
 /// never did. Sample has a `time` [s].
@@ -20,4 +20,4 @@ std::optional<double> time_of_passing(const std::vector<Sample>& series, double 
   return std::nullopt;
 }
 
-}  // namespace tremie::test_run
+}  // namespace tremie::experiment

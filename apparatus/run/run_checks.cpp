@@ -8,7 +8,7 @@
 
 #include "libmpm/implicit/step_size.hpp"
 
-namespace tremie::test_run {
+namespace tremie::experiment {
 namespace {
 
 /// Points that are not finite or lie beyond a wall at the end of an axis.
@@ -94,4 +94,4 @@ TREMIE_CHECKS_IN(Polar)
 TREMIE_CHECKS_IN(ThreeD)
 #endif
 
-}  // namespace tremie::test_run
+}  // namespace tremie::experiment

@@ -9,7 +9,7 @@
 #include "apparatus/run/body_readings.hpp"
 #include "libmpm/implicit/step.hpp"
 
-namespace tremie::test_run {
+namespace tremie::experiment {
 
 /// Adds one step to the counts of a run.
 template <class Geometry>
@@ -32,4 +32,4 @@ void judge(const Body<Geometry>& body, double start_mass, Checks& checks, Cost& 
 /// more.
 void judge_volume(double at_start, Checks& checks);
 
-}  // namespace tremie::test_run
+}  // namespace tremie::experiment

@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace tremie::test_run {
+namespace tremie::experiment {
 namespace {
 
 /// Ends a run whose last step failed: the points are where they were before it.
@@ -57,4 +57,4 @@ std::optional<double> run_loop(const Flow& flow, const std::function<void(const 
   return at_rest;
 }
 
-}  // namespace tremie::test_run
+}  // namespace tremie::experiment

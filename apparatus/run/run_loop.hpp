@@ -9,7 +9,7 @@
 #include "apparatus/run/frame_times.hpp"
 #include "libmpm/implicit/step.hpp"
 
-namespace tremie::test_run {
+namespace tremie::experiment {
 
 inline constexpr double rest_speed = 1e-4;     ///< slower than this is at rest [m/s]
 inline constexpr double rest_must_last = 0.5;  ///< before a flow is called stopped [s]
@@ -56,4 +56,4 @@ std::optional<double> run_loop(const Flow& flow, const std::function<void(const 
                                const scene::Observer& observer, double frame_interval, double next_frame,
                                Status& status, Checks& checks, Cost& cost);
 
-}  // namespace tremie::test_run
+}  // namespace tremie::experiment

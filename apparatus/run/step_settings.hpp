@@ -12,7 +12,7 @@
 #include "apparatus/common/model.hpp"
 #include "libmpm/implicit/step.hpp"
 
-namespace tremie::test_run {
+namespace tremie::experiment {
 
 inline constexpr double gravity = 9.81;  ///< [m/s^2]
 
@@ -23,8 +23,8 @@ inline constexpr double most_counted = 1e6;
 inline std::int64_t whole_steps(double steps) { return std::llround(std::clamp(steps, 0.0, 1e15)); }
 
 /// Points and active cells of a body at rest: `filled` makes it, where it is not too large to be counted one by one.
-template <class Filled, class Estimate>
-void count_points(double cells, double in_a_cell, Filled filled, Estimate& e) {
+template <class Filled, class Counted>
+void count_points(double cells, double in_a_cell, Filled filled, Counted& e) {
   if (cells * in_a_cell > most_counted) {
     e.points = whole_steps(cells * in_a_cell), e.cells_active = whole_steps(cells);
     return;
@@ -70,4 +70,4 @@ inline void refuse_what_has_no_engine(const Model& model, const char* apparatus)
                                 " runs with \"b_spline\" for now");
 }
 
-}  // namespace tremie::test_run
+}  // namespace tremie::experiment

@@ -3,7 +3,6 @@
 #include <sys/resource.h>
 
 #include <chrono>
-#include <ctime>
 
 namespace tremie {
 
@@ -14,12 +13,6 @@ double wall_seconds() {
 }
 
 }  // namespace
-
-double cpu_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 Stopwatch::Stopwatch() : cpu_(cpu_seconds()), wall_(wall_seconds()) {}
 

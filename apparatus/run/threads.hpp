@@ -5,7 +5,7 @@
 
 #include "apparatus/common/model.hpp"
 
-namespace tremie::test_run {
+namespace tremie::experiment {
 
 /// A thread has at least so many points: fewer cost it more waiting than they save.
 inline constexpr std::int64_t points_per_thread = 5000, points_per_explicit_thread = 1600;
@@ -25,4 +25,4 @@ inline int default_threads(std::int64_t points, SpaceKind space, SchemeKind sche
   return static_cast<int>(std::clamp<std::int64_t>(points / least, 1, std::max(1, hardware_threads)));
 }
 
-}  // namespace tremie::test_run
+}  // namespace tremie::experiment

@@ -13,7 +13,7 @@ constexpr int block = TwistedCholesky::block;
 int whole_blocks(int rows) { return (std::max(0, rows) + block - 1) / block * block; }
 
 /// Rows below the diagonal block that so many block columns have, those that elimination fills included.
-std::vector<int> heights_from_the_first(const std::vector<int>& first, int blocks) {
+std::vector<int> column_heights(const std::vector<int>& first, int blocks) {
   const int n = static_cast<int>(first.size());
   std::vector<int> last(first.size(), 0);  // by column: the last row that begins there, if any
   for (int i = 0; i < n; ++i) last[static_cast<std::size_t>(first[static_cast<std::size_t>(i)])] = i;
@@ -49,7 +49,7 @@ void TwistedCholesky::reset(const std::vector<int>& first) {
   const int blocks = std::max(0, n_ - below_) / block;
 #pragma omp parallel for schedule(static, 1)
   for (int e = 0; e < 2; ++e)
-    e == 0 ? ends_[0].reset(heights_from_the_first(first, blocks - blocks / 2), below_)
+    e == 0 ? ends_[0].reset(column_heights(first, blocks - blocks / 2), below_)
            : ends_[1].reset(heights_from_the_last(first, blocks / 2), below_);
   middle_.setZero(n_ - ends_[0].size() - ends_[1].size(), n_ - ends_[0].size() - ends_[1].size());
 }

@@ -99,9 +99,9 @@ TEST(CostEstimate, ObjectsToWhatTheMachineCannotDo) {
 // The least of the machine's memory, the control group's and the process's.
 TEST(CostEstimate, FreeMemory) {
   const std::string meminfo = "MemTotal:       16000000 kB\nMemFree:  100 kB\nMemAvailable:    8000000 kB\n";
-  EXPECT_EQ(test_run::free_memory(meminfo, "max\n", 1e300), 8192e6);
-  EXPECT_EQ(test_run::free_memory(meminfo, "4000000000\n", 1e300), 4e9);
-  EXPECT_EQ(test_run::free_memory(meminfo, "", 1e9), 1e9);
+  EXPECT_EQ(experiment::free_memory(meminfo, "max\n", 1e300), 8192e6);
+  EXPECT_EQ(experiment::free_memory(meminfo, "4000000000\n", 1e300), 4e9);
+  EXPECT_EQ(experiment::free_memory(meminfo, "", 1e9), 1e9);
 }
 
 }  // namespace

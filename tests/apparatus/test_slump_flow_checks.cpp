@@ -131,11 +131,11 @@ TEST(SlumpFlowChecks, AVolumeThatTheWeightDoesNotExplainIsMarked) {
        {std::pair{-0.0247, true}, {0.02, true}, {-0.017, false}, {-3e-4, false}}) {
     Checks checks;
     checks.volume_change = end;
-    test_run::judge_volume(-0.00428, checks);
+    experiment::judge_volume(-0.00428, checks);
     EXPECT_EQ(!checks.reasons.empty(), marked) << end;
     checks.reasons.clear();
     checks.max_speed_end = 0.5;  // it may have just hit the floor
-    test_run::judge_volume(-0.00428, checks);
+    experiment::judge_volume(-0.00428, checks);
     EXPECT_TRUE(checks.reasons.empty()) << end;
   }
 }
@@ -146,16 +146,16 @@ TEST(SlumpFlowChecks, EnergyOfAPoint) {
   Points<3> points;
   add_point<3>(points, {0.1, 0.2, 0.5}, 2.0, 1e-3, 0.0);
   points.v[0] = {0.0, 3.0, 0.0};
-  const double K = 1e6, rest = test_run::energy_of<ThreeD>(points, K);
+  const double K = 1e6, rest = experiment::energy_of<ThreeD>(points, K);
   EXPECT_NEAR(rest, 9.0 + 2.0 * 9.81 * 0.5, 1e-3 * 2.0 * 0.5);  // g to three digits
   points.ln_J[0] = std::log(1.0 - 1e-3);
-  EXPECT_NEAR(test_run::energy_of<ThreeD>(points, K) - rest, 0.5 * K * 1e-3 * 1e-6, 1e-3 * 0.5 * K * 1e-9);
+  EXPECT_NEAR(experiment::energy_of<ThreeD>(points, K) - rest, 0.5 * K * 1e-3 * 1e-6, 1e-3 * 0.5 * K * 1e-9);
 }
 
 // What a wall gives is allowed, what comes from nowhere is not.
 TEST(SlumpFlowChecks, GainedEnergyIsMarked) {
   const auto reasons = [](const std::vector<std::pair<double, bool>>& readings) {
-    test_run::EnergyWatch watch(100.0);
+    experiment::EnergyWatch watch(100.0);
     for (const auto& [energy, pushed] : readings) watch.see(energy, pushed);
     Checks checks;
     watch.tell(checks);
@@ -169,7 +169,7 @@ TEST(SlumpFlowChecks, GainedEnergyIsMarked) {
 
 // A body that has gained more than all that it had stays one that ran away, whatever it loses later.
 TEST(SlumpFlowChecks, TwiceTheEnergyRanAway) {
-  test_run::EnergyWatch watch(100.0);
+  experiment::EnergyWatch watch(100.0);
   watch.see(199.0, false);
   EXPECT_FALSE(watch.ran_away());
   watch.see(201.0, false);

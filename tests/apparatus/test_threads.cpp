@@ -3,7 +3,7 @@
 #include "apparatus/run/free_processors.hpp"
 #include "apparatus/run/threads.hpp"
 
-namespace tremie::test_run {
+namespace tremie::experiment {
 namespace {
 
 TEST(Threads, ASectionTakesOneWhateverItsSize) {
@@ -47,4 +47,4 @@ TEST(Threads, FollowWhatIsFree) {
   EXPECT_EQ(free_processors(4, "", ""), 4);
 }
 
-}  // namespace tremie::test_run
+}  // namespace tremie::experiment

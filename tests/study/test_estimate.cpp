@@ -55,7 +55,7 @@ TEST(Estimate, TableMeetsDirectRuns) {
     if (direct.t500 && read.t500) {
       EXPECT_NEAR(*read.t500, *direct.t500, 3.0 * table_t500_error * *direct.t500) << tau_0;
     }
-    const Estimate e = estimate(table(), direct);
+    const MixEstimate e = estimate(table(), direct);
     EXPECT_TRUE(e.reasons.empty()) << (e.reasons.empty() ? "" : e.reasons.front());
     ASSERT_TRUE(e.tau_0);
     EXPECT_LT(e.tau_0->low, tau_0);
@@ -110,7 +110,7 @@ TEST(Estimate, OutsideOfTheTableSaysSo) {
 // A t500 that no mix of the table has puts the best mix on the table's edge: marked, and still inside of its interval.
 TEST(Estimate, AnIntervalHoldsItsValue) {
   for (const double t500 : {0.3, 3.0, 300.0}) {
-    const Estimate e = estimate(table(), {.spread = 0.560, .t500 = t500});
+    const MixEstimate e = estimate(table(), {.spread = 0.560, .t500 = t500});
     EXPECT_EQ(e.reasons.empty(), t500 == 3.0) << t500;
     ASSERT_TRUE(e.tau_0 && e.mu);
     for (const Interval& of : {*e.tau_0, *e.mu}) {

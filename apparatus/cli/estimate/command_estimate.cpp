@@ -49,7 +49,7 @@ void print_interval(const char* name, const std::optional<estimate::Interval>& i
     fmt::print("{:<24} {}\n", name, none);
 }
 
-void print_text(const Options& o, const estimate::Measured& m, const estimate::Estimate& e) {
+void print_text(const Options& o, const estimate::Measured& m, const estimate::MixEstimate& e) {
   print_interval("yield stress", e.tau_0, "Pa", "not in the table");
   print_interval("plastic viscosity", e.mu, "Pa.s",
                  o.t500.empty() ? "takes --t500" : "not told by this t500");
@@ -86,7 +86,7 @@ std::vector<estimate::NamedMix> published_mixes() {
 
 /// SVG, or PDF by rsvg-convert.
 void draw_chart(const Options& options, const estimate::SlumpTable& table,
-                const std::optional<estimate::Estimate>& result) {
+                const std::optional<estimate::MixEstimate>& result) {
   namespace fs = std::filesystem;
   const fs::path file = fs::absolute(options.chart);
   const bool pdf = file.extension() == ".pdf";

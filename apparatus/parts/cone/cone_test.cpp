@@ -35,10 +35,10 @@ double cells_of(const Scene& scene) {
 }
 
 template <class Geometry>
-void count(const Scene& scene, scene::Estimate& e) {
+void count(const Scene& scene, scene::CostEstimate& e) {
   const auto [n, n_up] = scene.model.points_per_cell;
   const double cells = cells_of(scene), in_a_cell = std::pow(n, Geometry::dim - 1) * n_up;
-  test_run::count_points(
+  experiment::count_points(
       cells, in_a_cell, [&] { return filled_cone<Geometry>(scene); }, e);
   const bool thixotropic = scene.mix.thixotropy.has_value();
   e.bytes_per_point = is_explicit(scene.model) ? explicit_bytes_per_point<Geometry::dim>(thixotropic)
@@ -113,9 +113,9 @@ Outcome run(const Scene& scene, const scene::Observer& observer) {
   return is_explicit(scene.model) ? run_explicit(scene, observer) : run_implicit(scene, observer);
 }
 
-scene::Estimate estimate(const Scene& scene) {
+scene::CostEstimate estimate(const Scene& scene) {
   refuse_what_has_no_engine(scene);
-  scene::Estimate e;
+  scene::CostEstimate e;
   if (scene.model.space == SpaceKind::axisymmetric)
     count<Axisymmetric>(scene, e);
   else
@@ -124,8 +124,8 @@ scene::Estimate estimate(const Scene& scene) {
   e.point_step = cpu_of_a_point(scene);
   if (is_explicit(scene.model)) {
     const double dt = scene.model.time_step.value_or(first_explicit_step(scene));
-    e.steps = test_run::whole_steps(scene.duration / dt);
-    e.steps_expected = test_run::whole_steps(e.time_expected / dt);
+    e.steps = experiment::whole_steps(scene.duration / dt);
+    e.steps_expected = experiment::whole_steps(e.time_expected / dt);
     return e;
   }
   const StepSettings settings = step_settings(scene);
@@ -134,9 +134,9 @@ scene::Estimate estimate(const Scene& scene) {
   const double later = (settings.time_error > 0.0 ? 4.0 : 1.0) * settings.dt_max;
   const double beside = steps_beside_the_cone(scene);
   const auto steps = [&](double share, double time) {
-    if (scene.model.time_step) return test_run::whole_steps(time / *scene.model.time_step);
+    if (scene.model.time_step) return experiment::whole_steps(time / *scene.model.time_step);
     const double fast = share * collapse_steps(scene, settings.cfl) * (beside > 0.0 ? 0.5 : 1.0);
-    return test_run::whole_steps(beside + fast + time / later);
+    return experiment::whole_steps(beside + fast + time / later);
   };
   e.steps = steps(1.0, scene.duration);
   e.steps_expected = std::min(e.steps, steps(share_of_collapse(scene), e.time_expected));
@@ -144,7 +144,7 @@ scene::Estimate estimate(const Scene& scene) {
 }
 
 std::optional<double> time_to_spread(const std::vector<Sample>& series, double diameter) {
-  return test_run::time_of_passing(series, &Sample::spread, diameter);
+  return experiment::time_of_passing(series, &Sample::spread, diameter);
 }
 
 std::string spread_class(double spread) {

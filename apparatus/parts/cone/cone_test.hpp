@@ -68,14 +68,14 @@ struct Results {
   std::optional<double> through_the_cone = {};
 };
 
-using Outcome = test_run::Record<Results, Sample>;
+using Outcome = experiment::Record<Results, Sample>;
 
 /// Runs the test. Numerical trouble is reported in Outcome::checks, not thrown; a scene that this library
 /// cannot run (an explicit scheme, a space without an engine) throws std::invalid_argument with the reason.
 Outcome run(const Scene& scene, const scene::Observer& observer = {});
 
 /// Points, cells and bytes at the start and a guess of the steps, without running.
-scene::Estimate estimate(const Scene& scene);
+scene::CostEstimate estimate(const Scene& scene);
 
 /// When the spread passed a diameter [m], from the start of the lift [s]; empty where it never did.
 std::optional<double> time_to_spread(const std::vector<Sample>& series, double diameter);

@@ -56,7 +56,7 @@ Frame frame_from(Body<Geometry>& body) {
   auto& points = body.points;
   const auto places = [](auto& from) {
     std::vector<std::array<double, 3>> to(from.size());
-    std::transform(from.begin(), from.end(), to.begin(), test_run::in_space<Geometry>);
+    std::transform(from.begin(), from.end(), to.begin(), experiment::in_space<Geometry>);
     release(from);
     return to;
   };
@@ -142,11 +142,11 @@ Outcome run_explicit_in(const Scene& scene, const Law& law, const scene::Observe
   if (scene.lift_speed) lifted_wall(scene, settings.wall_gap + 0.6 * scene.model.cell[0], wall);
 
   Outcome outcome;
-  test_run::EnergyWatch energy(test_run::energy_of<Geometry>(body.points, body.mix.K));
+  experiment::EnergyWatch energy(experiment::energy_of<Geometry>(body.points, body.mix.K));
   auto state = start_explicit(body, law, settings, shape_of<Geometry>(scene.model));
   write_back(state, body);  // what a run that fails at once is read from
   LimitWatch limits;
-  const test_run::Flow flow{
+  const experiment::Flow flow{
       .time = [&] { return body.time; },
       .unfinished = [&] { return body.time < scene.duration - 0.5 * state.next_dt; },
       .prepare =
@@ -175,7 +175,7 @@ Outcome run_explicit_in(const Scene& scene, const Law& law, const scene::Observe
       .free_to_flow = [&] { return clear_of_the_cone(scene, outcome.series.back()); },
       .gains_energy =
           [&] {
-            energy.see(test_run::energy_of<Geometry>(body.points, body.mix.K), bool{wall});
+            energy.see(experiment::energy_of<Geometry>(body.points, body.mix.K), bool{wall});
             return energy.ran_away();
           },
       .tell =
@@ -191,7 +191,7 @@ Outcome run_explicit_in(const Scene& scene, const Law& law, const scene::Observe
             visit_explicit(archive, body, state);
             if (!walled) wall = {};
           }};
-  test_run::run_experiment(
+  experiment::run_experiment(
       flow, body, showing(scene), observer,
       [&](const StepReport& step) { return next_line(scene, body, step, outcome); },
       [&](std::optional<double> stopped_at) {

@@ -27,16 +27,16 @@ Outcome run_implicit_in(const Scene& scene, const scene::Observer& observer) {
 
   const double longest = settings.dt_max;
   Outcome outcome;
-  test_run::EnergyWatch energy(test_run::energy_of<Geometry>(body.points, body.mix.K));
+  experiment::EnergyWatch energy(experiment::energy_of<Geometry>(body.points, body.mix.K));
   bool flows = true, cone_gone = false;
-  const test_run::Flow flow{
+  const experiment::Flow flow{
       .time = [&] { return body.time; },
-      .unfinished = [&] { return test_run::has_time_left(body.time, scene.duration); },
+      .unfinished = [&] { return experiment::has_time_left(body.time, scene.duration); },
       .prepare =
           [&] {
             const double left = scene.duration - body.time;
-            settings.time_left = test_run::without_sliver(left, body.dt);
-            settings.fixed_dt = test_run::fixed_step(scene.model, left);
+            settings.time_left = experiment::without_sliver(left, body.dt);
+            settings.fixed_dt = experiment::fixed_step(scene.model, left);
             settings.dt_max = std::min(longest, longest_step_beside_the_cone(scene, body.time));
             if constexpr (D == 3)
               settings.admm.tolerance = flows ? flowing_tolerance : StepSettings{}.admm.tolerance;
@@ -47,11 +47,11 @@ Outcome run_implicit_in(const Scene& scene, const scene::Observer& observer) {
             const StepReport step =
                 implicit_step(body, scene.model.law, settings, cone_gone ? RigidWall<D>{} : wall);
             flows = step.bulk_speed > creeping;
-            test_run::count_step(body, step, checks, cost);
-            test_run::watch_fixed_step(body, scene.model, step, checks);
+            experiment::count_step(body, step, checks, cost);
+            experiment::watch_fixed_step(body, scene.model, step, checks);
             return step;
           },
-      .frame = [&] { return test_run::frame_of(body); },
+      .frame = [&] { return experiment::frame_of(body); },
       .speed = [](const StepReport& step) { return step.max_speed; },
       .free_to_flow = [&] { return clear_of_the_cone(scene, outcome.series.back()); },
       .stands_since = [&] { return stands_since(scene, outcome.series); },
@@ -60,8 +60,8 @@ Outcome run_implicit_in(const Scene& scene, const scene::Observer& observer) {
             // What is elastic in it a body may turn into motion later: it counts for what it may have, not
             // for what it has.
             const bool pushed = wall && !cone_gone;
-            energy.see(pushed ? test_run::energy_of<Geometry>(body.points, body.mix.K)
-                              : test_run::energy_of_motion<Geometry>(body.points),
+            energy.see(pushed ? experiment::energy_of<Geometry>(body.points, body.mix.K)
+                              : experiment::energy_of_motion<Geometry>(body.points),
                        pushed);
             return energy.ran_away();
           },
@@ -70,7 +70,7 @@ Outcome run_implicit_in(const Scene& scene, const scene::Observer& observer) {
           [&](Archive& archive) {
             archive(body, energy, flows, outcome.series, outcome.results.through_the_cone);
           }};
-  test_run::run_experiment(
+  experiment::run_experiment(
       flow, body, showing(scene), observer,
       [&](const StepReport& step) { return next_line(scene, body, step, outcome); },
       [&](std::optional<double> stopped_at) {

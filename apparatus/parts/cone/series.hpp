@@ -34,9 +34,9 @@ Sample read(const Scene& scene, const Body<Geometry>& body, const StepReport& st
   s.height = centre_height(points, 2.0 * body.grid.axes[0].h);
   s.max_speed = step.max_speed;
   s.shear_rate_mean = step.shear_rate_mean;
-  s.flocculation_mean = test_run::mean_flocculation(points);
-  s.volume_change = test_run::volume_change(points);
-  s.kinetic_energy = (is_quarter(scene) ? 4.0 : 1.0) * test_run::kinetic_energy(points);
+  s.flocculation_mean = experiment::mean_flocculation(points);
+  s.volume_change = experiment::volume_change(points);
+  s.kinetic_energy = (is_quarter(scene) ? 4.0 : 1.0) * experiment::kinetic_energy(points);
   s.time_step = step.dt;
   s.iterations = step.iterations;
   return s;
@@ -85,7 +85,7 @@ Sample next_line(const Scene& scene, const Body<Geometry>& body, const StepRepor
 }
 
 /// How a run is shown.
-inline test_run::Showing<Sample> showing(const Scene& scene) {
+inline experiment::Showing<Sample> showing(const Scene& scene) {
   return {scene.duration, scene.frame_interval,
           [](const Sample& s) { return fmt::format("spread {:.0f} mm", 1e3 * s.spread); }};
 }

@@ -9,7 +9,7 @@
 
 namespace tremie::cone {
 
-using test_run::gravity;
+using experiment::gravity;
 
 /// Whether only the first quadrant is computed, between planes of symmetry.
 inline bool is_quarter(const Scene& scene) { return scene.model.space == SpaceKind::quarter; }
@@ -37,7 +37,7 @@ Body<Geometry> filled_cone(const Scene& scene) {
   else
     fill(scene.cone, scene.mix, gravity, h / n, h_up / n_up, is_quarter(scene), body.points);
   shrink(body.points);
-  test_run::rest(body, scene.rest);
+  experiment::rest(body, scene.rest);
   return body;
 }
 
@@ -65,7 +65,7 @@ inline void add_ring(const Scene& scene, ImplicitBody<ThreeD>& body) {
 }
 
 inline StepSettings step_settings(const Scene& scene) {
-  StepSettings settings = test_run::step_settings(scene.model);
+  StepSettings settings = experiment::step_settings(scene.model);
   // In three dimensions the local error chooses the step once the collapse is over, from short ones on.
   if (scene.model.space != SpaceKind::axisymmetric)
     settings.dt_max = 0.03 * scene.model.step_scale, settings.time_error = 0.005;
