@@ -31,7 +31,7 @@ std::string count_text(std::int64_t n) {
   return n < 1000000000 ? fmt::format("{}", n) : fmt::format("{:.1e}", static_cast<double>(n));
 }
 
-void print_estimate(const scene::Scene& scene, const scene::CostEstimate& e) {
+void print_estimate(const scene::Scene& scene, const scene::SizeEstimate& e) {
   const auto cost = scene::cost_of(scene, e);
   fmt::print("\n# cost, estimated\n#   {} points, {} bytes a point\n#   {} active cells at the start\n",
              e.points, e.bytes_per_point, e.cells_active);
@@ -45,7 +45,7 @@ void print_estimate(const scene::Scene& scene, const scene::CostEstimate& e) {
              scene::megabytes_text(cost.memory), scene::megabytes_text(cost.disk));
 }
 
-Json cost_json(const scene::Scene& scene, const std::optional<scene::CostEstimate>& e) {
+Json cost_json(const scene::Scene& scene, const std::optional<scene::SizeEstimate>& e) {
   if (!e) return nullptr;
   const auto cost = scene::cost_of(scene, *e);
   return {{"points", e->points},
@@ -66,7 +66,7 @@ Json scene_json(const scene::Scene& scene) {
   return json;
 }
 
-void print_json(const scene::Scene& scene, const std::optional<scene::CostEstimate>& estimate) {
+void print_json(const scene::Scene& scene, const std::optional<scene::SizeEstimate>& estimate) {
   const Json json{{"schema", 1},
                   {"apparatus", scene.apparatus},
                   {"valid", true},
@@ -78,7 +78,7 @@ void print_json(const scene::Scene& scene, const std::optional<scene::CostEstima
 }
 
 void print_text(const Options& options, const scene::Scene& scene,
-                const std::optional<scene::CostEstimate>& estimate) {
+                const std::optional<scene::SizeEstimate>& estimate) {
   fmt::print("# {}: valid. Every value that it uses, in SI:\n\n{}",
              options.scene == "-" ? "the scene" : options.scene, scene.resolved);
   fmt::print("\n# used and left out\n");

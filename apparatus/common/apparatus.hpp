@@ -21,7 +21,7 @@ namespace tremie::scene {
 /// Points, cells and bytes at the start and a guess of the steps: at most, if the flow goes on for its whole
 /// duration, and until the time at which it is expected to come to rest [s]; and the
 /// CPU that a step takes by the point, as measured on the shipped scenes [s].
-struct CostEstimate {
+struct SizeEstimate {
   std::int64_t points = 0, cells_active = 0, bytes_per_point = 0, steps = 0, steps_expected = 0;
   double time_expected = 0.0, point_step = 0.0;
 };
@@ -42,7 +42,7 @@ struct Apparatus {
   std::function<std::any(Loaded&)> read = {};  ///< may lay further files into the values; throws InputError
   std::function<std::vector<std::string>(const std::any&)> uses = {};  ///< carried and left out, a line each
   std::function<Outcome(const std::any&, const RunOptions&, const Observer&)> run = {};
-  std::function<CostEstimate(const std::any&)> estimate = {};
+  std::function<SizeEstimate(const std::any&)> estimate = {};
   std::function<Model&(std::any&)> model = {};
   std::function<int&(std::any&)> threads = {};
 };

@@ -246,14 +246,14 @@ Outcome run_with_ends(const Scene& scene, const scene::Observer& observer) {
   return outcome;
 }
 
-scene::CostEstimate estimate_with_ends(const Scene& scene) {
+scene::SizeEstimate estimate_with_ends(const Scene& scene) {
   const EndsGrid grid(scene, true);
   // The band couples two layers of nodes across the longest axis; its factor is most of the memory and of the time.
   const double layers[3] = {grid.n_radial + 4.0, grid.n_around + 2.0,
                             grid.n_bottom + grid.n_height + grid.n_cover + 4.0};
   const double n = 3.0 * layers[0] * layers[1] * layers[2];
   const double band = 2.1 * n / std::max({layers[0], 0.5 * layers[1], layers[2]});
-  scene::CostEstimate e;
+  scene::SizeEstimate e;
   e.points = e.cells_active = grid.n_cells();
   e.bytes_per_point = static_cast<std::int64_t>(8.0 * n * band / grid.n_cells() +
                                                 sizeof(Quadrature<Cylindrical>::StrainRows) * 8.0);

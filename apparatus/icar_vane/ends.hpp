@@ -46,6 +46,6 @@ SteadyTorques turn_steadily(const Scene& scene, const EndsGrid& grid, double spe
 /// Runs the test: as icar_vane::run.
 Outcome run_with_ends(const Scene& scene, const scene::Observer& observer);
 
-scene::CostEstimate estimate_with_ends(const Scene& scene);
+scene::SizeEstimate estimate_with_ends(const Scene& scene);
 
 }  // namespace tremie::icar_vane

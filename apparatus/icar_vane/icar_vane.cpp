@@ -186,13 +186,13 @@ Outcome run(const Scene& scene, const scene::Observer& observer) {
   return with_section(scene, [&](const auto& section) { return run_section(scene, section, observer); });
 }
 
-scene::CostEstimate estimate(const Scene& scene) {
+scene::SizeEstimate estimate(const Scene& scene) {
   refuse_what_has_no_engine(scene);
   if (scene.model.space == SpaceKind::cylindrical) return estimate_with_ends(scene);
   return with_section(scene, [&](const auto& section) {
     auto body = section.body_at_rest(scene);
     activate(body.grid, body.points.x);
-    scene::CostEstimate e;
+    scene::SizeEstimate e;
     e.points = static_cast<std::int64_t>(body.points.size());
     e.cells_active = body.grid.n_cells();
     e.bytes_per_point =

@@ -105,7 +105,7 @@ using Outcome = experiment::Record<Results, Sample>;
 /// Runs the test; as cone::run.
 Outcome run(const Scene& scene, const scene::Observer& observer = {});
 
-scene::CostEstimate estimate(const Scene& scene);
+scene::SizeEstimate estimate(const Scene& scene);
 
 /// Whole time of the schedule [s].
 double whole_time(const Scene& scene);

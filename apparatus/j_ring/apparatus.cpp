@@ -179,8 +179,8 @@ std::vector<std::string> uses(const cone::Scene& scene) {
 }
 
 /// Twice the steps: with the ring and without.
-CostEstimate estimate(const cone::Scene& scene) {
-  CostEstimate e = cone::estimate(scene);
+SizeEstimate estimate(const cone::Scene& scene) {
+  SizeEstimate e = cone::estimate(scene);
   e.steps *= 2, e.steps_expected *= 2, e.time_expected *= 2.0;
   return e;
 }

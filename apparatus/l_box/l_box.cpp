@@ -22,7 +22,7 @@ double expected_time(const Scene& scene) {
 }
 
 template <class Geometry>
-void count(const Scene& scene, scene::CostEstimate& e) {
+void count(const Scene& scene, scene::SizeEstimate& e) {
   const auto [h, h_up] = scene.model.cell;
   const auto [n, n_up] = scene.model.points_per_cell;
   double cells = scene.box.column_length * scene.box.column_height / (h * h_up), in_a_cell = n * n_up;
@@ -33,8 +33,8 @@ void count(const Scene& scene, scene::CostEstimate& e) {
 }
 
 template <class Geometry>
-scene::CostEstimate estimate_in(const Scene& scene) {
-  scene::CostEstimate e;
+scene::SizeEstimate estimate_in(const Scene& scene) {
+  scene::SizeEstimate e;
   count<Geometry>(scene, e);
   const StepSettings settings = experiment::step_settings(scene.model);
   const double collapse = 0.5 * std::sqrt(experiment::gravity * scene.box.column_height) /
@@ -66,7 +66,7 @@ Outcome run(const Scene& scene, const scene::Observer& observer) {
   return in_space(scene) ? run_3d(scene, observer) : run_plane(scene, observer);
 }
 
-scene::CostEstimate estimate(const Scene& scene) {
+scene::SizeEstimate estimate(const Scene& scene) {
   experiment::refuse_what_has_no_engine(scene.model, "L-box");
   return in_space(scene) ? estimate_in<ThreeD>(scene) : estimate_in<PlaneStrain>(scene);
 }

@@ -77,7 +77,7 @@ using Outcome = experiment::Record<Results, Sample>;
 /// Runs the test; as cone::run.
 Outcome run(const Scene& scene, const scene::Observer& observer = {});
 
-scene::CostEstimate estimate(const Scene& scene);
+scene::SizeEstimate estimate(const Scene& scene);
 
 /// The keys of `apparatus = "l_box"`, and the checked values as a scene; throws InputError where they do not fit each other.
 scene::ApparatusKeys keys();

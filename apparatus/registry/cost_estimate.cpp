@@ -35,7 +35,7 @@ double frames_over(const Scene& scene, double time, double points) {
 
 }  // namespace
 
-CostEstimate cost_of(const Scene& scene, const Estimate& e) {
+CostEstimate cost_of(const Scene& scene, const SizeEstimate& e) {
   const auto points = static_cast<double>(e.points);
   const double per_step = points * e.point_step;
   CostEstimate cost;

@@ -14,7 +14,7 @@ struct CostEstimate {
 };
 
 /// By rates measured on the shipped scenes (Zen 4 and Xeon processors of 2023), good to a factor of two.
-CostEstimate cost_of(const Scene& scene, const Estimate& estimate);
+CostEstimate cost_of(const Scene& scene, const SizeEstimate& estimate);
 
 /// Why a run of this cost should not be begun, with its remedy: it needs more than `free_memory` [bytes], or more
 /// than a day by so many threads. Empty where nothing is against it.

@@ -91,7 +91,7 @@ Outcome run(const Scene& scene, const Observer& observer, bool coarser) {
   return outcome;
 }
 
-std::optional<CostEstimate> estimate(const Scene& scene) {
+std::optional<SizeEstimate> estimate(const Scene& scene) {
   if (!scene.functions->estimate) return std::nullopt;
   return as_input_error(scene, [&] { return scene.functions->estimate(scene.test); });
 }

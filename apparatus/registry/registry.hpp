@@ -60,7 +60,7 @@ Model& model_of(Scene& scene);
 Outcome run(const Scene& scene, const Observer& observer = {}, bool coarser = false);
 
 /// Empty for an apparatus without points. Throws InputError as run() does.
-std::optional<CostEstimate> estimate(const Scene& scene);
+std::optional<SizeEstimate> estimate(const Scene& scene);
 
 /// What the scene uses and what it leaves out, a line each ("flocculation: not stored, not computed").
 std::vector<std::string> uses(const Scene& scene);

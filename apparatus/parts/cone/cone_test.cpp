@@ -35,7 +35,7 @@ double cells_of(const Scene& scene) {
 }
 
 template <class Geometry>
-void count(const Scene& scene, scene::CostEstimate& e) {
+void count(const Scene& scene, scene::SizeEstimate& e) {
   const auto [n, n_up] = scene.model.points_per_cell;
   const double cells = cells_of(scene), in_a_cell = std::pow(n, Geometry::dim - 1) * n_up;
   experiment::count_points(
@@ -113,9 +113,9 @@ Outcome run(const Scene& scene, const scene::Observer& observer) {
   return is_explicit(scene.model) ? run_explicit(scene, observer) : run_implicit(scene, observer);
 }
 
-scene::CostEstimate estimate(const Scene& scene) {
+scene::SizeEstimate estimate(const Scene& scene) {
   refuse_what_has_no_engine(scene);
-  scene::CostEstimate e;
+  scene::SizeEstimate e;
   if (scene.model.space == SpaceKind::axisymmetric)
     count<Axisymmetric>(scene, e);
   else

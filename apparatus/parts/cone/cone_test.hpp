@@ -75,7 +75,7 @@ using Outcome = experiment::Record<Results, Sample>;
 Outcome run(const Scene& scene, const scene::Observer& observer = {});
 
 /// Points, cells and bytes at the start and a guess of the steps, without running.
-scene::CostEstimate estimate(const Scene& scene);
+scene::SizeEstimate estimate(const Scene& scene);
 
 /// When the spread passed a diameter [m], from the start of the lift [s]; empty where it never did.
 std::optional<double> time_to_spread(const std::vector<Sample>& series, double diameter);
