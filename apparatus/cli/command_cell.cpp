@@ -14,7 +14,7 @@
 #include "apparatus/report/rheometer_files.hpp"
 #include "apparatus/report/run_files/result_files.hpp"
 #include "apparatus/report/run_folder.hpp"
-#include "apparatus/run/stopwatch.hpp"
+#include "apparatus/run/machine/stopwatch.hpp"
 #include "libmpm/io/write_error.hpp"
 
 namespace tremie::cli {

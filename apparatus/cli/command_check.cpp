@@ -14,7 +14,7 @@
 #include "apparatus/registry/cost_estimate.hpp"
 #include "apparatus/registry/registry.hpp"
 #include "apparatus/report/compare/run_result.hpp"
-#include "apparatus/run/free_memory.hpp"
+#include "apparatus/run/machine/free_memory.hpp"
 
 namespace tremie::cli {
 namespace {

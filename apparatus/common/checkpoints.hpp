@@ -2,9 +2,12 @@
 
 #include <functional>
 
-#include "libmpm/body/archive.hpp"
-
 namespace tremie {
+
+class Archive;
+
+/// All that goes on from one step to the next, as libmpm/body/archive.hpp visits it.
+using VisitState = std::function<void(Archive&)>;
 
 /// Who keeps the state of a run while it goes on, so that another can go on from it to the same bits.
 struct Checkpoints {

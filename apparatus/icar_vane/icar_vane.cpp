@@ -6,6 +6,7 @@
 #include "apparatus/icar_vane/instrument.hpp"
 #include "apparatus/icar_vane/sections.hpp"
 #include "apparatus/icar_vane/stages.hpp"
+#include "apparatus/run/experiment.hpp"
 #include "libmpm/implicit/archived_state.hpp"
 #include "rheometer/reference/instrument.hpp"
 

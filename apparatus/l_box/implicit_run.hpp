@@ -8,6 +8,7 @@
 #include "apparatus/l_box/l_box.hpp"
 #include "apparatus/l_box/reading.hpp"
 #include "apparatus/l_box/set_up.hpp"
+#include "apparatus/run/experiment.hpp"
 #include "apparatus/run/passing.hpp"
 #include "libmpm/implicit/archived_state.hpp"
 

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "apparatus/run/frame_times.hpp"
-#include "apparatus/run/free_memory.hpp"
-#include "apparatus/run/threads.hpp"
+#include "apparatus/run/machine/free_memory.hpp"
+#include "apparatus/run/machine/threads.hpp"
 
 namespace tremie::scene {
 namespace {

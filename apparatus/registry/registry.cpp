@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "apparatus/run/free_processors.hpp"
-#include "apparatus/run/stopwatch.hpp"
-#include "apparatus/run/threads.hpp"
+#include "apparatus/run/machine/free_processors.hpp"
+#include "apparatus/run/machine/stopwatch.hpp"
+#include "apparatus/run/machine/threads.hpp"
 #include "apparatus/scene/resolved.hpp"
 
 namespace tremie::scene {

@@ -8,24 +8,12 @@
 
 #include "apparatus/common/outcome.hpp"
 #include "apparatus/run/frames.hpp"
+#include "apparatus/run/record.hpp"
 #include "apparatus/run/run_checks.hpp"
 #include "apparatus/run/run_loop.hpp"
 #include "apparatus/run/step_settings.hpp"
 
 namespace tremie::experiment {
-
-/// What an apparatus' own run hands back, in SI units. SampleOfRun: a line of the series, with its `time` and `time_step` [s].
-template <class ResultsOfRun, class SampleOfRun>
-struct Record {
-  using Sample = SampleOfRun;
-  Status status = Status::completed;
-  ResultsOfRun results = {};
-  Checks checks = {};
-  Cost cost = {};
-  std::vector<Sample> series =
-      {};  ///< every step; the start included where the test has something to read then
-  Frame final_frame = {};
-};
 
 /// How long an experiment takes at most and who sees what of it.
 template <class Sample>

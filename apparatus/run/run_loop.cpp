@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "libmpm/body/archive.hpp"
+
 namespace tremie::experiment {
 namespace {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "apparatus/run/stopwatch.hpp"
+#include "apparatus/run/machine/stopwatch.hpp"
 
 namespace tremie::verification {
 

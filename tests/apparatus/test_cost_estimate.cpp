@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "apparatus/registry/cost_estimate.hpp"
-#include "apparatus/run/free_memory.hpp"
+#include "apparatus/run/machine/free_memory.hpp"
 
 namespace tremie {
 namespace {

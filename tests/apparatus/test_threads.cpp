@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "apparatus/run/free_processors.hpp"
-#include "apparatus/run/threads.hpp"
+#include "apparatus/run/machine/free_processors.hpp"
+#include "apparatus/run/machine/threads.hpp"
 
 namespace tremie::experiment {
 namespace {

@@ -15,7 +15,7 @@
 #include <optional>
 
 #include "apparatus/registry/registry.hpp"
-#include "apparatus/run/stopwatch.hpp"
+#include "apparatus/run/machine/stopwatch.hpp"
 #include "rheometer/reference/instrument.hpp"
 #include "rheometer/reference/reiner_riwlin.hpp"
 #include "tests/hostile/finite.hpp"

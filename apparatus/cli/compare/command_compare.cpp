@@ -12,7 +12,7 @@
 #include "apparatus/report/compare/comparison.hpp"
 #include "apparatus/report/rheometer_files.hpp"
 #include "apparatus/report/run_folder.hpp"
-#include "apparatus/run/stopwatch.hpp"
+#include "apparatus/run/machine/stopwatch.hpp"
 #include "apparatus/scene/units.hpp"
 #include "libmpm/io/write_error.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "apparatus/run/stopwatch.hpp"
+#include "apparatus/run/machine/stopwatch.hpp"
 #include "libmpm/io/write_error.hpp"
 
 namespace tremie::cli {

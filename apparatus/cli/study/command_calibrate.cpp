@@ -21,7 +21,7 @@
 #include "apparatus/cli/program.hpp"
 #include "apparatus/report/rheometer_files.hpp"
 #include "apparatus/report/run_folder.hpp"
-#include "apparatus/run/stopwatch.hpp"
+#include "apparatus/run/machine/stopwatch.hpp"
 #include "apparatus/scene/input_error.hpp"
 #include "libmpm/io/write_error.hpp"
 

@@ -22,7 +22,7 @@
 #include "apparatus/report/fit_results.hpp"
 #include "apparatus/report/rheometer_files.hpp"
 #include "apparatus/report/run_folder.hpp"
-#include "apparatus/run/stopwatch.hpp"
+#include "apparatus/run/machine/stopwatch.hpp"
 #include "apparatus/scene/input_error.hpp"
 #include "apparatus/scene/load.hpp"
 #include "apparatus/scene/units.hpp"

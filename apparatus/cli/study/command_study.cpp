@@ -22,7 +22,7 @@
 #include "apparatus/cli/study/study_progress.hpp"
 #include "apparatus/report/process.hpp"
 #include "apparatus/report/rheometer_files.hpp"
-#include "apparatus/run/stopwatch.hpp"
+#include "apparatus/run/machine/stopwatch.hpp"
 #include "apparatus/scene/input_error.hpp"
 #include "apparatus/study/page/study_page.hpp"
 #include "apparatus/study/rows/engines.hpp"

@@ -7,7 +7,7 @@
 
 #include "apparatus/common/apparatus.hpp"
 #include "apparatus/common/model.hpp"
-#include "apparatus/run/experiment.hpp"
+#include "apparatus/run/record.hpp"
 #include "libmpm/constitutive/mix.hpp"
 
 namespace tremie::cone {

@@ -12,6 +12,7 @@
 #include "apparatus/parts/cone/set_up.hpp"
 #include "apparatus/parts/cone/spread.hpp"
 #include "apparatus/run/body_readings.hpp"
+#include "apparatus/run/experiment.hpp"
 
 namespace tremie::cone {
 

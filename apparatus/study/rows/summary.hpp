@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apparatus/report/rheometer_files.hpp"
-#include "apparatus/run/stopwatch.hpp"
+#include "apparatus/run/machine/stopwatch.hpp"
 #include "apparatus/study/rows/files.hpp"
 #include "apparatus/study/rows/indices.hpp"
 

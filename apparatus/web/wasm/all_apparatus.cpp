@@ -13,7 +13,7 @@ const std::vector<scene::Apparatus>& scene::all_apparatus() {
   return all;
 }
 
-cone::Outcome cone::run_explicit(const Scene&, const Observer&) {
+cone::Outcome cone::run_explicit(const Scene&, const scene::Observer&) {
   throw std::invalid_argument(
       "model.scheme: the page has implicit steps alone; give \"implicit\", or run the scene by `tremie run`");
 }

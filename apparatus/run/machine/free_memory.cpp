@@ -1,4 +1,4 @@
-#include "apparatus/run/free_memory.hpp"
+#include "apparatus/run/machine/free_memory.hpp"
 
 #include <sys/resource.h>
 #include <unistd.h>

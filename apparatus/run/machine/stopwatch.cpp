@@ -1,4 +1,4 @@
-#include "apparatus/run/stopwatch.hpp"
+#include "apparatus/run/machine/stopwatch.hpp"
 
 #include <sys/resource.h>
 

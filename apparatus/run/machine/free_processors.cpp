@@ -1,4 +1,4 @@
-#include "apparatus/run/free_processors.hpp"
+#include "apparatus/run/machine/free_processors.hpp"
 
 #include <algorithm>
 #include <cmath>
