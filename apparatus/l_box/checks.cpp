@@ -19,24 +19,6 @@ std::vector<Sample>::const_iterator line_before(const std::vector<Sample>& serie
   return old == series.rend() ? series.end() : std::prev(old.base());
 }
 
-/// What H1 exceeds H2 by in a bed of depth h at rest, `length` between the two, where it flowed as far as its yield
-/// stress lets it: floor and side walls hold tau_0 (1 + 2 h/W) of rho g h dh/dx, and the bars their own [m].
-double drop_at_rest(const Scene& scene, double h, double length) {
-  const double floor_and_walls = (1.0 / h + (scene.side_walls_slip ? 0.0 : 2.0 / scene.box.width)) * length;
-  const double bars = bar_yield_drag * scene.bars * bar_diameter / scene.box.width;
-  return scene.mix.tau_0 / (scene.mix.density * experiment::gravity) * (floor_and_walls + bars);
-}
-
-/// The fastest that the front was [m/s].
-double fastest_front(const std::vector<Sample>& series) {
-  double speed = 0.0;
-  for (std::size_t i = 1; i < series.size(); ++i)
-    if (series[i].time > series[i - 1].time)
-      speed =
-          std::max(speed, (series[i].front - series[i - 1].front) / (series[i].time - series[i - 1].time));
-  return speed;
-}
-
 std::string inertia_at_the_bars(const Judged& j) {
   if (j.scene.bars == 0) return {};
   return parts::bars_with_inertia(j.scene.mix, j.scene.model.law, fastest_front(j.run.series), bar_diameter);
@@ -88,6 +70,21 @@ std::string wrong_level(const Judged& j) {
 }
 
 }  // namespace
+
+double drop_at_rest(const Scene& scene, double h, double length) {
+  const double floor_and_walls = (1.0 / h + (scene.side_walls_slip ? 0.0 : 2.0 / scene.box.width)) * length;
+  const double bars = bar_yield_drag * scene.bars * bar_diameter / scene.box.width;
+  return scene.mix.tau_0 / (scene.mix.density * experiment::gravity) * (floor_and_walls + bars);
+}
+
+double fastest_front(const std::vector<Sample>& series) {
+  double speed = 0.0;
+  for (std::size_t i = 1; i < series.size(); ++i)
+    if (series[i].time > series[i - 1].time)
+      speed =
+          std::max(speed, (series[i].front - series[i - 1].front) / (series[i].time - series[i - 1].time));
+  return speed;
+}
 
 std::optional<double> stands_since(const std::vector<Sample>& series) {
   const auto old = line_before(series);

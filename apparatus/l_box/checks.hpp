@@ -19,6 +19,13 @@ std::optional<double> stands_since(const std::vector<Sample>& series);
 /// Change of H2/H1 over the last standing_lasts [1/s]; empty where there was none that long ago.
 std::optional<double> ratio_change(const std::vector<Sample>& series);
 
+/// What H1 exceeds H2 by in a bed of depth h at rest, `length` between the two, where it flowed as far as its yield
+/// stress lets it: floor and side walls hold tau_0 (1 + 2 h/W) of rho g h dh/dx, and the bars their own [m].
+double drop_at_rest(const Scene& scene, double h, double length);
+
+/// The fastest that the front was [m/s].
+double fastest_front(const std::vector<Sample>& series);
+
 /// A run and its scene, as the checks look at them.
 struct Judged {
   const Scene& scene;

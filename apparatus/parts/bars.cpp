@@ -13,14 +13,13 @@ namespace {
 /// as large at a Reynolds number of 10 as at 1 (drag coefficients of 2.8 and 11).
 constexpr double most_bar_reynolds = 10.0;
 
-/// Reynolds number of a bar, with the apparent viscosity at the rate of the speed over its diameter.
+}  // namespace
+
 double bar_reynolds(const Mix& mix, const YieldLaw& law, double speed, double diameter) {
   if (speed == 0.0) return 0.0;
   const double rate = speed / diameter;
   return mix.density * speed * diameter / (mix.mu + viscosity(law, rate, mix.tau_0) + mix.tau_0 / rate);
 }
-
-}  // namespace
 
 std::vector<BarPoint<3>> slender_bars(const std::vector<Bar>& bars, const std::array<Axis, 3>& axes) {
   std::vector<BarPoint<3>> points;

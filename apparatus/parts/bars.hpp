@@ -26,6 +26,9 @@ std::vector<BarPoint<3>> slender_bars(const std::vector<Bar>& bars, const std::a
 /// The bars on cells that resolve them: points `spacing` apart [m] to which the concrete sticks.
 void add_resolved_bars(const std::vector<Bar>& bars, double spacing, std::vector<BoundaryPoint<3>>& points);
 
+/// Reynolds number of a bar at a speed of the concrete [m/s], with the apparent viscosity at that speed over the diameter.
+double bar_reynolds(const Mix& mix, const YieldLaw& law, double speed, double diameter);
+
 /// A reason where the drag law, which has no inertia, does not hold at a speed of the concrete [m/s]; else empty.
 std::string bars_with_inertia(const Mix& mix, const YieldLaw& law, double speed, double diameter);
 

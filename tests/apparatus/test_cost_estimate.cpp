@@ -9,7 +9,7 @@
 namespace tremie {
 namespace {
 
-scene::SizeEstimate cost_of(const std::string& name, const std::vector<std::string>& overrides = {}) {
+scene::CostEstimate cost_of(const std::string& name, const std::vector<std::string>& overrides = {}) {
   const auto scene = scene::read(std::string(TREMIE_SCENES) + "/" + name + ".toml", overrides);
   return scene::cost_of(scene, *scene::estimate(scene));
 }

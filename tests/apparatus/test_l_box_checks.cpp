@@ -5,6 +5,7 @@
 #include <atomic>
 
 #include "apparatus/l_box/checks.hpp"
+#include "apparatus/parts/bars.hpp"
 #include "apparatus/registry/registry.hpp"
 
 namespace tremie {
@@ -99,8 +100,11 @@ TEST(LBoxChecks, ReynoldsNumberOfTheBarsIsThatOfTheFastestFront) {
   scene.mix.density = 2000.0, scene.mix.mu = 1.0, scene.mix.tau_0 = 25.0;
   auto series = sinking(2, 0.0);
   series[0].front = 0.0, series[1].front = 0.2;
-  EXPECT_NEAR(l_box::bar_reynolds(scene, series), 7.5, 1e-12);
-  EXPECT_EQ(l_box::bar_reynolds(scene, sinking(2, 0.0)), 0.0);
+  const auto reynolds = [&](const std::vector<l_box::Sample>& of) {
+    return parts::bar_reynolds(scene.mix, scene.model.law, l_box::fastest_front(of), l_box::bar_diameter);
+  };
+  EXPECT_NEAR(reynolds(series), 7.5, 1e-12);
+  EXPECT_EQ(reynolds(sinking(2, 0.0)), 0.0);
 }
 
 }  // namespace

@@ -261,7 +261,7 @@ TEST(Page, SaysWhyThereIsNoResult) {
   scene::Outcome outcome = small_outcome();
   outcome.results.push_back({"volume_in_channel_m3", 0.01});
   outcome.none = {{"t500_s", "never reached"}};
-  outcome.answers = {{"spread_mm", "", "mm", 0}};
+  outcome.answers = {{"spread_mm", "", 0}};
   outcome.status = Status::interrupted, outcome.moving_at_end = true, outcome.cost.simulated = 1.2;
   const std::string html = report_html(outcome, "", {}, "");
   EXPECT_NE(html.find("never reached"), std::string::npos);

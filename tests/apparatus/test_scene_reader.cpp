@@ -204,7 +204,7 @@ TEST(SceneReader, ALaterLayerDropsWhatLosesItsMeaning) {
   EXPECT_TRUE(says(scene.notes.front(), {"a.toml:7: floor.coefficient"}));
 }
 
-double friction(const slump_flow::Scene& scene) { return std::get<Coulomb>(scene.floor.contact).coefficient; }
+double friction(const cone::Scene& scene) { return std::get<Coulomb>(scene.floor.contact).coefficient; }
 
 TEST(SceneReader, FrictionComesFromTheMix) {
   const std::string text = "apparatus = \"slump_flow\"\nmix = \"mix_b\"\n[floor]\ncontact = \"friction\"\n";
