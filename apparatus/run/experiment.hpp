@@ -23,6 +23,15 @@ struct Showing {
   bool from_start = true;  ///< whether the series and the frames begin before the first step
 };
 
+/// The first line of the series and the first frame, of the body at rest. run_experiment() does it where it was not done: a body
+/// that is to be laid out otherwise shows them before.
+template <class Geometry, class RecordOfRun, class Read>
+void show_start(const Body<Geometry>& body, const scene::Observer& observer, Read read, RecordOfRun& record) {
+  record.series.push_back(read(StepReport{}));
+  if (observer.on_frame && observer.all_frames && !goes_on(observer.checkpoints))
+    observer.on_frame(frame_of(body));
+}
+
 /// Runs the flow. `read(step)` makes a line of the series, `finish(stopped_at)` reads the results at the end, from the body too,
 /// and adds the apparatus' own reasons to those that are judged here.
 template <class Geometry, class RecordOfRun, class Read, class Finish>
@@ -30,11 +39,7 @@ void run_experiment(const Flow& flow, Body<Geometry>& body,
                     const Showing<typename RecordOfRun::Sample>& showing, const scene::Observer& observer,
                     Read read, Finish finish, RecordOfRun& record) {
   const double start_mass = total_mass(body.points), start_volume_change = volume_change(body.points);
-  if (showing.from_start) {
-    record.series.push_back(read(StepReport{}));
-    if (observer.on_frame && observer.all_frames && !goes_on(observer.checkpoints))
-      observer.on_frame(flow.frame());
-  }
+  if (showing.from_start && record.series.empty()) show_start(body, observer, read, record);
   const auto read_and_show = [&](const StepReport& step) {
     const auto& sample = record.series.emplace_back(read(step));
     if (observer.on_progress)

@@ -142,6 +142,9 @@ Outcome run_explicit_in(const Scene& scene, const Law& law, const scene::Observe
   if (scene.lift_speed) lifted_wall(scene, settings.wall_gap + 0.6 * scene.model.cell[0], wall);
 
   Outcome outcome;
+  const auto read_line = [&](const StepReport& step) { return next_line(scene, body, step, outcome); };
+  experiment::show_start(body, observer, read_line,
+                         outcome);  // there is no room for a frame beside the tiles
   experiment::EnergyWatch energy(experiment::energy_of<Geometry>(body.points, body.mix.K));
   auto state = start_explicit(body, law, settings, shape_of<Geometry>(scene.model));
   write_back(state, body);  // what a run that fails at once is read from
@@ -192,8 +195,7 @@ Outcome run_explicit_in(const Scene& scene, const Law& law, const scene::Observe
             if (!walled) wall = {};
           }};
   experiment::run_experiment(
-      flow, body, showing(scene), observer,
-      [&](const StepReport& step) { return next_line(scene, body, step, outcome); },
+      flow, body, showing(scene), observer, read_line,
       [&](std::optional<double> stopped_at) {
         read_results(stopped_at, outcome);
         add_reasons(scene, outcome);
