@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "apparatus/l_box/l_box.hpp"
+#include "libmpm/boundary/slender_bars.hpp"
+#include "libmpm/constitutive/constants.hpp"
 
 namespace tremie::l_box {
 
@@ -56,11 +58,9 @@ inline std::optional<double> ratio_change(const std::vector<Sample>& series) {
 /// What H1 exceeds H2 by in a bed of depth h at rest, `length` between the two, where it flowed as far as its yield
 /// stress lets it: floor and side walls hold tau_0 (1 + 2 h/W) of rho g h dh/dx, and the bars their own [m].
 inline double drop_at_rest(const Scene& scene, double h, double length) {
-  constexpr double g = 9.81;
-  constexpr double of_a_bar = 11.94;  // of tau_0 times diameter and length (Randolph and Houlsby 1984)
   const double floor_and_walls = (1.0 / h + (scene.side_walls_slip ? 0.0 : 2.0 / scene.box.width)) * length;
-  const double bars = of_a_bar * scene.bars * bar_diameter / scene.box.width;
-  return scene.mix.tau_0 / (scene.mix.density * g) * (floor_and_walls + bars);
+  const double bars = bar_yield_drag * scene.bars * bar_diameter / scene.box.width;
+  return scene.mix.tau_0 / (scene.mix.density * gravity) * (floor_and_walls + bars);
 }
 
 /// The drag law of a bar has no inertia. In a Newtonian fluid the drag of a cylinder over its speed is 2.5 times

@@ -10,11 +10,12 @@
 #include <string>
 
 #include "apparatus/common/model.hpp"
+#include "libmpm/constitutive/constants.hpp"
 #include "libmpm/implicit/step.hpp"
 
 namespace tremie::test_run {
 
-inline constexpr double gravity = 9.81;  ///< [m/s^2]
+using tremie::gravity;
 
 inline FaceKind face_of(ContactKind contact) {
   return contact == ContactKind::no_slip    ? FaceKind::no_slip

@@ -13,10 +13,10 @@
 #include <stdexcept>
 #include <vector>
 
+#include "libmpm/constitutive/constants.hpp"
+
 namespace tremie::scene {
 namespace {
-
-constexpr double two_pi = 2.0 * std::numbers::pi;
 
 constexpr std::array length_units{Unit{"m"}, Unit{"cm", 1, 100}, Unit{"mm", 1, 1000}};
 constexpr std::array time_units{Unit{"s"}, Unit{"ms", 1, 1000}, Unit{"min", 60}, Unit{"h", 3600}};

@@ -5,12 +5,11 @@
 #include <cmath>
 
 #include "apparatus/scene/units.hpp"
+#include "libmpm/constitutive/constants.hpp"
 
 namespace tremie::cli {
 
 namespace {
-
-constexpr double two_pi = 2.0 * std::numbers::pi;
 
 std::string head(const char* file, const char* x, const char* y) {
   return fmt::format(
