@@ -4,8 +4,10 @@
 
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
+#include <vector>
 
-#include "rheometer/fits/fit.hpp"
+#include "rheometer/fits/fit_record.hpp"
 
 namespace tremie::report {
 
@@ -17,7 +19,10 @@ nlohmann::ordered_json json_of(const std::optional<T>& value) {
   return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
 }
 
-/// "results" of a fit's summary.json; null for what the record does not tell.
+/// The values of one fit; null for a parameter that is not identifiable.
 nlohmann::ordered_json fit_results(const FitResult& result);
+
+/// "results" of a fit's summary.json; `records`: their names.
+nlohmann::ordered_json fit_results(const RecordFits& fits, const std::vector<std::string>& records);
 
 }  // namespace tremie::report

@@ -11,6 +11,7 @@
 // The error of a reading is taken to be in proportion to it; outliers are named and left out
 // (least_squares.hpp).
 
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -22,8 +23,6 @@
 
 namespace tremie {
 
-enum class FlowLaw { bingham, herschel_bulkley, automatic };
-
 /// What is known besides the record.
 struct FitInput {
   Instrument instrument;
@@ -34,8 +33,9 @@ struct FitInput {
   Kinetics kinetics = Kinetics::gated;  ///< power: without a gate and without a saturation
   double max_aggregate = 0.0;           ///< largest grain [m]; 0: not known
   bool choose_kinetics = false;         ///< fit each kinetics and take the one that the record supports best
-  FlowLaw law = FlowLaw::bingham;       ///< of a flow curve
-  double gamma_c = 0.1;                 ///< critical shear rate of the gate [1/s]
+  std::string law =
+      "bingham";         ///< of a flow curve (flow_law.hpp); "auto": the one that the record supports best
+  double gamma_c = 0.1;  ///< critical shear rate of the gate [1/s]
 };
 
 struct Interval {
@@ -88,9 +88,10 @@ struct Candidate {
 
 struct FitResult {
   RecordKind kind = RecordKind::flow_curve;
-  std::string model;                                ///< kinetics or law: "power", "bingham"
-  std::optional<Estimate> exponent;                 ///< n of the power kinetics
-  std::optional<Estimate> consistency, flow_index;  ///< of Herschel-Bulkley [Pa s^n]
+  std::string model;                 ///< kinetics or law: "power", "bingham"
+  std::optional<Estimate> exponent;  ///< n of the power kinetics
+  /// Parameters that the law of a flow curve alone has, by their names: "consistency".
+  std::map<std::string, std::optional<Estimate>> of_law;
   std::vector<Candidate> candidates;
   std::string choice;               ///< which model and why
   double effective_readings = 0.0;  ///< independent readings that carry as much as those used

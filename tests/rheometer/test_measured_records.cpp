@@ -12,7 +12,7 @@
 #include "rheometer/reference/reiner_riwlin.hpp"
 #include "rheometer/regression/lack_of_fit.hpp"
 #include "rheometer/regression/statistics.hpp"
-#include "rheometer/vane/fit_with_blades.hpp"
+#include "rheometer/fits/fit_with_blades.hpp"
 #include "rheometer/vane/vane_ends.hpp"
 #include "tests/rheometer/synthetic_record.hpp"
 
@@ -115,7 +115,7 @@ TEST(HerschelBulkleyTorque, IsTheCouetteIntegralWithItsDerivatives) {
 
 TEST(FitFlowCurve, TellsHerschelBulkleyFromBingham) {
   FitInput in;
-  in.law = FlowLaw::automatic;
+  in.law = "auto";
   TorqueRecord record = flow_curve(30);
   for (std::size_t i = 0; i < record.omega.size(); ++i)
     record.torque[i] = herschel_bulkley_torque({40.0, 60.0, 0.5}, record.omega[i], {}).torque;
@@ -123,7 +123,7 @@ TEST(FitFlowCurve, TellsHerschelBulkleyFromBingham) {
   finish(record, 0.005, 4);
   const FitResult f = fit(record, in);
   EXPECT_EQ(f.model, "herschel_bulkley");
-  EXPECT_TRUE(inside(f.flow_index, 0.5));
+  EXPECT_TRUE(inside(f.of_law.at("flow_index"), 0.5));
   EXPECT_TRUE(inside(f.tau_0, 40.0));
   EXPECT_EQ(fit(flow_curve(30, 0.005, 4), in).model, "bingham");
 }
@@ -277,7 +277,7 @@ TEST(Replicates, TheMeanHasTheIntervalOfTheScatterBetween) {
   EXPECT_NEAR(*means[0].between, 0.1, 1e-12);
   EXPECT_NEAR(*means[0].within, 0.01, 1e-12);
   EXPECT_NEAR(means[0].mean.ci95->high, 100.0 + 4.3027 * 10.0 / std::sqrt(3.0), 1e-3);
-  EXPECT_NEAR(*means[0].laboratories, 0.27, 1e-12);
+  EXPECT_NEAR(*means[0].parameter.laboratories, 0.27, 1e-12);
 }
 
 // F with one degree of freedom above is t squared.

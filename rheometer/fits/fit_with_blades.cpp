@@ -1,4 +1,4 @@
-#include "rheometer/vane/fit_with_blades.hpp"
+#include "rheometer/fits/fit_with_blades.hpp"
 
 #include <algorithm>
 #include <cmath>

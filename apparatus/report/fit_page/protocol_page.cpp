@@ -1,19 +1,16 @@
-#include "apparatus/cli/fit/protocol_report.hpp"
+#include "apparatus/report/fit_page/protocol_page.hpp"
 
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <numbers>
 
 #include "apparatus/report/page/charts.hpp"
 #include "apparatus/report/page/page.hpp"
 #include "apparatus/scene/units.hpp"
+#include "libmpm/constitutive/constants.hpp"
 
-namespace tremie::cli {
+namespace tremie::report {
 namespace {
-
-using report::Mark;
-constexpr double two_pi = 2.0 * std::numbers::pi;
 
 std::string text_of(const std::optional<double>& v) { return v ? scene::rounded(*v, 4) : "–"; }
 
@@ -28,14 +25,13 @@ bool is_curve(const SectionReading& s) {
 }
 
 /// Torque of a section, thinned to some hundreds of readings, and the line of its fit.
-void add_section(const ProtocolRecord& record, const SectionReading& s, std::size_t number,
-                 report::Page& page) {
+void add_section(const ProtocolRecord& record, const SectionReading& s, std::size_t number, Page& page) {
   if (s.section.kind == SectionKind::rest) return;
-  report::LineChart chart{.title = fmt::format("Section {}: {}", number, name_of(s.section.kind)),
-                          .x_label = is_curve(s) ? "speed (rev/s)" : "time in the section (s)",
-                          .y_label = "torque (mN·m)",
-                          .curves = {}};
-  report::Curve readings{.label = "readings", .x = {}, .y = {}, .mark = Mark::points};
+  LineChart chart{.title = fmt::format("Section {}: {}", number, name_of(s.section.kind)),
+                  .x_label = is_curve(s) ? "speed (rev/s)" : "time in the section (s)",
+                  .y_label = "torque (mN·m)",
+                  .curves = {}};
+  Curve readings{.label = "readings", .x = {}, .y = {}, .mark = Mark::points};
   const double start = record.time[s.section.begin];
   for (std::size_t k = s.section.begin; k < s.section.end; k += 1 + (s.section.end - s.section.begin) / 300) {
     readings.x.push_back(is_curve(s) ? record.omega[k] / two_pi : record.time[k] - start);
@@ -43,9 +39,9 @@ void add_section(const ProtocolRecord& record, const SectionReading& s, std::siz
   }
   chart.curves = {readings};
   if (s.fit) {
-    report::Curve line{.label = s.fit->model + (s.fit->reasons.empty() ? "" : " (does not fit)"),
-                       .x = s.fit->curve.x,
-                       .y = s.fit->curve.fitted};
+    Curve line{.label = s.fit->model + (s.fit->reasons.empty() ? "" : " (does not fit)"),
+               .x = s.fit->curve.x,
+               .y = s.fit->curve.fitted};
     for (double& x : line.x) x = is_curve(s) ? x / two_pi : x + s.fit_origin;
     for (double& y : line.y) y *= 1e3;
     chart.curves.push_back(line);
@@ -53,11 +49,11 @@ void add_section(const ProtocolRecord& record, const SectionReading& s, std::siz
   if (can_be_drawn(chart)) page.figures.push_back({fmt::format("section_{}", number), "", chart_svg(chart)});
 }
 
-void add_peaks(const Structuration& a, report::Page& page) {
-  report::LineChart chart{.title = "Static yield stress after rest",
-                          .x_label = "rest (s)",
-                          .y_label = "static yield stress (Pa)",
-                          .curves = {{"peaks of the start-ups", a.rest, a.stress, Mark::points}}};
+void add_peaks(const Structuration& a, Page& page) {
+  LineChart chart{.title = "Static yield stress after rest",
+                  .x_label = "rest (s)",
+                  .y_label = "static yield stress (Pa)",
+                  .curves = {{"peaks of the start-ups", a.rest, a.stress, Mark::points}}};
   if (a.A_thix && a.at_no_rest && a.rest.size() > 1) {
     const double first = a.rest.front(), last = a.rest.back(), rate = a.A_thix->value;
     chart.curves.push_back({fmt::format("line of {:.3g} Pa/s", rate),
@@ -87,7 +83,7 @@ std::vector<std::string> row(const SectionReading& s, std::size_t number) {
 
 std::string protocol_html(const ProtocolRecord& record, const ProtocolReading& reading,
                           const std::string& file, const std::string& command) {
-  report::Page page;
+  Page page;
   const Structuration& a = reading.structuration;
   page.headline = fmt::format("{}, a test of {} sections: {}",
                               std::filesystem::path(file).filename().string(), reading.sections.size(),
@@ -95,17 +91,17 @@ std::string protocol_html(const ProtocolRecord& record, const ProtocolReading& r
   page.title = "Tremie: " + page.headline;
   const bool good = reading.reasons.empty();
   page.verdict = {
-      good ? report::VerdictKind::agrees : report::VerdictKind::differs,
+      good ? VerdictKind::agrees : VerdictKind::differs,
       good ? "Each section is described by its model."
            : "A section is not described by any of the models; what it would have told is left out."};
   page.trust = {good, "Intervals hold 95 %.", reading.reasons};
   add_peaks(a, page);
   for (std::size_t i = 0; i < reading.sections.size(); ++i)
     add_section(record, reading.sections[i], i + 1, page);
-  report::GridTable table{"Sections",
-                          {"", "kind", "speed (rev/s)", "rest before (s)", "peak (mN·m)",
-                           "static yield stress (Pa)", "shear modulus (Pa)", "model, scatter"},
-                          {}};
+  GridTable table{"Sections",
+                  {"", "kind", "speed (rev/s)", "rest before (s)", "peak (mN·m)", "static yield stress (Pa)",
+                   "shear modulus (Pa)", "model, scatter"},
+                  {}};
   for (std::size_t i = 0; i < reading.sections.size(); ++i)
     if (reading.sections[i].section.kind != SectionKind::rest)
       table.rows.push_back(row(reading.sections[i], i + 1));
@@ -114,8 +110,8 @@ std::string protocol_html(const ProtocolRecord& record, const ProtocolReading& r
   for (const auto& note : record.understood) page.remarks.push_back("Read: " + note);
   page.words = {"Static yield stress: of the peak of a start-up, over the vane's side.",
                 "A_thix: how fast rest builds the yield stress up."};
-  page.made = report::facts_of_this_run(command);
+  page.made = facts_of_this_run(command);
   return to_html(page);
 }
 
-}  // namespace tremie::cli
+}  // namespace tremie::report
