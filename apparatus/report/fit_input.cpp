@@ -79,7 +79,8 @@ Json fit_input(const FitOptions& options, const std::vector<std::string>& record
   for (const FitOption& option : fit_options())
     if (option.input.place > 0) rows[option.input.place] = &option;
   Json json{{"record", records.size() == 1 ? Json(records.front()) : Json(records)}};
-  for (const auto& [place, option] : rows) {
+  for (const auto& entry : rows) {
+    const FitOption* option = entry.second;
     const auto in_its_unit = [&](double value) {
       return value * option->input.factor / option->input.divisor;
     };
