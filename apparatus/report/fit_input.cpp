@@ -31,7 +31,7 @@ double compliance_of(const std::string& text) {
   return value;
 }
 
-double number_of(const FitOption& option, const std::string& text) {
+double si_value(const FitOption& option, const std::string& text) {
   if (option.is_flag()) throw std::invalid_argument(fmt::format("\"{}\" is neither true nor false", text));
   if (option.unit == "rad/(N.m)") return compliance_of(text);
   const double value = scene::parse_quantity(text, scene::dimension_of(option.unit));
@@ -54,7 +54,7 @@ void read_option(FitOptions& options, const FitOption& option, const std::string
     if (option.is_word())
       set_option(options, option, text);
     else
-      set_option(options, option, number_of(option, text));
+      set_option(options, option, si_value(option, text));
   } catch (const std::invalid_argument& error) {
     throw scene::InputError(fmt::format("{}: {}", name, error.what()));
   }

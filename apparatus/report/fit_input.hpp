@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "rheometer/fits/fit_options.hpp"
+#include "rheometer/whole_fit/fit_options.hpp"
 
 namespace tremie::report {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "rheometer/fits/fit_record.hpp"
+#include "rheometer/whole_fit/fit_record.hpp"
 
 namespace tremie::report {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 // A law from which the fit of a flow curve chooses: what it states, and the registry of all. A law is a file in laws/ and
-// a place in the list of flow_law.cpp; fits, their results, the command's and Python's options name none.
+// a place in the list of flow_laws.cpp there; fits, their results, the command's and Python's options name none.
 
 #include <array>
 #include <optional>

@@ -4,10 +4,10 @@
 
 #include <set>
 
-#include "rheometer/fits/fit_record.hpp"
 #include "rheometer/fits/flow_law.hpp"
 #include "rheometer/vane/vane_blades.hpp"
 #include "rheometer/vane/vane_ends.hpp"
+#include "rheometer/whole_fit/fit_record.hpp"
 #include "tests/rheometer/synthetic_record.hpp"
 
 namespace tremie {

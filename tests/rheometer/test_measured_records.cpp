@@ -6,14 +6,14 @@
 #include <cmath>
 
 #include "libmpm/constitutive/yield_law.hpp"
-#include "rheometer/fits/replicates.hpp"
 #include "rheometer/protocol/protocol.hpp"
 #include "rheometer/reference/couette_flow.hpp"
 #include "rheometer/reference/reiner_riwlin.hpp"
 #include "rheometer/regression/lack_of_fit.hpp"
 #include "rheometer/regression/statistics.hpp"
-#include "rheometer/fits/fit_with_blades.hpp"
 #include "rheometer/vane/vane_ends.hpp"
+#include "rheometer/whole_fit/fit_with_blades.hpp"
+#include "rheometer/whole_fit/replicates.hpp"
 #include "tests/rheometer/synthetic_record.hpp"
 
 namespace tremie {

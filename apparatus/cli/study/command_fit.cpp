@@ -25,7 +25,7 @@
 #include "apparatus/scene/input_error.hpp"
 #include "apparatus/scene/load.hpp"
 #include "libmpm/io/write_error.hpp"
-#include "rheometer/fits/fit_record.hpp"
+#include "rheometer/whole_fit/fit_record.hpp"
 
 namespace tremie::cli {
 namespace {

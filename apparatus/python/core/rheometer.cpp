@@ -18,8 +18,8 @@
 #include "apparatus/scene/load.hpp"
 #include "apparatus/scene/units.hpp"
 #include "libmpm/constitutive/constants.hpp"
-#include "rheometer/fits/fit_record.hpp"
 #include "rheometer/reference/flocculation_ode.hpp"
+#include "rheometer/whole_fit/fit_record.hpp"
 
 namespace tremie::python {
 namespace {

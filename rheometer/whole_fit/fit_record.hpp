@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "rheometer/fits/fit_options.hpp"
-#include "rheometer/fits/replicates.hpp"
 #include "rheometer/protocol/protocol.hpp"
+#include "rheometer/whole_fit/fit_options.hpp"
+#include "rheometer/whole_fit/replicates.hpp"
 
 namespace tremie {
 

@@ -1,4 +1,4 @@
-#include "rheometer/fits/fit_options.hpp"
+#include "rheometer/whole_fit/fit_options.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,6 @@
-#include "rheometer/fits/flow_law.hpp"
-
 #include <stdexcept>
 
+#include "rheometer/fits/flow_law.hpp"
 #include "rheometer/fits/laws/bingham.hpp"
 #include "rheometer/fits/laws/herschel_bulkley.hpp"
 

@@ -1,12 +1,12 @@
-#include "rheometer/fits/fit_record.hpp"
+#include "rheometer/whole_fit/fit_record.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "rheometer/fits/fit_with_blades.hpp"
 #include "rheometer/records/text.hpp"
 #include "rheometer/vane/vane_ends.hpp"
+#include "rheometer/whole_fit/fit_with_blades.hpp"
 
 namespace tremie {
 namespace {

@@ -1,4 +1,4 @@
-#include "rheometer/fits/replicates.hpp"
+#include "rheometer/whole_fit/replicates.hpp"
 
 #include <algorithm>
 #include <cmath>
