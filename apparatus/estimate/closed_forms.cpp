@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "libmpm/constitutive/constants.hpp"
+
 namespace tremie::estimate {
 namespace {
 

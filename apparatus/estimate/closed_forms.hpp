@@ -6,7 +6,6 @@
 namespace tremie::estimate {
 
 inline constexpr double cone_volume = 5.497787143782138e-3;  ///< pi 0.3 (0.05^2 + 0.05 0.1 + 0.1^2)/3 [m^3]
-inline constexpr double gravity = 9.81;                      ///< [m/s^2]
 
 /// Thin layer: tau_0 = 225 rho g V^2/(128 pi^2 R^5) (Roussel and Coussot, J. Rheol. 49, 2005), spread 2 R.
 double thin_layer_yield_stress(double spread, double density);

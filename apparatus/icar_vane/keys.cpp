@@ -3,18 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
-#include <numbers>
 
 #include "apparatus/common/shared_keys.hpp"
 #include "apparatus/icar_vane/icar_vane.hpp"
+#include "libmpm/constitutive/constants.hpp"
 
 namespace tremie::icar_vane {
 
 using namespace scene;
 
+
 namespace {
 
-constexpr double two_pi = 2.0 * std::numbers::pi;
 constexpr double most_points = 1e8;
 constexpr double most_cells_with_ends = 3e4;  // of a sector: its factor then takes some 3 GB
 constexpr const char* speeds_key = "test.speeds";

@@ -1,12 +1,14 @@
 #include "apparatus/report/fit_results.hpp"
 
-#include <numbers>
+#include "apparatus/report/protocol_results.hpp"
+#include "libmpm/constitutive/constants.hpp"
+#include "rheometer/fits/flow_law.hpp"
 
 namespace tremie::report {
 
 using Json = nlohmann::ordered_json;
 
-Json json_of(const std::optional<Estimate>& e) {
+Json json_of(const std::optional<ParameterEstimate>& e) {
   if (!e) return nullptr;
   Json json{{"value", e->value}, {"ci95", nullptr}};
   if (e->ci95) json["ci95"] = {e->ci95->low, e->ci95->high};
@@ -15,8 +17,6 @@ Json json_of(const std::optional<Estimate>& e) {
 }
 
 namespace {
-
-constexpr double two_pi = 2.0 * std::numbers::pi;
 
 Json apparent_json(const FitResult& r) {
   if (!r.apparent) return nullptr;
@@ -82,13 +82,53 @@ Json fit_results(const FitResult& r) {
   j["residual_correlation"] = r.correlation;
   j["effective_readings"] = r.effective_readings;
   j["model"] = r.model;
-  j["consistency_Pa_s_n"] = json_of(r.consistency);
-  j["flow_index"] = json_of(r.flow_index);
+  for (const FitParameter& p : fit_parameters())
+    if (!p.member) j[p.key] = json_of(value_of(r, p));
   j["exponent"] = json_of(r.exponent);
   j["models"] = candidates_json(r);
   j["choice"] = r.choice;
   j["notes"] = r.notes;
   return j;
+}
+
+namespace {
+
+Json moves_json(const std::vector<MoveByEnds>& moves) {
+  Json json;
+  for (const MoveByEnds& m : moves) json[m.key] = {{"without_ends", m.without_ends}, {"change", m.change}};
+  return json;
+}
+
+Json replicates_json(const RecordFits& fits, const std::vector<std::string>& records) {
+  Json json{{"kind", "replicates"}, {"records", Json::array()}};
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    Json one{{"record", records[i]}};
+    one.update(fit_results(fits.fits[i]));
+    json["records"].push_back(one);
+  }
+  Json& mean = json["mean"] = Json::object();
+  for (const ReplicateMean& m : fits.means) {
+    Json& row = mean[m.parameter.name] = json_of(std::optional(m.mean));
+    row.update({{"unit", m.parameter.unit},
+                {"records", m.records},
+                {"scatter_between", json_of(m.between)},
+                {"scatter_within", json_of(m.within)},
+                {"scatter_between_laboratories", json_of(m.parameter.laboratories)}});
+  }
+  return json;
+}
+
+}  // namespace
+
+Json fit_results(const RecordFits& fits, const std::vector<std::string>& records) {
+  Json json = fits.protocol          ? protocol_results(fits.protocol->reading)
+              : fits.fits.size() > 1 ? replicates_json(fits, records)
+                                     : fit_results(fits.fits.front());
+  if (fits.protocol) json["understood"] = fits.protocol->record.understood;
+  json["ends"] = {{"correction", fits.options.ends}, {"factor", fits.end_factor}};
+  if (fits.fits.size() == 1) json["ends"]["moves"] = moves_json(fits.moves);
+  if (!fits.protocol) json["blades"] = {{"correction", fits.options.blades}};
+  return json;
 }
 
 }  // namespace tremie::report

@@ -10,11 +10,12 @@
 #include <string>
 
 #include "apparatus/common/model.hpp"
+#include "libmpm/constitutive/constants.hpp"
 #include "libmpm/implicit/step.hpp"
 
 namespace tremie::experiment {
 
-inline constexpr double gravity = 9.81;  ///< [m/s^2]
+using tremie::gravity;
 
 /// Points are counted one by one up to so many; beyond it their number is the volume over that of a point.
 inline constexpr double most_counted = 1e6;

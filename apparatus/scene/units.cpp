@@ -10,12 +10,11 @@
 #include <stdexcept>
 #include <vector>
 
+#include "libmpm/constitutive/constants.hpp"
 #include "rheometer/records/number_text.hpp"
 
 namespace tremie::scene {
 namespace {
-
-constexpr double two_pi = 2.0 * std::numbers::pi;
 
 constexpr std::array length_units{Unit{"m"}, Unit{"cm", 1, 100}, Unit{"mm", 1, 1000}};
 constexpr std::array time_units{Unit{"s"}, Unit{"ms", 1, 1000}, Unit{"min", 60}, Unit{"h", 3600}};

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "apparatus/validation/readings.hpp"
+#include "libmpm/constitutive/constants.hpp"
 
 namespace tremie::validation {
 namespace {
@@ -38,7 +39,7 @@ double uniaxial_slump(double tau_0) {
   double weight = 0.0, left = 0.0;
   for (int i = 0; i < slices; ++i) {
     const double radius = 0.05 + 0.05 * (i + 0.5) / slices, area = std::numbers::pi * radius * radius;
-    weight += density * 9.81 * area * thickness;
+    weight += density * gravity * area * thickness;
     left += thickness * area / std::max(area, weight / (std::sqrt(3.0) * tau_0));
   }
   return 1e3 * (height - left);

@@ -2,7 +2,7 @@
 
 // What a yield law states. A law is a struct of its parameters in a file of this folder and a line in
 // yield_law.hpp (YieldLaw); the solvers, the apparatus and the rheometer's torques name none. A fit of a flow curve names
-// the laws that it can choose from: FlowLaw, rheometer/fits/fit.hpp.
+// the laws that it can choose from: rheometer/fits/flow_law.hpp.
 //
 // Every law splits the deviatoric stress of a generalised Newtonian fluid into a Newtonian part, which the mix's
 // plastic viscosity mu gives, and a part of its own,

@@ -11,6 +11,7 @@
 // The error of a reading is taken to be in proportion to it; outliers are named and left out
 // (least_squares.hpp).
 
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -22,27 +23,26 @@
 
 namespace tremie {
 
-enum class FlowLaw { bingham, herschel_bulkley, automatic };
-
 /// What is known besides the record.
 struct FitInput {
   Instrument instrument;
-  std::optional<double> tau_0;     ///< dynamic yield stress [Pa]
-  std::optional<double> mu;        ///< plastic viscosity [Pa s]
-  std::optional<double> omega;     ///< speed of a torque decay [rad/s]; a decay needs it
-  std::optional<double> rest;      ///< rest before a torque decay [s]
-  Kinetics kinetics = {};          ///< of a decay; their parameters are what the fit finds, and gamma_c
-  double max_aggregate = 0.0;      ///< largest grain [m]; 0: not known
-  bool choose_kinetics = false;    ///< fit each kinetics and take the one that the record supports best
-  FlowLaw law = FlowLaw::bingham;  ///< of a flow curve
-  double gamma_c = 0.1;            ///< critical shear rate of the gate [1/s]
+  std::optional<double> tau_0;   ///< dynamic yield stress [Pa]
+  std::optional<double> mu;      ///< plastic viscosity [Pa s]
+  std::optional<double> omega;   ///< speed of a torque decay [rad/s]; a decay needs it
+  std::optional<double> rest;    ///< rest before a torque decay [s]
+  Kinetics kinetics = {};        ///< of a decay; their parameters are what the fit finds, and gamma_c
+  double max_aggregate = 0.0;    ///< largest grain [m]; 0: not known
+  bool choose_kinetics = false;  ///< fit each kinetics and take the one that the record supports best
+  std::string law =
+      "bingham";         ///< of a flow curve (flow_law.hpp); "auto": the one that the record supports best
+  double gamma_c = 0.1;  ///< critical shear rate of the gate [1/s]
 };
 
 struct Interval {
   double low = 0.0, high = 0.0;
 };
 
-struct Estimate {
+struct ParameterEstimate {
   double value = 0.0;
   std::optional<Interval> ci95;  ///< empty where as many readings as parameters leave no scatter to judge by
   bool given = false;            ///< taken from FitInput, not from the record
@@ -88,13 +88,14 @@ struct Candidate {
 
 struct FitResult {
   RecordKind kind = RecordKind::flow_curve;
-  std::string model;                                ///< kinetics or law: "power", "bingham"
-  std::optional<Estimate> exponent;                 ///< n of the power kinetics
-  std::optional<Estimate> consistency, flow_index;  ///< of Herschel-Bulkley [Pa s^n]
+  std::string model;                          ///< kinetics or law: "power", "bingham"
+  std::optional<ParameterEstimate> exponent;  ///< n of the power kinetics
+  /// Parameters that the law of a flow curve alone has, by their names: "consistency".
+  std::map<std::string, std::optional<ParameterEstimate>> of_law;
   std::vector<Candidate> candidates;
   std::string choice;               ///< which model and why
   double effective_readings = 0.0;  ///< independent readings that carry as much as those used
-  std::optional<Estimate> tau_0, mu, static_yield_stress, lambda_0, alpha, A_thix;
+  std::optional<ParameterEstimate> tau_0, mu, static_yield_stress, lambda_0, alpha, A_thix;
   std::optional<ApparentReading> apparent;
   std::optional<bool> plug;              ///< part of the gap is at rest at some reading
   std::optional<double> plug_below;      ///< speed below which there is a plug [rad/s], flow curve alone

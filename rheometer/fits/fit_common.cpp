@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
 
+#include "rheometer/records/text.hpp"
 #include "rheometer/regression/lack_of_fit.hpp"
 #include "rheometer/regression/statistics.hpp"
 
@@ -33,28 +33,24 @@ void judge_sizes(const TorqueRecord& record, const FitInput& input, FitResult& r
 /// What the parameters hold for: a gap of 3 grains is no continuum, 5 are the usual demand (Feys et al. 2018).
 void judge_gap(const FitInput& in, FitResult& result) {
   const double gap = in.instrument.container_radius - in.instrument.vane_radius;
-  char text[300];
   if (in.max_aggregate > 0.0 && gap < 5.0 * in.max_aggregate) {
-    std::snprintf(
-        text, sizeof text,
-        "the gap of %.3g mm is %.2g maximum grains: %s; the parameters hold for this gap, not for the "
-        "material",
-        1e3 * gap, gap / in.max_aggregate,
-        gap < 3.0 * in.max_aggregate ? "under 3, where grains jam" : "under 5, where grains still matter");
-    (gap < 3.0 * in.max_aggregate ? result.reasons : result.notes).push_back(text);
+    const bool jams = gap < 3.0 * in.max_aggregate;
+    (jams ? result.reasons : result.notes)
+        .push_back(text_of(
+            "the gap of %.3g mm is %.2g maximum grains: %s; the parameters hold for this gap, not for the "
+            "material",
+            1e3 * gap, gap / in.max_aggregate,
+            jams ? "under 3, where grains jam" : "under 5, where grains still matter"));
   }
   if (!result.plug || !*result.plug || !result.sheared_radius) return;
   const double sheared = *result.sheared_radius - in.instrument.vane_radius;
-  std::snprintf(text, sizeof text,
-                "plug: at the least sheared reading the material beyond %.3g mm stands still",
-                1e3 * *result.sheared_radius);
-  result.notes.push_back(text);
-  if (in.max_aggregate > 0.0 && sheared < 3.0 * in.max_aggregate) {
-    std::snprintf(text, sizeof text,
-                  "the sheared layer is as thin as %.2g mm, %.2g maximum grains, at a reading", 1e3 * sheared,
-                  sheared / in.max_aggregate);
-    result.notes.push_back(text);
-  }
+  result.notes.push_back(
+      text_of("plug: at the least sheared reading the material beyond %.3g mm stands still",
+              1e3 * *result.sheared_radius));
+  if (in.max_aggregate > 0.0 && sheared < 3.0 * in.max_aggregate)
+    result.notes.push_back(
+        text_of("the sheared layer is as thin as %.2g mm, %.2g maximum grains, at a reading", 1e3 * sheared,
+                sheared / in.max_aggregate));
 }
 
 }  // namespace
@@ -146,15 +142,15 @@ Readings without(const Readings& all, const std::vector<char>& leave_out) {
   return kept;
 }
 
-std::optional<Estimate> tell(double value, double variance, double degrees, double scale) {
+std::optional<ParameterEstimate> estimate(double value, double variance, double degrees, double scale) {
   if (!std::isfinite(value) || !std::isfinite(variance)) return std::nullopt;
-  if (degrees <= 0.0) return Estimate{value, std::nullopt, false};
+  if (degrees <= 0.0) return ParameterEstimate{value, std::nullopt, false};
   const double half = student_quantile(0.975, degrees) * std::sqrt(variance);
   if (half > scale) return std::nullopt;
-  return Estimate{value, Interval{std::max(0.0, value - half), value + half}, false};
+  return ParameterEstimate{value, Interval{std::max(0.0, value - half), value + half}, false};
 }
 
-Estimate given(double value) { return {value, Interval{value, value}, true}; }
+ParameterEstimate given(double value) { return {value, Interval{value, value}, true}; }
 
 std::string misfit_of(std::span<const double> x, std::span<const double> residual, const std::string& what) {
   const LackOfFit l = lack_of_fit(x, residual);
@@ -164,14 +160,12 @@ std::string misfit_of(std::span<const double> x, std::span<const double> residua
   // a jump is no smooth curve: far above the noise of neighbouring readings, and neighbours miss alike
   const bool rough = whole >= 0.05 && whole > 5.0 * l.roughness_noise && correlation > 0.5;
   if (residual.size() < 8 || (!smooth && !rough)) return {};
-  const auto percent = [](double v) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.2g %%", 100.0 * v);
-    return std::string(text);
-  };
-  return "the model does not fit: it misses the readings by " + percent(whole) + ", " +
-         percent(l.systematic) + " of it along a smooth curve, where neighbouring readings scatter by " +
-         percent(l.roughness_noise) + ": " + what;
+  return text_of(
+             "the model does not fit: it misses the readings by %.2g %%, %.2g %% of it along a smooth curve, "
+             "where "
+             "neighbouring readings scatter by %.2g %%: ",
+             100.0 * whole, 100.0 * l.systematic, 100.0 * l.roughness_noise) +
+         what;
 }
 
 double scatter_of_rows(const Readings& readings, const LeastSquaresFit& fit) {

@@ -31,11 +31,11 @@ Readings condense(const Readings& all, std::size_t most, FitResult& result);
 /// Without the marked readings.
 Readings without(const Readings& all, const std::vector<char>& leave_out);
 
-/// value with its 95 % interval, cut at 0; empty where the interval is wider than `scale` to each side.
-std::optional<Estimate> tell(double value, double variance, double degrees, double scale);
+/// value with its 95 % interval, cut at 0; empty, not identifiable, where the interval is wider than `scale` to each side.
+std::optional<ParameterEstimate> estimate(double value, double variance, double degrees, double scale);
 
 /// The given value as an estimate.
-Estimate given(double value);
+ParameterEstimate given(double value);
 
 /// Relative standard deviation of a row about the fit: of the readings, and where they are means that of their rows too.
 double scatter_of_rows(const Readings& readings, const LeastSquaresFit& fit);

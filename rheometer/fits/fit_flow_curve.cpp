@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 #include <stdexcept>
 
 #include "rheometer/fits/fit_common.hpp"
-#include "rheometer/reference/couette_flow.hpp"
+#include "rheometer/fits/flow_law.hpp"
+#include "rheometer/records/text.hpp"
 #include "rheometer/regression/lack_of_fit.hpp"
 #include "rheometer/regression/statistics.hpp"
 
@@ -35,69 +35,65 @@ Readings readings_of(const TorqueRecord& record, FitResult& result) {
 
 bool several_speeds(const Readings& r) { return r.size() >= 2 && r.x.back() > r.x.front() * (1.0 + 1e-9); }
 
-/// Parameters of either law; k is mu and n is 1 for Bingham.
+/// A law with all of its parameters, given or fitted.
 struct Fitted {
-  FlowLaw law = FlowLaw::bingham;
-  HerschelBulkleyFluid fluid;
-  std::vector<std::size_t> free;  ///< of tau_0, k, n: those in fit.parameters
+  const FlowLaw* law = nullptr;
+  std::vector<double> all;
+  std::vector<std::size_t> free;  ///< of `all`: those in fit.parameters
   LeastSquaresFit fit;
 
-  Bingham bingham() const { return {fluid.tau_0, fluid.k}; }
-  std::optional<std::size_t> place_of(std::size_t index) const {
-    const auto at = std::find(free.begin(), free.end(), index);
-    return at == free.end() ? std::nullopt : std::optional(static_cast<std::size_t>(at - free.begin()));
-  }
+  double yield_stress() const { return all[0]; }
+  FlowTorque at(double omega, const Instrument& in) const { return law->torque(all, omega, in); }
 };
 
-HerschelBulkleyTorque torque_of(FlowLaw law, const HerschelBulkleyFluid& f, double omega,
-                                const Instrument& in) {
-  if (law == FlowLaw::herschel_bulkley) return herschel_bulkley_torque(f, omega, in);
-  const CouetteState s = reiner_riwlin({f.tau_0, f.k}, omega, in);
-  return {s.torque, s.sheared_radius, s.d_torque_d_tau_0, s.d_torque_d_mu, 0.0};
+/// The parameter's value where the input gives it.
+std::optional<double> given_value(const FitInput& input, const LawParameter& p) {
+  return p.row.member == &FitResult::tau_0 ? input.tau_0
+         : p.row.member == &FitResult::mu  ? input.mu
+                                           : std::nullopt;
 }
 
-HerschelBulkleyFluid with(const Fitted& fitted, std::span<const double> p) {
-  HerschelBulkleyFluid f = fitted.fluid;
-  double* const all[] = {&f.tau_0, &f.k, &f.n};
-  for (std::size_t i = 0; i < p.size(); ++i) *all[fitted.free[i]] = p[i];
-  return f;
+bool has_viscosity(const FlowLaw& law) {
+  return std::any_of(law.parameters.begin(), law.parameters.end(),
+                     [](const LawParameter& p) { return p.row.member == &FitResult::mu; });
+}
+
+std::vector<double> with(const Fitted& fitted, std::span<const double> p) {
+  std::vector<double> all = fitted.all;
+  for (std::size_t i = 0; i < p.size(); ++i) all[fitted.free[i]] = p[i];
+  return all;
 }
 
 /// The parameters of the law that are not given.
-Fitted least_squares(const Readings& r, const FitInput& input, FlowLaw law) {
+Fitted least_squares(const Readings& r, const FitInput& input, const FlowLaw& law) {
   std::vector<FlowPoint> points;
   for (std::size_t i = 0; i < r.size(); ++i) points.push_back({r.x[i], r.torque[i]});
-  const Bingham start = bingham_from_flow_curve(points, input.instrument);
-  const bool hb = law == FlowLaw::herschel_bulkley;
-  Fitted fitted{law, {input.tau_0.value_or(start.tau_0), input.mu.value_or(start.mu), 1.0}, {}, {}};
-  if (hb) fitted.fluid.k = std::max(fitted.fluid.k, 1e-6);
-  if (!input.tau_0) fitted.free.push_back(0);
-  if (!input.mu) fitted.free.push_back(1);
-  if (hb) fitted.free.push_back(2);
-
+  Fitted fitted{&law, law.start(bingham_from_flow_curve(points, input.instrument)), {}, {}};
   LeastSquaresProblem problem;
   problem.observed = r.torque;
   problem.count = r.count;
-  const double first[] = {fitted.fluid.tau_0, fitted.fluid.k, 1.0}, lower[] = {0.0, hb ? 1e-9 : 0.0, 0.2},
-               upper[] = {1e9, 1e9, 2.0};
-  for (const std::size_t k : fitted.free) {
-    problem.start.push_back(first[k]);
-    problem.lower.push_back(lower[k]);
-    problem.upper.push_back(upper[k]);
+  for (std::size_t k = 0; k < law.parameters.size(); ++k) {
+    if (const auto value = given_value(input, law.parameters[k])) {
+      fitted.all[k] = *value;
+      continue;
+    }
+    fitted.free.push_back(k);
+    problem.start.push_back(fitted.all[k]);
+    problem.lower.push_back(law.parameters[k].lower);
+    problem.upper.push_back(law.parameters[k].upper);
   }
   problem.model = [&](std::span<const double> p, std::span<double> torque, std::span<double> jacobian) {
-    const HerschelBulkleyFluid f = with(fitted, p);
+    const std::vector<double> all = with(fitted, p);
     for (std::size_t i = 0, at = 0; i < r.size(); ++i) {
-      const HerschelBulkleyTorque t = torque_of(law, f, r.x[i], input.instrument);
+      const FlowTorque t = law.torque(all, r.x[i], input.instrument);
       torque[i] = t.torque;
       if (jacobian.empty()) continue;
-      const double slope[] = {t.d_tau_0, t.d_k, t.d_n};
-      for (const std::size_t k : fitted.free) jacobian[at++] = slope[k];
+      for (const std::size_t k : fitted.free) jacobian[at++] = t.slope[k];
     }
     return std::all_of(torque.begin(), torque.end(), [](double t) { return t > 0.0; });
   };
   fitted.fit = fit_least_squares(problem);
-  fitted.fluid = with(fitted, fitted.fit.parameters);
+  fitted.all = with(fitted, fitted.fit.parameters);
   return fitted;
 }
 
@@ -110,12 +106,12 @@ std::size_t below_torque_minimum(const Readings& r, const FitInput& input) {
   for (std::size_t i = 0; i < first; ++i) slow[i] = r.x[i] < r.x[first];
   const Readings fast = without(r, slow);
   if (fast.size() == r.size() || fast.size() < 3 || !several_speeds(fast)) return 0;
-  const Fitted f = least_squares(fast, input, FlowLaw::bingham);
+  const Fitted f = least_squares(fast, input, flow_laws().front());
   if (f.fit.degrees_of_freedom < 1.0) return 0;
   // the one-in-a-thousand point of a new reading, with a fifth for the uncertainty of the curve
   const double cut = 1.2 * student_quantile(0.999, f.fit.degrees_of_freedom) * std::max(f.fit.scatter, 1e-6);
   for (std::size_t i = first; i-- > 0;) {
-    const double expected = reiner_riwlin(f.bingham(), r.x[i], input.instrument).torque;
+    const double expected = f.at(r.x[i], input.instrument).torque;
     if (slow[i] && std::sqrt(r.count[i]) * (r.torque[i] / expected - 1.0) > cut) return i + 1;
   }
   return 0;
@@ -130,12 +126,12 @@ double below_the_curve(const Readings& r, const FitInput& input) {
   std::fill_n(leave_out.begin(), slow, 1);
   const Readings fast = without(r, leave_out);
   if (fast.size() < 4 || !several_speeds(fast)) return 0.0;
-  const Fitted f = least_squares(fast, input, FlowLaw::bingham);
-  if (f.fit.degrees_of_freedom < 1.0 || f.fluid.tau_0 <= 0.0) return 0.0;
+  const Fitted f = least_squares(fast, input, flow_laws().front());
+  if (f.fit.degrees_of_freedom < 1.0 || f.yield_stress() <= 0.0) return 0.0;
   const double cut = 1.2 * student_quantile(0.999, f.fit.degrees_of_freedom) * std::max(f.fit.scatter, 1e-6);
   double sum = 0.0;
   for (std::size_t i = 0; i < slow; ++i) {
-    const double miss = r.torque[i] / reiner_riwlin(f.bingham(), r.x[i], input.instrument).torque - 1.0;
+    const double miss = r.torque[i] / f.at(r.x[i], input.instrument).torque - 1.0;
     if (!(std::sqrt(r.count[i]) * miss < -cut)) return 0.0;
     sum -= miss;
   }
@@ -143,19 +139,16 @@ double below_the_curve(const Readings& r, const FitInput& input) {
 }
 
 void report_plug(const Readings& r, const Fitted& f, const FitInput& input, FitResult& result) {
-  const double ratio = input.instrument.container_radius / input.instrument.vane_radius;
-  result.sheared_radius = torque_of(f.law, f.fluid, r.x.front(), input.instrument).sheared_radius;
+  result.sheared_radius = f.at(r.x.front(), input.instrument).sheared_radius;
   result.plug = *result.sheared_radius < input.instrument.container_radius * (1.0 - 1e-12);
-  if (f.law == FlowLaw::bingham && f.fluid.tau_0 > 0.0 && f.fluid.k > 0.0)
-    result.plug_below = f.fluid.tau_0 / (2.0 * f.fluid.k) * (ratio * ratio - 1.0 - 2.0 * std::log(ratio));
+  if (f.law->plug_below) result.plug_below = f.law->plug_below(f.all, input.instrument);
 }
 
 /// Delta method for the band around the fitted curve.
 void report_band(const Fitted& f, const FitInput& input, FitResult& result) {
   const std::size_t n = f.free.size();
   for (const double omega : result.curve.x) {
-    const HerschelBulkleyTorque t = torque_of(f.law, f.fluid, omega, input.instrument);
-    const double slope[] = {t.d_tau_0, t.d_k, t.d_n};
+    const auto slope = f.at(omega, input.instrument).slope;
     double variance = 0.0;
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t k = 0; k < n; ++k)
@@ -164,41 +157,46 @@ void report_band(const Fitted& f, const FitInput& input, FitResult& result) {
   }
 }
 
+/// "consistency, flow_index: the record cannot tell them" of the law's parameters behind the yield stress.
+void note_unidentifiable(const Fitted& f, FitResult& result) {
+  std::string names;
+  bool missing = false;
+  const auto& parameters = f.law->parameters;
+  for (std::size_t k = 1; k < parameters.size(); ++k) {
+    names += (names.empty() ? "" : ", ") + parameters[k].row.name;
+    missing = missing || (f.all[k] > 0.0 && !value_of(result, parameters[k].row));
+  }
+  if (missing)
+    result.notes.push_back(names + ": the record cannot tell " + (parameters.size() > 2 ? "them" : "it"));
+}
+
 void report_parameters(const Readings& r, const Fitted& f, const FitInput& input, FitResult& result) {
   const std::size_t n = f.free.size();
   const double degrees = f.fit.degrees_of_freedom;
-  const auto estimate = [&](std::size_t index, double value, double scale) -> std::optional<Estimate> {
-    const auto k = f.place_of(index);
-    if (!k || !f.fit.told[*k]) return std::nullopt;
-    return tell(value, f.fit.covariance[*k * n + *k], degrees, scale);
-  };
   const double slowest = shear_stress_at(input.instrument.vane_radius, r.torque.front(), input.instrument);
   const double fastest = shear_stress_at(input.instrument.vane_radius, r.torque.back(), input.instrument);
   const double apparent = fastest / newtonian_shear_rate(r.x.back(), input.instrument);
-  const bool hb = f.law == FlowLaw::herschel_bulkley;
-  result.tau_0 =
-      input.tau_0 ? given(*input.tau_0) : estimate(0, f.fluid.tau_0, std::max(f.fluid.tau_0, slowest));
-  if (hb) {
-    result.consistency = estimate(1, f.fluid.k, f.fluid.k);
-    result.flow_index = estimate(2, f.fluid.n, f.fluid.n);
-    result.notes.push_back(
-        "plastic_viscosity: Herschel-Bulkley has a consistency and a flow index in its place");
-  } else if (input.mu) {
-    result.mu = given(*input.mu);
-  } else if (f.fluid.k > 0.0) {
-    result.mu = estimate(1, f.fluid.k, std::max(f.fluid.k, apparent));
+  for (const LawParameter& p : f.law->parameters)
+    if (const auto value = given_value(input, p)) set_value(result, p.row, given(*value));
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t k = f.free[i];
+    const FitParameter& row = f.law->parameters[k].row;
+    const double value = f.all[k];
+    const bool viscosity = row.member == &FitResult::mu;
+    if (!f.fit.told[i] || (viscosity && !(value > 0.0))) continue;
+    const double scale = k == 0 ? std::max(value, slowest) : viscosity ? std::max(value, apparent) : value;
+    set_value(result, row, estimate(value, f.fit.covariance[i * n + i], degrees, scale));
   }
-  if (f.fluid.tau_0 <= 0.0)
+  if (!f.law->in_place_of_viscosity.empty())
+    result.notes.push_back("plastic_viscosity: " + f.law->in_place_of_viscosity);
+  if (f.yield_stress() <= 0.0)
     result.notes.push_back(
         "yield_stress: the torque rises at least in proportion to the speed; its interval starts at 0");
   if (degrees <= 0.0)
     result.notes.push_back(
         "as many readings as parameters: the curve passes through all, and no interval can be told");
   if (!result.tau_0) result.notes.push_back("yield_stress: the record cannot tell it");
-  if (!hb && !result.mu && f.fluid.k > 0.0)
-    result.notes.push_back("plastic_viscosity: the record cannot tell it");
-  if (hb && (!result.consistency || !result.flow_index))
-    result.notes.push_back("consistency, flow_index: the record cannot tell them");
+  note_unidentifiable(f, result);
 }
 
 /// Residuals in the order of speed, without outliers.
@@ -212,75 +210,98 @@ std::string misfit(const Readings& r, const LeastSquaresFit& f) {
   return misfit_of(x, residual, "the torque goes otherwise with the speed than this law");
 }
 
-const char* name_of(FlowLaw law) { return law == FlowLaw::bingham ? "bingham" : "herschel_bulkley"; }
-
 double mean_square(const LeastSquaresFit& f) {
   double sum = 0.0;
   for (const double e : f.residual) sum += e * e;
   return sum / static_cast<double>(f.residual.size());
 }
 
-/// A flow index at an end of its range is no measurement of it.
-bool at_bound(const Fitted& f) {
-  return f.law == FlowLaw::herschel_bulkley && (f.fluid.n < 0.201 || f.fluid.n > 1.999);
+/// The parameter that lies at an end of its law's range, which is no measurement of it; null where none does.
+const LawParameter* at_bound(const Fitted& f) {
+  constexpr double near = 1e-3;
+  for (std::size_t k = 0; k < f.all.size(); ++k) {
+    const LawParameter& p = f.law->parameters[k];
+    if (p.has_range() && (f.all[k] < p.lower + near || f.all[k] > p.upper - near)) return &p;
+  }
+  return nullptr;
+}
+
+double akaike(const Readings& r, const Fitted& f) {
+  return corrected_akaike(mean_square(f.fit), static_cast<double>(r.size()), static_cast<int>(f.free.size()));
+}
+
+/// The laws that are asked for and that the readings suffice for.
+std::vector<Fitted> fit_candidates(const Readings& r, const FitInput& input) {
+  std::vector<Fitted> fits;
+  for (const FlowLaw& law : flow_laws()) {
+    if (input.law != "auto" && input.law != law.name) continue;
+    const bool first = &law == &flow_laws().front();
+    if (!first && (input.mu || r.size() <= law.parameters.size())) continue;
+    fits.push_back(least_squares(r, input, law));
+  }
+  if (!fits.empty()) return fits;
+  static const char* const numbers[] = {"one", "two", "three", "four"};
+  const FlowLaw& law = flow_law(input.law);
+  throw std::invalid_argument(law.words + " needs at least " + numbers[law.parameters.size()] + " rows; " +
+                              std::to_string(r.size()) + " found");
+}
+
+/// "law bingham: Herschel-Bulkley's AICc is not smaller by more than 4, on 12 readings".
+std::string choice_of(const std::vector<Fitted>& fits, std::size_t best, std::size_t readings) {
+  std::string others;
+  for (std::size_t i = 1; i < fits.size(); ++i) others += (i > 1 ? ", " : "") + fits[i].law->words + "'s";
+  return "law " + fits[best].law->name +
+         (best > 0 ? ": its AICc is smaller by more than 4, on "
+                   : ": " + others + " AICc is not smaller by more than 4, on ") +
+         std::to_string(readings) + " readings";
 }
 
 /// Every reading is one speed held for a while or a mean: they count as independent.
 Fitted choose(const Readings& r, const FitInput& input, FitResult& result) {
-  std::vector<Fitted> fits;
-  if (input.law != FlowLaw::herschel_bulkley) fits.push_back(least_squares(r, input, FlowLaw::bingham));
-  if (input.law != FlowLaw::bingham && !input.mu && r.size() > 3)
-    fits.push_back(least_squares(r, input, FlowLaw::herschel_bulkley));
-  if (fits.empty())
-    throw std::invalid_argument("Herschel-Bulkley needs at least four rows; " + std::to_string(r.size()) +
-                                " found");
-  const auto n = static_cast<double>(r.size());
+  const std::vector<Fitted> fits = fit_candidates(r, input);
   std::vector<double> aicc;
-  for (const Fitted& f : fits)
-    aicc.push_back(fits.size() > 1 && at_bound(f)
-                       ? HUGE_VAL
-                       : corrected_akaike(mean_square(f.fit), n, static_cast<int>(f.free.size())));
-  // Bingham, the law of fewer parameters, unless Herschel-Bulkley is clearly better: within 4 the data support both
+  for (const Fitted& f : fits) aicc.push_back(fits.size() > 1 && at_bound(f) ? HUGE_VAL : akaike(r, f));
+  // The first, the law of fewest parameters, unless another is clearly better: within 4 the data support both
   // (Burnham and Anderson 2002), and the last digits of the torques would choose.
   constexpr double clearly = 4.0;
-  const std::size_t best = fits.size() > 1 && aicc[1] < aicc[0] - clearly ? 1 : 0;
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < fits.size(); ++i)
+    if (aicc[i] < aicc[0] - clearly && (best == 0 || aicc[i] < aicc[best])) best = i;
   for (std::size_t i = 0; i < fits.size(); ++i) {
     const bool finite = std::isfinite(aicc[i]);
-    result.candidates.push_back({name_of(fits[i].law), static_cast<int>(fits[i].free.size()),
+    result.candidates.push_back({fits[i].law->name, static_cast<int>(fits[i].free.size()),
                                  scatter_of_rows(r, fits[i].fit), fits[i].fit.correlation,
                                  finite ? std::optional(aicc[i]) : std::nullopt,
                                  finite ? std::optional(aicc[i] - aicc[best]) : std::nullopt,
                                  misfit(r, fits[i].fit).empty(), i == best});
   }
-  if (fits.size() > 1)
-    result.choice = std::string("law ") + name_of(fits[best].law) +
-                    (best == 1 ? ": its AICc is smaller by more than 4, on "
-                               : ": Herschel-Bulkley's AICc is not smaller by more than 4, on ") +
-                    std::to_string(r.size()) + " readings";
+  if (fits.size() > 1) result.choice = choice_of(fits, best, r.size());
   return fits[best];
 }
 
-/// A sentence where Herschel-Bulkley describes the readings of a Bingham fit far better and gives another yield stress:
-/// a difference of 10 in AICc leaves Bingham no support (Burnham and Anderson 2002). Empty otherwise.
-std::string better_law(const Readings& r, const FitInput& input, const Fitted& bingham) {
+/// A sentence where another law describes the readings of the first far better and gives another yield stress: a
+/// difference of 10 in AICc leaves the first no support (Burnham and Anderson 2002). Empty otherwise.
+std::string better_law(const Readings& r, const FitInput& input, const Fitted& first) {
   constexpr double no_support = 10.0, another = 0.1;
   constexpr std::size_t fewest = 6, most = 1000;
-  if (input.law != FlowLaw::bingham || input.mu || input.tau_0 || r.size() < fewest || r.size() > most)
+  if (input.law != flow_laws().front().name || input.mu || input.tau_0 || r.size() < fewest ||
+      r.size() > most)
     return {};
-  const Fitted hb = least_squares(r, input, FlowLaw::herschel_bulkley);
-  const auto n = static_cast<double>(r.size());
-  const auto aicc = [&](const Fitted& f) {
-    return corrected_akaike(mean_square(f.fit), n, static_cast<int>(f.free.size()));
-  };
-  const double tau_0 = bingham.fluid.tau_0, other = hb.fluid.tau_0;
-  if (at_bound(hb) || aicc(hb) > aicc(bingham) - no_support || std::abs(other - tau_0) < another * tau_0)
-    return {};
-  char text[240];
-  std::snprintf(text, sizeof text,
-                "yield_stress: hangs on the law: Herschel-Bulkley describes these readings far better "
-                "(scatter %.2g %% for "
-                "%.2g %%) and has %.3g Pa with n = %.2g; --law herschel_bulkley",
-                100.0 * hb.fit.scatter, 100.0 * bingham.fit.scatter, other, hb.fluid.n);
+  double least = akaike(r, first) - no_support;
+  std::string text;
+  for (const FlowLaw& law : std::span(flow_laws()).subspan(1)) {
+    const Fitted f = least_squares(r, input, law);
+    const double tau_0 = first.yield_stress(), other = f.yield_stress(), aicc = akaike(r, f);
+    if (at_bound(f) || aicc > least || std::abs(other - tau_0) < another * tau_0) continue;
+    least = aicc;
+    text = "yield_stress: hangs on the law: " + law.words +
+           text_of(" describes these readings far better (scatter %.2g %% for %.2g %%) and has %.3g Pa",
+                   100.0 * f.fit.scatter, 100.0 * first.fit.scatter, other);
+    for (std::size_t k = 0; k < f.all.size(); ++k)
+      if (law.parameters[k].has_range())
+        text += text_of(" with %s = %.2g", law.parameters[k].row.symbol.c_str(), f.all[k]);
+    text += "; --law " + law.name;
+  }
   return text;
 }
 
@@ -299,11 +320,10 @@ bool torque_falls(const Readings& r) {
          slope * (r.x.back() - r.x.front()) < -0.03 * my;
 }
 
-void forget(const FitInput& input, FitResult& result) {
+void withdraw(const FitInput& input, FitResult& result) {
   if (!input.tau_0) result.tau_0.reset();
   if (!input.mu) result.mu.reset();
-  result.consistency.reset();
-  result.flow_index.reset();
+  result.of_law.clear();
   result.plug_below.reset();
   result.notes.push_back("yield_stress, plastic_viscosity: a model that does not fit does not tell them");
 }
@@ -314,8 +334,8 @@ FitResult fit_flow_curve(const TorqueRecord& record, const FitInput& input) {
   FitResult result;
   result.kind = RecordKind::flow_curve;
   Readings r = readings_of(record, result);
-  if (input.mu && input.law == FlowLaw::herschel_bulkley)
-    throw std::invalid_argument("Herschel-Bulkley has no plastic viscosity that could be given");
+  if (input.mu && input.law != "auto" && !has_viscosity(flow_law(input.law)))
+    throw std::invalid_argument(flow_law(input.law).words + " has no plastic viscosity that could be given");
   if (input.tau_0 && input.mu)
     throw std::invalid_argument(
         "both the yield stress and the plastic viscosity are given; nothing is left to fit");
@@ -336,18 +356,20 @@ FitResult fit_flow_curve(const TorqueRecord& record, const FitInput& input) {
   r = without(r, leave_out);
   const double slip = below_the_curve(r, input);
   const Fitted f = choose(r, input, result);
-  result.model = name_of(f.law);
+  result.model = f.law->name;
   report(r, f.fit, result);
   result.effective_readings = static_cast<double>(result.readings);
   report_parameters(r, f, input, result);
   report_plug(r, f, input, result);
   report_band(f, input, result);
-  if (f.fluid.k <= 0.0)
+  if (f.all[1] <= 0.0)
     result.notes.push_back(
         "plastic_viscosity: the torque does not rise with the speed, so the record cannot tell it");
-  if (at_bound(f))
+  if (const LawParameter* p = at_bound(f))
     result.reasons.push_back(
-        "the flow index lies at the end of its range, 0.2 to 2: the law does not describe the record");
+        "the " + p->row.label +
+        text_of(" lies at the end of its range, %.3g to %.3g: the law does not describe the record", p->lower,
+                p->upper));
   if (torque_falls(r))
     result.reasons.push_back(
         "the torque falls as the speed rises, which neither a Bingham nor a Herschel-Bulkley "
@@ -357,7 +379,7 @@ FitResult fit_flow_curve(const TorqueRecord& record, const FitInput& input) {
     result.law_in_doubt = true;
     result.notes.push_back(better);
   }
-  if (!result.reasons.empty()) forget(input, result);
+  if (!result.reasons.empty()) withdraw(input, result);
   if (slip > 0.0)
     result.reasons.push_back("wall slip is likely: the slowest third of the readings lies " +
                              std::to_string(std::lround(100.0 * slip)) +

@@ -126,12 +126,12 @@ Readings readings_of(const TorqueRecord& record, FitResult& result) {
 constexpr double model_error = 5e-4;
 
 /// Estimates of the parameters and of what follows from them, by the delta method.
-struct Teller {
+struct Identified {
   const Layout& layout;
   const LeastSquaresFit& fit;
   DecayParameters p;
 
-  /// A gradient over the four parameters as a variance; empty where it leans on a parameter that is not told.
+  /// A gradient over the four parameters as a variance; empty where it leans on a parameter that is not identifiable.
   std::optional<double> variance(const DecayParameters& gradient) const {
     const std::size_t n = layout.free.size();
     double sum = 0.0;
@@ -143,33 +143,36 @@ struct Teller {
     return sum;
   }
 
-  std::optional<Estimate> operator()(double value, const DecayParameters& gradient, double scale) const {
+  std::optional<ParameterEstimate> operator()(double value, const DecayParameters& gradient,
+                                              double scale) const {
     const auto v = variance(gradient);
     const double own = model_error * value;
-    return v ? tell(value, *v + own * own, fit.degrees_of_freedom, scale) : std::nullopt;
+    return v ? estimate(value, *v + own * own, fit.degrees_of_freedom, scale) : std::nullopt;
   }
 };
 
-void report_parameters(const Readings& r, const Teller& told, const FitInput& in, FitResult& result) {
-  const auto& [tau_0, mu, lambda_0, breakdown, n] = told.p;
-  const double alpha = alpha_of(told.p);
-  const double stress = shear_stress_at(in.instrument.vane_radius, told.fit.fitted.front(), in.instrument);
+void report_parameters(const Readings& r, const Identified& identified, const FitInput& in,
+                       FitResult& result) {
+  const auto& [tau_0, mu, lambda_0, breakdown, n] = identified.p;
+  const double alpha = alpha_of(identified.p);
+  const double stress =
+      shear_stress_at(in.instrument.vane_radius, identified.fit.fitted.front(), in.instrument);
   const double rate = newtonian_shear_rate(*in.omega, in.instrument);
-  result.tau_0 = in.tau_0 ? given(tau_0) : told(tau_0, {1, 0, 0, 0, 0}, tau_0);
-  result.mu = in.mu ? given(mu) : told(mu, {0, 1, 0, 0, 0}, mu);
-  result.lambda_0 = told(lambda_0, {0, 0, 1, 0, 0}, std::max(lambda_0, 0.5));
-  result.static_yield_stress = told((1 + lambda_0) * tau_0, {1 + lambda_0, 0, tau_0, 0, 0}, stress);
+  result.tau_0 = in.tau_0 ? given(tau_0) : identified(tau_0, {1, 0, 0, 0, 0}, tau_0);
+  result.mu = in.mu ? given(mu) : identified(mu, {0, 1, 0, 0, 0}, mu);
+  result.lambda_0 = identified(lambda_0, {0, 0, 1, 0, 0}, std::max(lambda_0, 0.5));
+  result.static_yield_stress = identified((1 + lambda_0) * tau_0, {1 + lambda_0, 0, tau_0, 0, 0}, stress);
   const bool power = decay_fit(in.kinetics).free_exponent;
   if (lambda_0 > 0.0 && breakdown > 0.0) {
     const DecayParameters gradient{0, 0, power ? (1.0 - n) * alpha / lambda_0 : 0.0, alpha / breakdown,
                                    power ? -std::log(lambda_0) * alpha : 0.0};
-    result.alpha = told(alpha, gradient, std::max(alpha, 1.0 / (rate * r.x.back())));
+    result.alpha = identified(alpha, gradient, std::max(alpha, 1.0 / (rate * r.x.back())));
   }
-  if (power) result.exponent = told(n, {0, 0, 0, 0, 1}, n);
+  if (power) result.exponent = identified(n, {0, 0, 0, 0, 1}, n);
   if (in.rest)
-    result.A_thix = told(lambda_0 * tau_0 / *in.rest, {lambda_0 / *in.rest, 0, tau_0 / *in.rest, 0, 0},
-                         std::max(lambda_0 * tau_0, 0.5 * tau_0) / *in.rest);
-  const auto note = [&](const std::optional<Estimate>& e, const char* name, const char* why) {
+    result.A_thix = identified(lambda_0 * tau_0 / *in.rest, {lambda_0 / *in.rest, 0, tau_0 / *in.rest, 0, 0},
+                               std::max(lambda_0 * tau_0, 0.5 * tau_0) / *in.rest);
+  const auto note = [&](const std::optional<ParameterEstimate>& e, const char* name, const char* why) {
     if (!e) result.notes.push_back(std::string(name) + ": the record cannot tell it" + why);
   };
   note(result.tau_0, "yield_stress", " at one speed together with the others; --yield-stress gives it");
@@ -196,10 +199,10 @@ void report_flow(const Readings& r, const DecayParameters& p, const FitInput& in
 }
 
 /// The paper's reading. Its lambda = 0 is the torque of the dynamic material, where tau_0 and mu are known or
-/// told.
-void report_apparent(const Readings& r, const FitInput& in, const Teller& told, FitResult& result) {
+/// identifiable.
+void report_apparent(const Readings& r, const FitInput& in, const Identified& identified, FitResult& result) {
   ApparentReading a;
-  const double tau_0 = told.p[i_tau_0], mu = told.p[i_mu];
+  const double tau_0 = identified.p[i_tau_0], mu = identified.p[i_mu];
   const bool dynamic = result.tau_0 && result.mu;
   a.offset_torque =
       dynamic ? reiner_riwlin({tau_0, mu}, *in.omega, in.instrument).torque : mean_torque(r, 0.9, 1.0);
@@ -207,9 +210,10 @@ void report_apparent(const Readings& r, const FitInput& in, const Teller& told, 
                      : "median of the last tenth of the record";
   a.newtonian_rate = newtonian_shear_rate(*in.omega, in.instrument);
   if (dynamic && result.lambda_0)
-    a.rate_at_vane = (shear_stress_at(in.instrument.vane_radius, told.fit.fitted.front(), in.instrument) -
-                      static_yield_stress(told.p[i_lambda], tau_0)) /
-                     mu;
+    a.rate_at_vane =
+        (shear_stress_at(in.instrument.vane_radius, identified.fit.fitted.front(), in.instrument) -
+         static_yield_stress(identified.p[i_lambda], tau_0)) /
+        mu;
   for (const double torque : result.curve.observed)
     result.lambda_apparent.push_back(apparent_lambda(torque, a.offset_torque, tau_0, in.instrument));
   const double end = r.x.back();
@@ -359,9 +363,9 @@ void judge_fall(const Readings& r, std::size_t rows, const FitInput& in, FitResu
         "viscosity nor flocculation");
 }
 
-/// A model that does not describe the record tells none of its parameters.
-void tell_nothing(const FitInput& in, FitResult& result) {
-  const auto forget = [&](std::optional<Estimate>& e, const char* name) {
+/// No parameter is identifiable by a model that does not describe the record.
+void withdraw(const FitInput& in, FitResult& result) {
+  const auto forget = [&](std::optional<ParameterEstimate>& e, const char* name) {
     if (!e || e->given) return;
     e.reset();
     result.notes.push_back(std::string(name) + ": a model that does not fit does not tell it");
@@ -400,14 +404,14 @@ FitResult fit_torque_decay(const TorqueRecord& record, const FitInput& input) {
   if (fine) best = refined(r, in, std::move(best), 200);
   result.model = name_of(best.kinetics);
   judge_fall(r, record.torque.size(), in, result);
-  const Teller told{best.layout, best.fit, best.parameters()};
+  const Identified identified{best.layout, best.fit, best.parameters()};
   report(r, best.fit, result);
   result.effective_readings = effective_number(static_cast<double>(r.size()), best.fit.correlation);
   if (const std::string why = misfit(r, best.fit); !why.empty()) result.reasons.push_back(why);
-  report_parameters(r, told, in, result);
-  report_flow(r, told.p, in, result);
-  report_apparent(r, in, told, result);
-  if (!result.reasons.empty()) tell_nothing(in, result);
+  report_parameters(r, identified, in, result);
+  report_flow(r, identified.p, in, result);
+  report_apparent(r, in, identified, result);
+  if (!result.reasons.empty()) withdraw(in, result);
   return result;
 }
 

@@ -152,7 +152,7 @@ ProtocolReading read_protocol(const ProtocolRecord& record, const FitInput& inpu
       reading.decay = read_decay_shape(decay.time, decay.torque);
       read_fit(decay, in, reading);
     } else if (s.kind == SectionKind::flow_curve_up || s.kind == SectionKind::flow_curve_down) {
-      in.law = in.mu ? FlowLaw::bingham : FlowLaw::automatic;
+      in.law = in.mu ? "bingham" : "auto";
       read_fit(flow_curve_of(record, s), in, reading);
     } else if (s.kind == SectionKind::other) {
       reading.notes.push_back("neither a constant speed nor a ramp: not read");

@@ -43,8 +43,8 @@ struct SectionReading {
 
 /// Peaks over rests: static yield stress = intercept + A_thix rest.
 struct Structuration {
-  std::optional<Estimate> A_thix, at_no_rest;  ///< [Pa/s], [Pa]
-  std::optional<double> scatter;               ///< of the peaks about the line, relative to their mean
+  std::optional<ParameterEstimate> A_thix, at_no_rest;  ///< [Pa/s], [Pa]
+  std::optional<double> scatter;      ///< of the peaks about the line, relative to their mean
   std::optional<double> early, late;  ///< slope between the two shortest and the two longest rests [Pa/s]
   std::vector<double> rest, stress;   ///< what was used [s], [Pa]
   std::vector<std::string> notes;

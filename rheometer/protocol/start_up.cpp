@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "rheometer/protocol/protocol.hpp"
+#include "rheometer/records/text.hpp"
 #include "rheometer/regression/statistics.hpp"
 
 namespace tremie {
@@ -93,8 +94,8 @@ Structuration structuration_of(const std::vector<SectionReading>& sections) {
     result.notes.push_back("structuration_rate: needs the peaks after two rests of different length");
     return result;
   }
-  result.A_thix = Estimate{line.slope, std::nullopt, false};
-  result.at_no_rest = Estimate{line.at(0.0), std::nullopt, false};
+  result.A_thix = ParameterEstimate{line.slope, std::nullopt, false};
+  result.at_no_rest = ParameterEstimate{line.at(0.0), std::nullopt, false};
   if (line.n < 3.0) {
     result.notes.push_back("structuration_rate: two peaks tell no interval");
     return result;
@@ -115,13 +116,11 @@ Structuration structuration_of(const std::vector<SectionReading>& sections) {
   result.late = between(order[order.size() - 2], order.back());
   if (*result.scatter > 0.05 && result.early && result.late &&
       std::abs(*result.early - *result.late) > 0.3 * line.slope) {
-    char text[200];
-    std::snprintf(text, sizeof text,
-                  "structuration_rate: the peaks do not lie on a line over the rest: %.3g Pa/s between the "
-                  "two shortest "
-                  "rests, %.3g Pa/s between the two longest; the one value is a mean",
-                  *result.early, *result.late);
-    result.notes.push_back(text);
+    result.notes.push_back(
+        text_of("structuration_rate: the peaks do not lie on a line over the rest: %.3g Pa/s between the two "
+                "shortest "
+                "rests, %.3g Pa/s between the two longest; the one value is a mean",
+                *result.early, *result.late));
   }
   return result;
 }

@@ -4,19 +4,13 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <numbers>
 
+#include "libmpm/constitutive/constants.hpp"
 #include "rheometer/records/instrument_export.hpp"
 #include "rheometer/records/sections.hpp"
 #include "rheometer/records/table.hpp"
 
 namespace tremie {
-
-namespace {
-
-constexpr double two_pi = 2.0 * std::numbers::pi;
-
-}  // namespace
 
 const std::vector<ColumnQuantity>& torque_quantities() {
   static const std::vector<ColumnQuantity> all{

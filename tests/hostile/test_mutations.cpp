@@ -113,7 +113,7 @@ std::string ending_of_record(const std::string& text, int i) try {
   input.omega = 1.57;
   input.rest = 240.0;
   const FitResult result = fit(record, input);
-  const auto is_number = [](const std::optional<tremie::Estimate>& e) {
+  const auto is_number = [](const std::optional<tremie::ParameterEstimate>& e) {
     return !e || std::isfinite(e->value);
   };
   const bool numbers = is_number(result.tau_0) && is_number(result.mu) && is_number(result.alpha) &&

@@ -1,7 +1,9 @@
 """The module against the program: the same digits, the same messages. test_module.py PROGRAM"""
 
+import inspect
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -145,6 +147,10 @@ class Scenes(Folder):
 class Rheometer(Folder):
     instrument = dict(vane_radius=0.0635, vane_height=0.127, container_radius=0.143)
 
+    @staticmethod
+    def rows(torque):
+        return "speed_rev_per_s,torque_N_m\n" + "".join(f"{n},{T}\n" for n, T in zip([0.5, 0.4, 0.3, 0.2, 0.1], torque))
+
     def test_fit_has_the_program_s_digits(self):
         revolutions = np.array([0.5, 0.4, 0.3, 0.2, 0.1])
         torque = np.array([3.0, 2.55, 2.2, 1.7, 1.2])
@@ -153,11 +159,45 @@ class Rheometer(Folder):
         program("fit", record, "--out", self.folder / "out", "--quiet")
         read = tremie.read(self.folder / "out")
         from_file = tremie.fit(record)
-        read.results.pop("ends"), read.results.pop("blades")  # the program's own, by its options
         self.assertEqual(from_file.results, read.results)
         from_arrays = tremie.fit(speeds=2.0 * np.pi * revolutions, torque=torque, vane_radius=0.0635)
         self.assertEqual(from_arrays["yield_stress_Pa"], read["yield_stress_Pa"])
         np.testing.assert_array_equal(from_file.tables["fit.csv"]["torque_fit_N_m"], read.tables["fit.csv"]["torque_fit_N_m"])
+
+    def test_fit_takes_the_options_of_the_command(self):
+        said = re.findall(r"^\s+(?:-\w,)?--([a-z-]+)", program("fit", "--help").stdout, re.MULTILINE)
+        of_the_command = {name.replace("-", "_") for name in said} - {"help", "json", "out", "quiet", "force"}
+        of_python = set(inspect.signature(tremie.fit).parameters) - {"t", "torque", "speeds"}
+        self.assertGreater(len(of_python), 15)
+        self.assertEqual(of_python, of_the_command)
+        for name in of_python:
+            self.assertIn(f" {name} ", tremie.fit.__doc__)
+        with self.assertRaisesRegex(TypeError, "vane_radus.*vane_radius"):
+            tremie.fit("curve.csv", vane_radus=0.06)
+        with self.assertRaisesRegex(tremie.InputError, '^law: "casson" is not allowed; allowed: "auto", "bingham"'):
+            tremie.fit("curve.csv", law="casson")
+
+    def test_fit_has_the_program_s_digits_with_each_option(self):
+        first = self.file("first.csv", self.rows([3.0, 2.55, 2.2, 1.7, 1.2]))
+        second = self.file("second.csv", self.rows([3.1, 2.5, 2.25, 1.68, 1.25]))
+        whole = self.file("whole.csv", "time_s,speed_rpm,torque_N_m\n" + "".join(
+            f"{0.5 * i},{speed},{torque}\n" for i, (speed, torque) in enumerate(
+                [(15, 2.0 + 1.5 * np.exp(-0.05 * k)) for k in range(120)] + [(0, 0.0)] * 120
+                + [(0.3, min(k / 6, 0.7 + 0.3 * np.exp(-0.1 * (k - 6)))) for k in range(40)])))
+        for records, options, text in (
+            ([first], dict(ends="computed", blades="computed"), ["--ends", "computed", "--blades", "computed"]),
+            ([first], dict(law="auto", torque_offset="-50 mN.m"), ["--law", "auto", "--torque-offset", "-50 mN.m"]),
+            ([first], dict(ends="textbook", max_aggregate=0.016), ["--ends", "textbook", "--max-aggregate", "16 mm"]),
+            ([first, second], dict(vane_height=0.1), ["--vane-height", "10 cm"]),
+            ([whole], dict(protocol=True, instrument_compliance=0.02), ["--protocol", "--instrument-compliance", "0.02 rad/(N.m)"]),
+        ):
+            with self.subTest(text), warnings.catch_warnings():
+                warnings.simplefilter("ignore", tremie.UntrustedWarning)
+                subprocess.run([PROGRAM, "fit", *map(str, records), *text, "--out", self.folder / "out", "--quiet", "--force"])
+                read, result = tremie.read(self.folder / "out"), tremie.fit(records if len(records) > 1 else records[0], **options)
+                self.assertEqual(result.results, read.results)
+                self.assertEqual(result.reasons, read.reasons)
+                self.assertEqual(set(result.tables), set(read.tables))
 
     def test_arrays_take_text_with_units(self):
         torque = ["3 N.m", "2.55 N.m", "2200 mN.m", "1.7 N.m", "1.2 N.m"]
@@ -193,6 +233,10 @@ class Rheometer(Folder):
                                     structuration_rate="1.3 Pa/s", destructuration=0.01)
         rested = 1.3 * 240 / 54
         np.testing.assert_allclose(state, [0.0, rested, rested * np.exp(-0.01 * 5 * 10)], rtol=1e-11)
+        for kinetics in ("gated", "roussel", "power"):  # also where the kinetics have no exponent
+            with self.assertRaisesRegex(tremie.InputError, "the exponent must be at least 1"):
+                tremie.flocculation([0, 1], [(1, 0)], yield_stress=54, structuration_rate=1.3, destructuration=0.01,
+                                    kinetics=kinetics, exponent=0.5)
 
     def test_estimate(self):
         said = json.loads(program("estimate", "--spread", "590 mm", "--t500", "2.5 s", "--json").stdout)["results"]

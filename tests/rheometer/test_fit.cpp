@@ -13,7 +13,7 @@ namespace {
 
 using namespace synthetic;
 
-bool inside(const std::optional<Estimate>& e, double truth) {
+bool inside(const std::optional<ParameterEstimate>& e, double truth) {
   return e && e->ci95 && e->ci95->low <= truth && truth <= e->ci95->high;
 }
 

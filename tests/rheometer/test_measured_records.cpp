@@ -6,14 +6,14 @@
 #include <cmath>
 
 #include "libmpm/constitutive/yield_law.hpp"
-#include "rheometer/fits/replicates.hpp"
 #include "rheometer/protocol/protocol.hpp"
 #include "rheometer/reference/couette_flow.hpp"
 #include "rheometer/reference/reiner_riwlin.hpp"
 #include "rheometer/regression/lack_of_fit.hpp"
 #include "rheometer/regression/statistics.hpp"
-#include "rheometer/vane/fit_with_blades.hpp"
 #include "rheometer/vane/vane_ends.hpp"
+#include "rheometer/whole_fit/fit_with_blades.hpp"
+#include "rheometer/whole_fit/replicates.hpp"
 #include "tests/rheometer/synthetic_record.hpp"
 
 namespace tremie {
@@ -21,7 +21,7 @@ namespace {
 
 using namespace synthetic;
 
-bool inside(const std::optional<Estimate>& e, double truth) {
+bool inside(const std::optional<ParameterEstimate>& e, double truth) {
   return e && e->ci95 && e->ci95->low <= truth && truth <= e->ci95->high;
 }
 
@@ -115,7 +115,7 @@ TEST(HerschelBulkleyTorque, IsTheCouetteIntegralWithItsDerivatives) {
 
 TEST(FitFlowCurve, TellsHerschelBulkleyFromBingham) {
   FitInput in;
-  in.law = FlowLaw::automatic;
+  in.law = "auto";
   TorqueRecord record = flow_curve(30);
   for (std::size_t i = 0; i < record.omega.size(); ++i)
     record.torque[i] = herschel_bulkley_torque({40.0, 60.0, 0.5}, record.omega[i], {}).torque;
@@ -123,7 +123,7 @@ TEST(FitFlowCurve, TellsHerschelBulkleyFromBingham) {
   finish(record, 0.005, 4);
   const FitResult f = fit(record, in);
   EXPECT_EQ(f.model, "herschel_bulkley");
-  EXPECT_TRUE(inside(f.flow_index, 0.5));
+  EXPECT_TRUE(inside(f.of_law.at("flow_index"), 0.5));
   EXPECT_TRUE(inside(f.tau_0, 40.0));
   EXPECT_EQ(fit(flow_curve(30, 0.005, 4), in).model, "bingham");
 }
@@ -195,12 +195,12 @@ TEST(FitTorqueDecay, ChoosesTheKineticsAndIsNotMovedByTheLastDigitOfTheSpeed) {
   EXPECT_TRUE(inside(f.static_yield_stress, 9.0 * 54.0));
   *in.omega *= 1.00005;
   const FitResult moved = fit(record, in);
-  const std::pair<const std::optional<Estimate>*, const std::optional<Estimate>*> pairs[] = {
-      {&f.tau_0, &moved.tau_0},
-      {&f.static_yield_stress, &moved.static_yield_stress},
-      {&f.lambda_0, &moved.lambda_0},
-      {&f.alpha, &moved.alpha},
-      {&f.exponent, &moved.exponent}};
+  const std::pair<const std::optional<ParameterEstimate>*, const std::optional<ParameterEstimate>*> pairs[] =
+      {{&f.tau_0, &moved.tau_0},
+       {&f.static_yield_stress, &moved.static_yield_stress},
+       {&f.lambda_0, &moved.lambda_0},
+       {&f.alpha, &moved.alpha},
+       {&f.exponent, &moved.exponent}};
   for (const auto& [a, b] : pairs) {
     ASSERT_EQ(a->has_value(), b->has_value());
     if (!*a) continue;
@@ -270,13 +270,13 @@ TEST(Replicates, TheMeanHasTheIntervalOfTheScatterBetween) {
   std::vector<FitResult> fits(3);
   const double value[] = {90.0, 100.0, 110.0};
   for (std::size_t i = 0; i < 3; ++i)
-    fits[i].tau_0 = Estimate{value[i], Interval{value[i] - 1.96, value[i] + 1.96}, false};
+    fits[i].tau_0 = ParameterEstimate{value[i], Interval{value[i] - 1.96, value[i] + 1.96}, false};
   const auto means = replicate_means(fits);
   ASSERT_EQ(means.size(), 1u);
   EXPECT_NEAR(*means[0].between, 0.1, 1e-12);
   EXPECT_NEAR(*means[0].within, 0.01, 1e-12);
   EXPECT_NEAR(means[0].mean.ci95->high, 100.0 + 4.3027 * 10.0 / std::sqrt(3.0), 1e-3);
-  EXPECT_NEAR(*means[0].laboratories, 0.27, 1e-12);
+  EXPECT_NEAR(*means[0].parameter.laboratories, 0.27, 1e-12);
 }
 
 // F with one degree of freedom above is t squared.

@@ -18,7 +18,7 @@ struct Coverage {
   int covered = 0, missing = 0;  ///< missing: the fit reported null
   std::vector<double> values = {};
 
-  void add(const std::optional<Estimate>& e) {
+  void add(const std::optional<ParameterEstimate>& e) {
     if (!e || !e->ci95) {
       ++missing;
       return;
@@ -66,8 +66,8 @@ inline std::vector<Coverage> decay_coverage(bool tau_0_given, double noise, int 
         synthetic::correlated_decay(exact, noise, kind.rho, kind.drift, static_cast<std::uint64_t>(i + 1)),
         input);
   for (const FitResult& f : fits) {
-    const std::optional<Estimate>* found[] = {&f.lambda_0, &f.alpha, &f.static_yield_stress, &f.A_thix,
-                                              &f.tau_0};
+    const std::optional<ParameterEstimate>* found[] = {&f.lambda_0, &f.alpha, &f.static_yield_stress,
+                                                       &f.A_thix, &f.tau_0};
     for (std::size_t k = 0; k < c.size(); ++k) c[k].add(*found[k]);
     if (each) each(f);
   }

@@ -80,7 +80,7 @@ void write_apparent(std::ofstream& out, const Apparent& a, const std::string& di
   std::ofstream(directory + "/fit_apparent_alpha.svg") << report::svg_file({chart});
 }
 
-std::string text(const std::optional<Estimate>& e) {
+std::string text(const std::optional<ParameterEstimate>& e) {
   if (!e) return "null";
   std::ostringstream s;
   s << std::setprecision(3) << e->value;

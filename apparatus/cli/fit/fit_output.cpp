@@ -3,15 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
 
+#include "apparatus/cli/fit/fit_protocol.hpp"
 #include "apparatus/scene/units.hpp"
 
 namespace tremie::cli {
 
 using scene::rounded;
 
-void print_estimate(const char* name, const std::optional<Estimate>& e, const char* unit) {
+void print_estimate(const std::string& name, const std::optional<ParameterEstimate>& e,
+                    const std::string& unit) {
   if (!e)
     fmt::print("{:<22} not told by this record\n", name);
   else if (e->given)
@@ -24,11 +25,13 @@ void print_estimate(const char* name, const std::optional<Estimate>& e, const ch
                rounded(e->ci95->high, 4));
 }
 
-namespace {
-
-void print_estimate_if(const std::optional<Estimate>& e, const char* name, const char* unit) {
-  if (e) print_estimate(name, e, unit);
+std::string unit_on_screen(const FitParameter& parameter) {
+  std::string unit = parameter.unit;
+  std::replace(unit.begin(), unit.end(), ' ', '.');
+  return unit;
 }
+
+namespace {
 
 void print_candidates(const FitResult& r) {
   if (r.candidates.size() > 1) {
@@ -42,27 +45,16 @@ void print_candidates(const FitResult& r) {
   if (!r.choice.empty()) fmt::print("{:<22} {}\n", "chosen", r.choice);
 }
 
-}  // namespace
-
 void print_result(const FitResult& r) {
   print_candidates(r);
-  print_estimate("yield stress", r.tau_0, "Pa");
-  if (r.model != "herschel_bulkley") print_estimate("plastic viscosity", r.mu, "Pa.s");
-  print_estimate_if(r.consistency, "consistency", "Pa.s^n");
-  print_estimate_if(r.flow_index, "flow index", "");
-  if (r.kind == RecordKind::torque_decay) {
-    print_estimate("static yield stress", r.static_yield_stress, "Pa");
-    print_estimate("flocculation at start", r.lambda_0, "");
-    print_estimate("alpha", r.alpha, "");
-    print_estimate("A_thix", r.A_thix, "Pa/s");
-    if (r.apparent) {
-      const ApparentAlpha& all = r.apparent->windows.back();
-      fmt::print(
-          "{:<22} {:.4g} (exponential over {:.4g} s, shear rate 2 Omega/(1 - Ri^2/Ro^2) = {:.4g} 1/s)\n",
-          "apparent alpha", all.alpha_newtonian_rate, all.window, r.apparent->newtonian_rate);
-    }
+  for (const FitParameter& p : parameters_of(r))
+    if (const auto e = value_of(r, p); e || p.member) print_estimate(p.label, e, unit_on_screen(p));
+  if (r.apparent) {
+    const ApparentAlpha& all = r.apparent->windows.back();
+    fmt::print("{:<22} {:.4g} (exponential over {:.4g} s, shear rate 2 Omega/(1 - Ri^2/Ro^2) = {:.4g} 1/s)\n",
+               "apparent alpha", all.alpha_newtonian_rate, all.window, r.apparent->newtonian_rate);
   }
-  print_estimate_if(r.exponent, "exponent n", "");
+  if (r.exponent) print_estimate("exponent n", r.exponent, "");
   if (r.plug) fmt::print("{:<22} {}\n", "plug", *r.plug ? "yes" : "no");
   fmt::print("{:<22} {} used, {} dropped, scatter {:.2g} %\n", "readings", r.readings, r.dropped_count,
              100.0 * r.scatter);
@@ -71,6 +63,48 @@ void print_result(const FitResult& r) {
     fmt::print("{:<22} line {}: {}\n", "dropped", r.dropped[i].line, r.dropped[i].reason);
   if (r.dropped.size() > most) fmt::print("{:<22} and more, named in summary.json\n", "dropped");
   for (const auto& note : r.notes) fmt::print("{:<22} {}\n", "note", note);
+}
+
+std::string percent(const std::optional<double>& v) { return v ? fmt::format("{:.2g} %", 100.0 * *v) : "-"; }
+
+void print_means(const RecordFits& fits) {
+  fmt::print("--- mean of {} records\n{:<22} {:>10} {:>24} {:>9} {:>9} {:>13}\n", fits.fits.size(), "",
+             "mean", "95 %", "between", "within", "laboratories");
+  for (const ReplicateMean& m : fits.means)
+    fmt::print("{:<22} {:>10} {:>24} {:>9} {:>9} {:>13}\n", m.parameter.name, rounded(m.mean.value, 4),
+               m.mean.ci95 ? fmt::format("[{}, {}] {}", rounded(m.mean.ci95->low, 4),
+                                         rounded(m.mean.ci95->high, 4), m.parameter.unit)
+                           : "-",
+               percent(m.between), percent(m.within), percent(m.parameter.laboratories));
+  fmt::print(
+      "between laboratories one cement paste scattered by 27 % in yield stress and 24 % in viscosity "
+      "(Haist et al. 2020)\n");
+}
+
+void print_ends(const RecordFits& fits) {
+  if (fits.options.ends == "none") return;
+  fmt::print("{:<22} {}: torque {:.4g} times that of the side", "ends", fits.options.ends, fits.end_factor);
+  for (const MoveByEnds& m : fits.moves) fmt::print("; {} {:+.1f} %", m.key, 100.0 * m.change);
+  fmt::print("\n");
+}
+
+}  // namespace
+
+void print_fits(const RecordFits& fits, const std::vector<std::string>& records) {
+  if (fits.protocol) {
+    print_protocol(fits.protocol->reading);
+    print_ends(fits);
+    for (const auto& note : fits.protocol->record.understood) fmt::print("{:<22} {}\n", "read", note);
+  } else if (fits.fits.size() > 1) {
+    for (std::size_t i = 0; i < fits.fits.size(); ++i) {
+      fmt::print("--- {}\n", records[i]);
+      print_result(fits.fits[i]);
+    }
+    print_means(fits);
+  } else {
+    print_result(fits.fits.front());
+    print_ends(fits);
+  }
 }
 
 }  // namespace tremie::cli

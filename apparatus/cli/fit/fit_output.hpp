@@ -2,18 +2,20 @@
 
 // The outcome of a fit as lines for the screen.
 
-#include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
+#include <vector>
 
-#include "apparatus/report/fit_results.hpp"
+#include "rheometer/whole_fit/fit_record.hpp"
 
 namespace tremie::cli {
 
-using Json = nlohmann::ordered_json;
+void print_estimate(const std::string& name, const std::optional<ParameterEstimate>& e,
+                    const std::string& unit);
 
-using report::json_of;
+/// "Pa.s^n".
+std::string unit_on_screen(const FitParameter& parameter);
 
-void print_estimate(const char* name, const std::optional<Estimate>& e, const char* unit);
-void print_result(const FitResult& result);
+void print_fits(const RecordFits& fits, const std::vector<std::string>& records);
 
 }  // namespace tremie::cli

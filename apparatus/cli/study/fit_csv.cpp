@@ -1,14 +1,13 @@
 #include "apparatus/cli/study/fit_csv.hpp"
 
 #include <cmath>
-#include <numbers>
 
 #include "apparatus/scene/units.hpp"
+#include "libmpm/constitutive/constants.hpp"
 
 namespace tremie::cli {
 
 std::string fit_csv(const FitResult& r) {
-  constexpr double two_pi = 2.0 * std::numbers::pi;
   const bool decay = r.kind == RecordKind::torque_decay;
   std::string text =
       decay ? "time_s,torque_N_m,torque_fit_N_m,residual_percent,flocculation_apparent\n"

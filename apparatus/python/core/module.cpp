@@ -2,18 +2,22 @@
 
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "apparatus/python/core/parts.hpp"
+#include "apparatus/report/fit_input.hpp"
 #include "apparatus/scene/input_error.hpp"
 #include "rheometer/records/torque_record.hpp"
 #include "tremie_version.hpp"
 
 namespace {
 
-/// A message of the program with the arguments of run() for its options.
+/// A message of the program with the arguments of run() and fit() for its options.
 std::string in_python(std::string message) {
-  const std::pair<std::string, std::string> words[] = {
+  std::vector<std::pair<std::string, std::string>> words{
       {"--set ", ""}, {"--force", "force=True"}, {"--out DIR", "out=DIR"}};
+  for (const tremie::FitOption& option : tremie::fit_options())
+    words.emplace_back(tremie::report::command_name(option), option.name);
   for (const auto& [option, argument] : words)
     for (std::size_t at = 0; (at = message.find(option, at)) != std::string::npos; at += argument.size())
       message.replace(at, option.size(), argument);

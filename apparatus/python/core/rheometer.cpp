@@ -4,7 +4,6 @@
 #include <pybind11/stl.h>
 
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,12 +11,16 @@
 #include "apparatus/estimate/estimate.hpp"
 #include "apparatus/python/core/arrays.hpp"
 #include "apparatus/python/core/parts.hpp"
+#include "apparatus/report/fit_input.hpp"
 #include "apparatus/report/fit_results.hpp"
+#include "apparatus/report/protocol_results.hpp"
 #include "apparatus/scene/input_error.hpp"
 #include "apparatus/scene/load.hpp"
 #include "apparatus/scene/units.hpp"
-#include "rheometer/fits/fit.hpp"
+#include "libmpm/constitutive/constants.hpp"
 #include "rheometer/reference/flocculation_ode.hpp"
+#include "rheometer/reference/kinetics_equations.hpp"
+#include "rheometer/whole_fit/fit_record.hpp"
 
 namespace tremie::python {
 namespace {
@@ -50,61 +53,97 @@ Kinetics kinetics_of(const std::string& name) {
                                       fmt::join(kinetics_words(), "\", \"")));
 }
 
-FlowLaw law_named(const std::string& name) {
-  if (name == "bingham") return FlowLaw::bingham;
-  if (name == "herschel_bulkley") return FlowLaw::herschel_bulkley;
-  if (name == "auto") return FlowLaw::automatic;
-  throw scene::InputError(
-      fmt::format("law: \"{}\" is not allowed; allowed: \"bingham\", \"herschel_bulkley\", \"auto\"", name));
+/// Parameters that the chosen kinetics have no use for are judged as well.
+Thixotropy thixotropy_of(double A_thix, double alpha, const std::string& name, double gamma_c,
+                         double exponent, Optional saturation) {
+  Thixotropy t{A_thix, kinetics_of(name)};
+  for_each_kinetics([&](Kinetics kinetics) {
+    const auto set = [&](const char* key, Optional value) {
+      if (double* member = parameter(kinetics, key); member && value) *member = *value;
+    };
+    set("destructuration", alpha), set("critical_shear_rate", gamma_c);
+    set("exponent", exponent), set("saturation", saturation);
+    unlocked([&] { kinetics_equations::check({0.0, kinetics}, 0.0); });
+    if (word(kinetics) == name) t.kinetics = kinetics;
+  });
+  return t;
 }
 
-FitInput input_of(const Instrument& instrument, Optional omega, Optional rest, Optional tau_0, Optional mu,
-                  const std::string& kinetics, double gamma_c, const std::string& law,
-                  Optional max_aggregate) {
-  const bool choose = kinetics == "auto";
-  return {.instrument = instrument,
-          .tau_0 = tau_0,
-          .mu = mu,
-          .omega = omega,
-          .rest = rest,
-          .kinetics = choose ? Kinetics{} : kinetics_of(kinetics),
-          .max_aggregate = max_aggregate.value_or(0.0),
-          .choose_kinetics = choose,
-          .law = law_named(law),
-          .gamma_c = gamma_c};
+/// The option from a number [SI], from text with a unit, a word or a flag, as Python has it.
+void set_from(const py::handle& value, const FitOption& option, FitOptions& options) {
+  try {
+    if (py::isinstance<py::bool_>(value))
+      set_option(options, option, value.cast<bool>());
+    else if (py::isinstance<py::str>(value))
+      report::read_option(options, option, option.name, value.cast<std::string>());
+    else
+      set_option(options, option, value.cast<double>());
+  } catch (const std::invalid_argument& error) {
+    throw scene::InputError(fmt::format("{}: {}", option.name, error.what()));
+  } catch (const py::cast_error&) {
+    throw scene::InputError(
+        fmt::format("{}: {} is no number, text or flag", option.name, py::repr(value).cast<std::string>()));
+  }
 }
 
-TorqueRecord record_of(bool is_decay, const Numbers& x, const Numbers& torque) {
+FitOptions options_from(const py::dict& values) {
+  FitOptions options;
+  for (const FitOption& option : fit_options())
+    if (values.contains(option.name) && !values[option.name.c_str()].is_none())
+      set_from(values[option.name.c_str()], option, options);
+  return options;
+}
+
+/// The table of options: what each is called and may be.
+py::list option_rows() {
+  using namespace py::literals;
+  py::list rows;
+  for (const FitOption& o : fit_options())
+    rows.append(py::dict("name"_a = o.name, "unit"_a = o.unit, "words"_a = o.words, "help"_a = o.help));
+  return rows;
+}
+
+RecordSource record_of(bool is_decay, const Numbers& x, const Numbers& torque) {
   TorqueRecord record;
   record.kind = is_decay ? RecordKind::torque_decay : RecordKind::flow_curve;
   (is_decay ? record.time : record.omega) = x;
   record.torque = torque;
   for (std::size_t i = 0; i < x.size(); ++i) record.line.push_back(static_cast<long>(i) + 1);
-  return record;
+  return {.name = "", .record = record};
 }
 
 #ifdef TREMIE_WITH_FITS
-py::dict fit_record(const TorqueRecord& record, FitInput input) {
-  if (!input.omega && record.speed > 0.0) input.omega = record.speed;
-  FitResult result = unlocked([&] { return fit(record, input); });
-  result.notes.push_back(taken_for_a_cylinder);
-  result.notes.insert(result.notes.begin(), record.understood.begin(), record.understood.end());
-  py::dict curve, d;
-  const bool decay = result.kind == RecordKind::torque_decay;
-  d["results"] = report::fit_results(result).dump();
-  d["reasons"] = result.reasons;
+py::dict curve_of(FitResult& fit) {
+  py::dict curve;
+  const bool decay = fit.kind == RecordKind::torque_decay;
   if (!decay)
-    for (double& speed : result.curve.x) speed /= 2.0 * std::numbers::pi;
-  curve[decay ? "time_s" : "speed_rev_per_s"] = array_of(std::move(result.curve.x));
-  curve["torque_N_m"] = array_of(std::move(result.curve.observed));
-  curve["torque_fit_N_m"] = array_of(std::move(result.curve.fitted));
-  curve["torque_fit_error_N_m"] = array_of(std::move(result.curve.standard_error));
-  if (decay) curve["flocculation_apparent"] = array_of(std::move(result.lambda_apparent));
-  d["curve"] = curve;
+    for (double& speed : fit.curve.x) speed /= two_pi;
+  curve[decay ? "time_s" : "speed_rev_per_s"] = array_of(std::move(fit.curve.x));
+  curve["torque_N_m"] = array_of(std::move(fit.curve.observed));
+  curve["torque_fit_N_m"] = array_of(std::move(fit.curve.fitted));
+  curve["torque_fit_error_N_m"] = array_of(std::move(fit.curve.standard_error));
+  if (decay) curve["flocculation_apparent"] = array_of(std::move(fit.lambda_apparent));
+  return curve;
+}
+
+/// Takes the curves out of the fits.
+py::dict fit_sources(const std::vector<RecordSource>& sources, const py::dict& values) {
+  const FitOptions options = options_from(values);
+  RecordFits fits = unlocked([&] { return fit_records(sources, options, scene::data_folders()); });
+  std::vector<std::string> names;
+  for (const RecordSource& source : sources) names.push_back(source.name);
+  py::dict d;
+  py::list curves;
+  d["results"] = report::fit_results(fits, names).dump();
+  d["reasons"] = fits.reasons;
+  if (fits.protocol) d["sections"] = report::protocol_csv(fits.protocol->reading);
+  for (FitResult& fit : fits.fits) curves.append(curve_of(fit));
+  d["curves"] = curves;
   return d;
 }
 #else
-py::dict fit_record(const TorqueRecord&, const FitInput&) {
+py::dict fit_sources(const std::vector<RecordSource>&, const py::dict& values) {
+  options_from(values);
   throw std::runtime_error(
       "fit: not in this build, which lacks libceres-dev, libboost-dev or libsundials-dev");
 }
@@ -166,30 +205,21 @@ void add_rheometer(py::module_& module) {
   using namespace py::literals;
   py::class_<Instrument>(module, "Instrument")
       .def(py::init<double, double, double>(), "vane_radius"_a, "vane_height"_a, "container_radius"_a);
-  py::class_<FitInput>(module, "FitInput")
-      .def(py::init(&input_of), "instrument"_a, "omega"_a, "rest"_a, "tau_0"_a, "mu"_a, "kinetics"_a,
-           "gamma_c"_a, "law"_a, "max_aggregate"_a);
   py::class_<Thixotropy>(module, "Thixotropy")
-      .def(py::init([](double A_thix, double alpha, const std::string& kinetics, double gamma_c,
-                       double exponent, Optional saturation) {
-             Thixotropy t{A_thix, kinetics_of(kinetics)};
-             const auto set = [&](const char* name, Optional value) {
-               if (double* member = parameter(t.kinetics, name); member && value) *member = *value;
-             };
-             set("destructuration", alpha), set("critical_shear_rate", gamma_c);
-             set("exponent", exponent), set("saturation", saturation);
-             return t;
-           }),
-           "A_thix"_a, "alpha"_a, "kinetics"_a, "gamma_c"_a, "exponent"_a, "saturation"_a);
+      .def(py::init(&thixotropy_of), "A_thix"_a, "alpha"_a, "kinetics"_a, "gamma_c"_a, "exponent"_a,
+           "saturation"_a);
   py::class_<estimate::Measured>(module, "Measured")
       .def(py::init<double, double, Optional, double, double>(), "spread"_a, "spread_error"_a, "t500"_a,
            "t500_error"_a, "density"_a);
   module.def("quantity", &quantity, "name"_a, "text"_a, "si_unit"_a);
-  module.def("fit", [](bool is_decay, const Numbers& x, const Numbers& torque, const FitInput& input) {
-    return fit_record(record_of(is_decay, x, torque), input);
+  module.def("fit_options", &option_rows);
+  module.def("fit", [](bool is_decay, const Numbers& x, const Numbers& torque, const py::dict& values) {
+    return fit_sources({record_of(is_decay, x, torque)}, values);
   });
-  module.def("fit_file", [](const std::string& path, const FitInput& input) {
-    return fit_record(read_torque_record(path), input);
+  module.def("fit_files", [](const std::vector<std::string>& paths, const py::dict& values) {
+    std::vector<RecordSource> sources;
+    for (const std::string& path : paths) sources.push_back({.name = path});
+    return fit_sources(sources, values);
   });
   module.def("torques", &torques, "tau_0"_a, "mu"_a, "omega"_a, "instrument"_a);
   module.def("speeds", &speeds, "tau_0"_a, "mu"_a, "torque"_a, "instrument"_a);

@@ -8,7 +8,7 @@ import os
 import warnings
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Optional, Union
+from typing import Any, Iterable, Optional, Union
 
 import numpy as np
 
@@ -106,17 +106,22 @@ def _number(text: str) -> float:
     return float(text) if text else float("nan")
 
 
-def read_columns(file: Path) -> Columns:
-    """A CSV file: numbers as floats (an empty field is not-a-number), a column with words as strings."""
-    with open(file, newline="", encoding="utf-8") as stream:
-        header, *rows = list(csv.reader(line for line in stream if not line.startswith("#"))) or [[]]
-    columns = {}
+def columns(lines: Iterable[str]) -> Columns:
+    """The columns of CSV text: numbers as floats (an empty field is not-a-number), a column with words as strings."""
+    header, *rows = list(csv.reader(line for line in lines if not line.startswith("#"))) or [[]]
+    found = {}
     for name, values in zip(header, zip(*rows) if rows else [()] * len(header)):
         try:
-            columns[name] = np.array([_number(v) for v in values])
+            found[name] = np.array([_number(v) for v in values])
         except ValueError:
-            columns[name] = np.array(values, dtype=str)
-    return columns
+            found[name] = np.array(values, dtype=str)
+    return found
+
+
+def read_columns(file: Path) -> Columns:
+    """A CSV file, as columns()."""
+    with open(file, newline="", encoding="utf-8") as stream:
+        return columns(stream)
 
 
 def read(folder: Union[str, os.PathLike]) -> Result:

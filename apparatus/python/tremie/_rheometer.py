@@ -4,6 +4,7 @@ Every quantity is a number in SI units, or text with a unit."""
 
 from __future__ import annotations
 
+import inspect
 import json
 import os
 from dataclasses import dataclass
@@ -13,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _tremie
-from ._result import Result, checked
+from ._result import Result, checked, columns
 from ._values import Quantity, bare, numbers, positive, si
 
 
@@ -41,62 +42,73 @@ def _optional(name: str, value: Optional[Quantity], unit: str) -> Optional[float
     return None if value is None else positive(name, value, unit)
 
 
+def _option(name: str, value: Any) -> Any:
+    """As C++ takes it: text, a flag or a number."""
+    return value if value is None or isinstance(value, (str, bool)) else bare(name, value, "number, nor text with a unit")
+
+
+def _records(t: Any) -> Optional[list[str]]:
+    """Files, where `t` is one or several."""
+    several = t if isinstance(t, (list, tuple)) else [t]
+    return [os.fspath(name) for name in several] if several and all(isinstance(n, (str, os.PathLike)) for n in several) else None
+
+
 def fit(
-    t: Union[ArrayLike, str, os.PathLike, None] = None,
+    t: Union[ArrayLike, str, os.PathLike, Sequence[Union[str, os.PathLike]], None] = None,
     torque: Optional[ArrayLike] = None,
     *,
     speeds: Optional[ArrayLike] = None,
-    vane_radius: Quantity = "63.5 mm",
-    vane_height: Quantity = "127 mm",
-    container_radius: Quantity = "143 mm",
-    speed: Optional[Quantity] = None,
-    rest: Optional[Quantity] = None,
-    yield_stress: Optional[Quantity] = None,
-    plastic_viscosity: Optional[Quantity] = None,
-    kinetics: str = "auto",
-    critical_shear_rate: Quantity = "0.1 1/s",
-    law: str = "bingham",
-    max_aggregate: Optional[Quantity] = None,
+    **options: Any,
 ) -> Result:
     """Material parameters, each with its 95 % interval, from a torque record.
 
     fit(t, torque, speed=…)         a decay at constant speed: times [s], torques [N m]
     fit(speeds=…, torque=…)         a flow curve: speeds [rad/s], torques [N m]
-    fit("record.csv")               a file, as the program `tremie fit` reads it
+    fit("record.csv")               a file, as the program `tremie fit` reads it; several files are replicates
 
-    vane_radius, vane_height, container_radius  [m]; the ICAR rheometer's by default
-    speed, rest                     of a decay [rad/s], [s]
-    yield_stress, plastic_viscosity where they are known [Pa], [Pa s]
-    kinetics                        of a decay: "gated", "roussel", "power" or "auto", which compares them;
-                                    critical_shear_rate [1/s] of the gate
-    law                             of a flow curve: "bingham", "herschel_bulkley" or "auto"
-    max_aggregate                   largest grain [m], to judge the gap by
+    It takes what `tremie fit` takes, a quantity as text with a unit or as a number in the unit in brackets:
 
-    `.results` has the keys of the program's summary.json (yield_stress_Pa: value and ci95, or None where the record
-    does not tell it), `.tables["fit.csv"]` the readings beside the fitted torques."""
-    instrument = _instrument(vane_radius, vane_height, container_radius)
-    given = _tremie.FitInput(
-        instrument=instrument,
-        omega=_optional("speed", speed, "rad/s"),
-        rest=_optional("rest", rest, "s"),
-        tau_0=_optional("yield_stress", yield_stress, "Pa"),
-        mu=_optional("plastic_viscosity", plastic_viscosity, "Pa.s"),
-        kinetics=kinetics,
-        gamma_c=positive("critical_shear_rate", critical_shear_rate, "1/s"),
-        law=law,
-        max_aggregate=_optional("max_aggregate", max_aggregate, "m"),
-    )
-    if isinstance(t, (str, os.PathLike)):
-        answer = _tremie.fit_file(os.fspath(t), given)
+{options}
+    `.results` has the keys of the program's summary.json (yield_stress_Pa: value and ci95, or None where it is not
+    identifiable), `.tables["fit.csv"]` the readings beside the fitted torques ("fit_1.csv", … of replicates, "sections.csv"
+    of a protocol)."""
+    unknown = [name for name in options if name not in _OPTIONS]
+    if unknown:
+        raise TypeError(f"fit() got an unexpected keyword argument {unknown[0]!r}; it takes {', '.join(_OPTIONS)}")
+    given = {name: _option(name, value) for name, value in options.items()}
+    files = _records(t) if torque is None and speeds is None else None
+    if files:
+        answer = _tremie.fit_files(files, given)
     elif (t is None) == (speeds is None) or torque is None:
-        raise _tremie.InputError("fit: takes (t, torque), (speeds=…, torque=…) or a file")
+        raise _tremie.InputError("fit: takes (t, torque), (speeds=…, torque=…) or files")
+    elif given.get("protocol"):
+        raise _tremie.InputError("protocol: reads a file with time, speed and torque")
     elif t is not None:
         answer = _tremie.fit(True, *_readings("t", t, torque), given)
     else:
         answer = _tremie.fit(False, *_readings("speeds", speeds, torque), given)
-    results = json.loads(answer["results"])
+    results, curves = json.loads(answer["results"]), answer["curves"]
+    tables = {f"fit_{i}.csv" if len(curves) > 1 else "fit.csv": curve for i, curve in enumerate(curves, 1)}
+    if "sections" in answer:
+        tables["sections.csv"] = columns(answer["sections"].splitlines())
     summary = {"apparatus": "fit", "status": "completed", "results": results, "checks": {"reasons": answer["reasons"]}}
-    return checked(Result(summary, tables={"fit.csv": answer["curve"]}, notes=results["notes"]))
+    return checked(Result(summary, tables=tables, notes=results.get("notes", [])))
+
+
+#: The rows of the program's table of options, by name.
+_OPTIONS = {row["name"]: row for row in _tremie.fit_options()}
+
+
+def _line(row: dict[str, Any]) -> str:
+    kind = f"[{row['unit']}]" if row["unit"] else ", ".join(f'"{word}"' for word in row["words"]) or "True or False"
+    return f"    {row['name']:<22}{row['help']}; {kind}\n"
+
+
+fit.__doc__ = (fit.__doc__ or "").replace("{options}\n", "".join(map(_line, _OPTIONS.values())) + "\n")
+fit.__signature__ = inspect.Signature(
+    [p for p in inspect.signature(fit).parameters.values() if p.name != "options"]
+    + [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=None) for name in _OPTIONS]
+)
 
 
 @dataclass

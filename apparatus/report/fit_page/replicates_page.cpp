@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "apparatus/report/fit_page/fit_page.hpp"
 #include "apparatus/report/page/charts.hpp"
 #include "apparatus/report/page/page.hpp"
 #include "apparatus/scene/units.hpp"
@@ -16,59 +17,65 @@ std::string percent(const std::optional<double>& share) {
   return share ? fmt::format("{:.2g} %", 100.0 * *share) : "–";
 }
 
-void add_torques(const ReplicatesReport& r, Page& page) {
-  const FitReport& first = r.fits.front();
+void add_torques(const std::vector<FitResult>& fits, Page& page) {
   LineChart chart{.title = "The records and their fits",
-                  .x_label = first.decay ? "time (s)" : "speed (rev/s)",
+                  .x_label = x_label(fits.front()),
                   .y_label = "torque (N·m)",
                   .curves = {}};
-  const std::size_t shown = std::min(r.fits.size(), most_curves);
+  const std::size_t shown = std::min(fits.size(), most_curves);
   for (std::size_t i = 0; i < shown; ++i)
-    chart.curves.push_back({fmt::format("record {}", i + 1), r.fits[i].x, r.fits[i].fitted});
+    chart.curves.push_back({fmt::format("record {}", i + 1), shown_x(fits[i]), fits[i].curve.fitted});
   chart.curves.resize(most_curves);  // so that a record's dots have its line's colour
   for (std::size_t i = 0; i < shown; ++i)
-    chart.curves.push_back({"", r.fits[i].x, r.fits[i].observed, Mark::points});
+    chart.curves.push_back({"", shown_x(fits[i]), fits[i].curve.observed, Mark::points});
   const std::string left_out =
-      shown < r.fits.size() ? fmt::format(" The first {} of {} records.", shown, r.fits.size()) : "";
+      shown < fits.size() ? fmt::format(" The first {} of {} records.", shown, fits.size()) : "";
   if (can_be_drawn(chart))
     page.figures.push_back({"torque", "Lines: fits; dots: readings." + left_out, chart_svg(chart)});
 }
 
-GridTable means_table(const ReplicatesReport& r) {
+GridTable means_table(const RecordFits& r) {
   GridTable table{"Mean over the records",
                   {"", "mean", "95 % interval", "told by", "scatter between them", "expected from the fits",
                    "between laboratories"},
                   {}};
-  for (const MeanParameter& m : r.means) {
-    const std::string unit = m.unit.empty() ? "" : " " + m.unit;
-    table.rows.push_back({m.words, scene::rounded(m.mean, 4) + unit,
-                          m.low && m.high
-                              ? fmt::format("{} to {}", scene::rounded(*m.low, 4), scene::rounded(*m.high, 4))
-                              : "–",
+  for (const ReplicateMean& m : r.means) {
+    const std::string unit = m.parameter.unit.empty() ? "" : " " + unit_on_page(m.parameter);
+    const auto& interval = m.mean.ci95;
+    table.rows.push_back({m.parameter.words, scene::rounded(m.mean.value, 4) + unit,
+                          interval ? fmt::format("{} to {}", scene::rounded(interval->low, 4),
+                                                 scene::rounded(interval->high, 4))
+                                   : "–",
                           fmt::format("{} of {}", m.records, r.fits.size()), percent(m.between),
-                          percent(m.within), percent(m.laboratories)});
+                          percent(m.within), percent(m.parameter.laboratories)});
   }
   return table;
 }
 
-GridTable records_table(const ReplicatesReport& r) {
+GridTable records_table(const RecordFits& r, const std::vector<std::string>& records) {
   GridTable table{"Record by record", {"", "record", "scatter about its fit"}, {}};
-  for (const MeanParameter& m : r.means)
-    table.columns.push_back(m.unit.empty() ? m.words : fmt::format("{} ({})", m.words, m.unit));
+  for (const ReplicateMean& m : r.means) {
+    const FitParameter& p = m.parameter;
+    table.columns.push_back(p.unit.empty() ? p.words : fmt::format("{} ({})", p.words, unit_on_page(p)));
+  }
   for (std::size_t i = 0; i < r.fits.size(); ++i) {
-    std::vector<std::string> row{fmt::format("{}", i + 1), r.fits[i].record, percent(r.fits[i].scatter)};
-    for (const MeanParameter& m : r.means) row.push_back(m.values[i] ? scene::rounded(*m.values[i], 4) : "–");
+    std::vector<std::string> row{fmt::format("{}", i + 1), records[i], percent(r.fits[i].scatter)};
+    for (const ReplicateMean& m : r.means) {
+      const auto e = value_of(r.fits[i], m.parameter);
+      row.push_back(e && !e->given ? scene::rounded(e->value, 4) : "–");
+    }
     table.rows.push_back(row);
   }
   return table;
 }
 
-std::string headline(const ReplicatesReport& r) {
+std::string headline(const RecordFits& r) {
   std::string text;
-  for (const MeanParameter& m : r.means) {
-    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", m.words, scene::rounded(m.mean, 3));
-    if (m.low && m.high) text += " ± " + scene::rounded(0.5 * (*m.high - *m.low), 2);
-    if (!m.unit.empty()) text += " " + m.unit;
+  for (const ReplicateMean& m : r.means) {
+    text +=
+        fmt::format("{}{} {}", text.empty() ? "" : ", ", m.parameter.words, scene::rounded(m.mean.value, 3));
+    if (m.mean.ci95) text += " ± " + scene::rounded(0.5 * (m.mean.ci95->high - m.mean.ci95->low), 2);
+    if (!m.parameter.unit.empty()) text += " " + unit_on_page(m.parameter);
   }
   return fmt::format("{} records of one material: {}", r.fits.size(),
                      text.empty() ? "they tell no parameter" : text);
@@ -76,7 +83,8 @@ std::string headline(const ReplicatesReport& r) {
 
 }  // namespace
 
-std::string replicates_html(const ReplicatesReport& r) {
+std::string replicates_html(const RecordFits& r, const std::vector<std::string>& records,
+                            const std::string& command) {
   Page page;
   page.headline = headline(r);
   page.title = "Tremie: " + page.headline;
@@ -85,14 +93,14 @@ std::string replicates_html(const ReplicatesReport& r) {
                       ? "The model fits every record."
                       : "The model does not fit every record, or not every parameter can be trusted."};
   page.trust = {r.reasons.empty(), "± is 95 % of the mean, by the scatter between the records.", r.reasons};
-  add_torques(r, page);
-  page.grids = {means_table(r), records_table(r)};
+  add_torques(r.fits, page);
+  page.grids = {means_table(r), records_table(r, records)};
   page.words = {
       "Scatter between the records larger than what the fits expect: the material, its rest or its sampling "
       "differs "
       "between them, which no single fit can see.",
       "Between laboratories: one cement paste in the rheometers of several (Haist et al. 2020)."};
-  page.made = facts_of_this_run(r.command);
+  page.made = facts_of_this_run(command);
   return to_html(page);
 }
 

@@ -1,4 +1,4 @@
-#include "rheometer/vane/fit_with_blades.hpp"
+#include "rheometer/whole_fit/fit_with_blades.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 
 #include "rheometer/protocol/protocol.hpp"
 
-namespace tremie::cli {
+namespace tremie::report {
 
 /// report.html of a whole test. `file`: the record; `command` repeats the reading.
 std::string protocol_html(const ProtocolRecord& record, const ProtocolReading& reading,
@@ -16,4 +16,4 @@ std::string protocol_html(const ProtocolRecord& record, const ProtocolReading& r
 std::vector<std::pair<std::string, std::string>> protocol_chart_files(const ProtocolRecord& record,
                                                                       const ProtocolReading& reading);
 
-}  // namespace tremie::cli
+}  // namespace tremie::report

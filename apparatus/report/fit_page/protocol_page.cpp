@@ -1,23 +1,20 @@
-#include "apparatus/cli/fit/protocol_report.hpp"
+#include "apparatus/report/fit_page/protocol_page.hpp"
 
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <numbers>
 
 #include "apparatus/report/page/charts.hpp"
 #include "apparatus/report/page/page.hpp"
 #include "apparatus/scene/units.hpp"
+#include "libmpm/constitutive/constants.hpp"
 
-namespace tremie::cli {
+namespace tremie::report {
 namespace {
-
-using report::Mark;
-constexpr double two_pi = 2.0 * std::numbers::pi;
 
 std::string text_of(const std::optional<double>& v) { return v ? scene::rounded(*v, 4) : "–"; }
 
-std::string interval(const Estimate& e) {
+std::string interval(const ParameterEstimate& e) {
   return e.ci95 ? fmt::format("{} ({} to {})", scene::rounded(e.value, 3), scene::rounded(e.ci95->low, 3),
                               scene::rounded(e.ci95->high, 3))
                 : scene::rounded(e.value, 3) + " (no interval)";
@@ -28,13 +25,13 @@ bool is_curve(const SectionReading& s) {
 }
 
 /// Torque of a section, thinned to some hundreds of readings, and the line of its fit; none of a rest.
-report::LineChart section_chart(const ProtocolRecord& record, const SectionReading& s, std::size_t number) {
+LineChart section_chart(const ProtocolRecord& record, const SectionReading& s, std::size_t number) {
   if (s.section.kind == SectionKind::rest) return {};
-  report::LineChart chart{.title = fmt::format("Section {}: {}", number, name_of(s.section.kind)),
-                          .x_label = is_curve(s) ? "speed (rev/s)" : "time in the section (s)",
-                          .y_label = "torque (mN·m)",
-                          .curves = {}};
-  report::Curve readings{.label = "readings", .x = {}, .y = {}, .mark = Mark::points};
+  LineChart chart{.title = fmt::format("Section {}: {}", number, name_of(s.section.kind)),
+                  .x_label = is_curve(s) ? "speed (rev/s)" : "time in the section (s)",
+                  .y_label = "torque (mN·m)",
+                  .curves = {}};
+  Curve readings{.label = "readings", .x = {}, .y = {}, .mark = Mark::points};
   const double start = record.time[s.section.begin];
   for (std::size_t k = s.section.begin; k < s.section.end; k += 1 + (s.section.end - s.section.begin) / 300) {
     readings.x.push_back(is_curve(s) ? record.omega[k] / two_pi : record.time[k] - start);
@@ -42,9 +39,9 @@ report::LineChart section_chart(const ProtocolRecord& record, const SectionReadi
   }
   chart.curves = {readings};
   if (s.fit) {
-    report::Curve line{.label = s.fit->model + (s.fit->reasons.empty() ? "" : " (does not fit)"),
-                       .x = s.fit->curve.x,
-                       .y = s.fit->curve.fitted};
+    Curve line{.label = s.fit->model + (s.fit->reasons.empty() ? "" : " (does not fit)"),
+               .x = s.fit->curve.x,
+               .y = s.fit->curve.fitted};
     for (double& x : line.x) x = is_curve(s) ? x / two_pi : x + s.fit_origin;
     for (double& y : line.y) y *= 1e3;
     chart.curves.push_back(line);
@@ -52,11 +49,11 @@ report::LineChart section_chart(const ProtocolRecord& record, const SectionReadi
   return chart;
 }
 
-void add_peaks(const Structuration& a, report::Page& page) {
-  report::LineChart chart{.title = "Static yield stress after rest",
-                          .x_label = "rest (s)",
-                          .y_label = "static yield stress (Pa)",
-                          .curves = {{"peaks of the start-ups", a.rest, a.stress, Mark::points}}};
+void add_peaks(const Structuration& a, Page& page) {
+  LineChart chart{.title = "Static yield stress after rest",
+                  .x_label = "rest (s)",
+                  .y_label = "static yield stress (Pa)",
+                  .curves = {{"peaks of the start-ups", a.rest, a.stress, Mark::points}}};
   if (a.A_thix && a.at_no_rest && a.rest.size() > 1) {
     const double first = a.rest.front(), last = a.rest.back(), rate = a.A_thix->value;
     chart.curves.push_back({fmt::format("line of {:.3g} Pa/s", rate),
@@ -86,7 +83,7 @@ std::vector<std::string> row(const SectionReading& s, std::size_t number) {
 
 std::string protocol_html(const ProtocolRecord& record, const ProtocolReading& reading,
                           const std::string& file, const std::string& command) {
-  report::Page page;
+  Page page;
   const Structuration& a = reading.structuration;
   page.headline = fmt::format("{}, a test of {} sections: {}",
                               std::filesystem::path(file).filename().string(), reading.sections.size(),
@@ -94,7 +91,7 @@ std::string protocol_html(const ProtocolRecord& record, const ProtocolReading& r
   page.title = "Tremie: " + page.headline;
   const bool good = reading.reasons.empty();
   page.verdict = {
-      good ? report::VerdictKind::agrees : report::VerdictKind::differs,
+      good ? VerdictKind::agrees : VerdictKind::differs,
       good ? "Each section is described by its model."
            : "A section is not described by any of the models; what it would have told is left out."};
   page.trust = {good, "Intervals hold 95 %.", reading.reasons};
@@ -102,10 +99,10 @@ std::string protocol_html(const ProtocolRecord& record, const ProtocolReading& r
   for (std::size_t i = 0; i < reading.sections.size(); ++i)
     if (const auto chart = section_chart(record, reading.sections[i], i + 1); can_be_drawn(chart))
       page.figures.push_back({fmt::format("section_{}", i + 1), "", chart_svg(chart)});
-  report::GridTable table{"Sections",
-                          {"", "kind", "speed (rev/s)", "rest before (s)", "peak (mN·m)",
-                           "static yield stress (Pa)", "shear modulus (Pa)", "model, scatter"},
-                          {}};
+  GridTable table{"Sections",
+                  {"", "kind", "speed (rev/s)", "rest before (s)", "peak (mN·m)", "static yield stress (Pa)",
+                   "shear modulus (Pa)", "model, scatter"},
+                  {}};
   for (std::size_t i = 0; i < reading.sections.size(); ++i)
     if (reading.sections[i].section.kind != SectionKind::rest)
       table.rows.push_back(row(reading.sections[i], i + 1));
@@ -114,7 +111,7 @@ std::string protocol_html(const ProtocolRecord& record, const ProtocolReading& r
   for (const auto& note : record.understood) page.remarks.push_back("Read: " + note);
   page.words = {"Static yield stress: of the peak of a start-up, over the vane's side.",
                 "A_thix: how fast rest builds the yield stress up."};
-  page.made = report::facts_of_this_run(command);
+  page.made = facts_of_this_run(command);
   return to_html(page);
 }
 
@@ -123,8 +120,8 @@ std::vector<std::pair<std::string, std::string>> protocol_chart_files(const Prot
   std::vector<std::pair<std::string, std::string>> files;
   for (std::size_t i = 0; i < reading.sections.size(); ++i)
     if (const auto chart = section_chart(record, reading.sections[i], i + 1); can_be_drawn(chart))
-      files.emplace_back(fmt::format("section_{}.svg", i + 1), report::svg_file({chart}));
+      files.emplace_back(fmt::format("section_{}.svg", i + 1), svg_file({chart}));
   return files;
 }
 
-}  // namespace tremie::cli
+}  // namespace tremie::report

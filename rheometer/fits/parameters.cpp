@@ -1,0 +1,63 @@
+#include "rheometer/fits/parameters.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include "rheometer/fits/flow_law.hpp"
+
+namespace tremie {
+
+const FitParameter& yield_stress_parameter() {
+  static const FitParameter row{"yield_stress",         "Pa",    "yield_stress_Pa", "yield stress",
+                                "dynamic yield stress", "tau_0", &FitResult::tau_0, 0.27};
+  return row;
+}
+
+const FitParameter& plastic_viscosity_parameter() {
+  static const FitParameter row{"plastic_viscosity", "Pa s", "plastic_viscosity_Pa_s", "plastic viscosity",
+                                "plastic viscosity", "mu",   &FitResult::mu,           0.24};
+  return row;
+}
+
+const std::vector<FitParameter>& fit_parameters() {
+  static const std::vector<FitParameter> all = [] {
+    std::vector<FitParameter> rows{
+        yield_stress_parameter(),
+        plastic_viscosity_parameter(),
+        {"static_yield_stress", "Pa", "static_yield_stress_Pa", "static yield stress", "static yield stress",
+         "static", &FitResult::static_yield_stress},
+        {"flocculation_start", "", "flocculation_start", "flocculation at start", "λ at the start", "lambda",
+         &FitResult::lambda_0},
+        {"alpha", "", "alpha", "alpha", "α", "alpha", &FitResult::alpha},
+        {"exponent", "", "exponent", "exponent n", "exponent of the kinetics", "n", &FitResult::exponent},
+        {"structuration_rate", "Pa/s", "structuration_rate_Pa_per_s", "A_thix", "A_thix", "A_thix",
+         &FitResult::A_thix}};
+    for (const FlowLaw& law : flow_laws())
+      for (const LawParameter& p : law.parameters)
+        if (!p.row.member) rows.push_back(p.row);
+    return rows;
+  }();
+  return all;
+}
+
+std::optional<ParameterEstimate> value_of(const FitResult& fit, const FitParameter& parameter) {
+  if (parameter.member) return fit.*parameter.member;
+  const auto known = fit.of_law.find(parameter.name);
+  return known == fit.of_law.end() ? std::nullopt : known->second;
+}
+
+std::vector<FitParameter> parameters_of(const FitResult& fit) {
+  std::vector<FitParameter> rows;
+  if (const FlowLaw* law = law_of(fit))
+    for (const LawParameter& p : law->parameters) rows.push_back(p.row);
+  else
+    std::copy_if(fit_parameters().begin(), fit_parameters().end(), std::back_inserter(rows),
+                 [](const auto& p) { return p.member && p.member != &FitResult::exponent; });
+  return rows;
+}
+
+void set_value(FitResult& fit, const FitParameter& parameter, const std::optional<ParameterEstimate>& value) {
+  (parameter.member ? fit.*parameter.member : fit.of_law[parameter.name]) = value;
+}
+
+}  // namespace tremie

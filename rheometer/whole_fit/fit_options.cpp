@@ -1,0 +1,129 @@
+#include "rheometer/whole_fit/fit_options.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "libmpm/constitutive/constants.hpp"
+#include "rheometer/fits/flow_law.hpp"
+#include "rheometer/records/text.hpp"
+
+namespace tremie {
+namespace {
+
+std::vector<std::string> words_of_laws() {
+  std::vector<std::string> words{"auto"};
+  for (const FlowLaw& law : flow_laws()) words.push_back(law.name);
+  return words;
+}
+
+std::vector<std::string> words_of_kinetics() {
+  std::vector<std::string> words = kinetics_words();
+  words.insert(words.begin(), "auto");
+  return words;
+}
+
+void require(bool condition, const std::string& what) {
+  if (!condition) throw std::invalid_argument(what);
+}
+
+using Text = const char*;
+
+FitOption number(Text name, FitOption::Member member, Text unit, Text help, FitOption::Input input = {},
+                 OptionRange range = OptionRange::positive) {
+  return {name, member, unit, help, input, {}, range};
+}
+
+FitOption word(Text name, FitOption::Member member, const std::vector<std::string>& words, Text help,
+               FitOption::Input input) {
+  return {name, member, "", help, input, words};
+}
+
+FitOption flag(Text name, FitOption::Member member, Text help) { return {name, member, "", help}; }
+
+}  // namespace
+
+const std::vector<FitOption>& fit_options() {
+  using O = FitOptions;
+  static const std::vector<FitOption> all{
+      number("vane_radius", &O::vane_radius, "m", "\"63.5 mm\" (ICAR) by default",
+             {1, "vane_radius_mm", 1e3}),
+      number("vane_height", &O::vane_height, "m", "\"127 mm\" (ICAR) by default", {2, "vane_height_mm", 1e3}),
+      number("container_radius", &O::container_radius, "m", "\"143 mm\" (ICAR) by default",
+             {3, "container_radius_mm", 1e3}),
+      number("speed", &O::speed, "rad/s", "of a torque decay: \"0.25 rev/s\"",
+             {4, "speed_rev_per_s", 1.0, two_pi}),
+      number("rest", &O::rest, "s", "before a torque decay: \"240 s\"", {5, "rest_s"}),
+      number("yield_stress", &O::yield_stress, "Pa", "dynamic, where it is known: \"54 Pa\"",
+             {6, "yield_stress_Pa"}),
+      number("plastic_viscosity", &O::plastic_viscosity, "Pa.s", "where it is known: \"35.8 Pa.s\"",
+             {7, "plastic_viscosity_Pa_s"}),
+      word("kinetics", &O::kinetics, words_of_kinetics(), "of the flocculation", {8, "kinetics"}),
+      word("law", &O::law, words_of_laws(), "of a flow curve: the law, or both compared", {9, "law"}),
+      number("critical_shear_rate", &O::critical_shear_rate, "1/s",
+             "of the gated kinetics, \"0.1 1/s\" by default", {13, "critical_shear_rate_per_s"}),
+      flag("protocol", &O::protocol, "Read every section of a record with time, speed and torque"),
+      number("instrument_compliance", &O::instrument_compliance, "rad/(N.m)",
+             "the instrument's own turn by torque: \"0.02 rad/(N.m)\"", {}, OptionRange::not_negative),
+      number("torque_offset", &O::torque_offset, "N.m", "of the unloaded instrument, taken off: \"0.3 mN.m\"",
+             {12, "torque_offset_N_m"}, OptionRange::any),
+      word("ends", &O::ends, {"none", "textbook", "computed"}, "what the ends of the vane carry",
+           {10, "ends"}),
+      word("blades", &O::blades, {"none", "computed"},
+           "what blades take less than the cylinder that they span; with --ends computed for a real vane",
+           {11, "blades"}),
+      number("max_aggregate", &O::max_aggregate, "m", "largest grain, to judge the gap by: \"16 mm\"")};
+  return all;
+}
+
+void set_option(FitOptions& options, const FitOption& option, double value) {
+  const std::string text = text_of("%g", value);
+  require(std::isfinite(value), text + " is no finite number");
+  if (option.range == OptionRange::positive) require(value > 0.0, text + " is not greater than 0");
+  if (option.range == OptionRange::not_negative) require(value >= 0.0, text + " is less than 0");
+  if (const auto* member = std::get_if<double FitOptions::*>(&option.member))
+    options.*(*member) = value;
+  else if (const auto* optional = std::get_if<std::optional<double> FitOptions::*>(&option.member))
+    options.*(*optional) = value;
+  else
+    require(false, text + " is a number; it takes none");
+}
+
+void set_option(FitOptions& options, const FitOption& option, const std::string& word) {
+  std::string allowed;
+  for (const std::string& w : option.words) allowed += (allowed.empty() ? "\"" : ", \"") + w + "\"";
+  require(std::find(option.words.begin(), option.words.end(), word) != option.words.end(),
+          "\"" + word + "\" is not allowed; allowed: " + allowed);
+  options.*std::get<std::string FitOptions::*>(option.member) = word;
+}
+
+void set_option(FitOptions& options, const FitOption& option, bool flag) {
+  require(option.is_flag(), "is no flag");
+  options.*std::get<bool FitOptions::*>(option.member) = flag;
+}
+
+void check(const FitOptions& o, std::size_t records) {
+  if (o.protocol && records > 1)
+    throw std::invalid_argument("--protocol reads one record; " + std::to_string(records) + " are given");
+  if (o.blades != "none" && (o.protocol || o.law != flow_laws().front().name))
+    throw std::invalid_argument(
+        "--blades computed is for a flow curve by Bingham's law, or a decay; not with " +
+        (o.protocol ? "--protocol" : "--law " + o.law));
+}
+
+FitInput input_of(const FitOptions& o) {
+  FitInput in;
+  in.instrument = {o.vane_radius, o.vane_height, o.container_radius};
+  in.tau_0 = o.yield_stress;
+  in.mu = o.plastic_viscosity;
+  in.omega = o.speed;
+  in.rest = o.rest;
+  in.choose_kinetics = o.kinetics == "auto";
+  in.kinetics = kinetics_named(o.kinetics).value_or(Kinetics{});
+  in.max_aggregate = o.max_aggregate.value_or(0.0);
+  in.law = o.law;
+  in.gamma_c = o.critical_shear_rate;
+  return in;
+}
+
+}  // namespace tremie

@@ -1,0 +1,229 @@
+#include "rheometer/whole_fit/fit_record.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "rheometer/records/text.hpp"
+#include "rheometer/vane/vane_ends.hpp"
+#include "rheometer/whole_fit/fit_with_blades.hpp"
+
+namespace tremie {
+namespace {
+
+struct Table {
+  std::string text, name;
+};
+
+/// What all fits of a call share.
+struct Fitting {
+  const FitOptions& options;
+  const std::vector<std::filesystem::path>& data_folders;
+
+  bool computed_ends() const { return options.ends == "computed"; }
+
+  /// The first table of reference_data/`folder`, which the option of the vane reads.
+  Table table(const char* folder, const char* option) const {
+    for (const auto& data : data_folders) {
+      std::error_code error;
+      for (const auto& entry : std::filesystem::directory_iterator(data / folder, error))
+        if (entry.path().extension() == ".csv")
+          return {read_text_file(entry.path().string()), entry.path().filename().string()};
+    }
+    const std::string name = option;
+    throw RecordError(name + " computed: its table, reference_data/" + folder +
+                      "/*.csv, is not there; allowed without it: " + name + " none");
+  }
+  Table ends() const { return table("vane_ends", "--ends"); }
+  Table blades() const { return table("vane_blades", "--blades"); }
+};
+
+/// Faults of a fit with the name of what it is of, if it has one.
+template <class Call>
+auto named(const std::string& name, Call call) {
+  try {
+    return call();
+  } catch (const std::invalid_argument& error) {
+    throw RecordError(name.empty() ? error.what() : name + ": " + error.what());
+  }
+}
+
+TorqueRecord read(const RecordSource& source, double torque_offset) {
+  if (!source.record) return read_torque_record(source.name, torque_offset);
+  TorqueRecord record = *source.record;
+  for (double& torque : record.torque) torque -= torque_offset;
+  return record;
+}
+
+// --- blades and ends of a fit
+
+/// A note where the ends' factor is that of the table's last Bingham number.
+void note_beyond_ends(const Fitting& f, const FitInput& in, FitResult& result) {
+  if (!f.computed_ends() || !in.omega || !result.tau_0 || !result.mu) return;
+  const auto [text, name] = f.ends();
+  const double last = largest_bingham_number(text, name),
+               Bi = result.tau_0->value / (result.mu->value * *in.omega);
+  if (Bi > last)
+    result.notes.push_back(text_of(
+        "ends: the Bingham number, %.3g, lies beyond the table's %.3g, whose factor is taken", Bi, last));
+}
+
+/// A note where a reading's Bingham number lies beyond the blades' table: the slowest reading's, with the largest yield stress.
+void note_beyond_blades(const TorqueRecord& record, const FitInput& in, const BladeTable& table,
+                        FitResult& result) {
+  const auto& yield = result.static_yield_stress ? result.static_yield_stress : result.tau_0;
+  double slowest = in.omega.value_or(0.0);
+  for (const double omega : record.omega)
+    if (omega > 0.0 && (slowest <= 0.0 || omega < slowest)) slowest = omega;
+  if (!yield || !result.mu || !(slowest > 0.0)) return;
+  const double last = largest_bingham_number(table, in.instrument);
+  const double Bi = yield->value / (result.mu->value * slowest);
+  if (Bi > 1.001 * last)
+    result.notes.push_back(
+        text_of("blades: the Bingham number, up to %.3g, lies beyond the table's %.3g, whose factor is taken",
+                Bi, last));
+}
+
+/// The fit of a vane: of the torques that its cylinder would have taken, where the blades are corrected for.
+FitResult fit_vane(const Fitting& f, const TorqueRecord& record, const FitInput& in) {
+  if (f.options.blades == "none") {
+    FitResult result = fit(record, in);
+    result.notes.push_back(
+        f.options.ends == "none"
+            ? taken_for_a_cylinder
+            : "the ends alone are corrected: a vane with blades takes 15 to 30 % less than the "
+              "cylinder of this fit, which --blades computed corrects");
+    return result;
+  }
+  const auto [text, name] = f.blades();
+  const BladeTable table = blade_table(text, name);
+  VaneFit vane = fit_with_blades(record, in, table);
+  vane.fit.notes.push_back(text_of(
+      "torques are the cylinder's: the record's divided by %.3f to %.3f, what four thin blades take of it",
+      vane.least_factor, vane.most_factor));
+  note_beyond_blades(record, in, table, vane.fit);
+  if (vane.fit.alpha && !vane.fit.alpha->given)
+    vane.fit.notes.push_back(
+        "alpha: with blades it reads some 30 % too small, more than its interval: what stands between the "
+        "blades is not broken down; without --blades the two errors nearly cancel");
+  return vane.fit;
+}
+
+/// A flow curve as it would be if the ends carried at every speed what they carry at the middle one, for which `factor`
+/// stands in the vane's height: each torque over what its own Bingham number has, by the values of `fitted`.
+TorqueRecord with_even_ends(const Fitting& f, const TorqueRecord& record, const FitInput& in, double factor,
+                            const FitResult& fitted) {
+  const auto [text, name] = f.ends();
+  Instrument vane = in.instrument;
+  vane.vane_height /= factor;
+  TorqueRecord even = record;
+  for (std::size_t i = 0; i < record.omega.size(); ++i)
+    if (record.omega[i] > 0.0)
+      even.torque[i] *= factor / end_factor_from_table(text, name, vane,
+                                                       std::max(0.0, fitted.tau_0->value) /
+                                                           (fitted.mu->value * record.omega[i]));
+  return even;
+}
+
+/// `factor`: of the ends, which is in the height of `in` already; 1 for none.
+FitResult read_and_fit(const Fitting& f, const RecordSource& source, FitInput in, double factor) {
+  return named(source.name, [&] {
+    const TorqueRecord record = read(source, f.options.torque_offset);
+    if (!in.omega && record.speed > 0.0) in.omega = record.speed;
+    FitResult result = fit_vane(f, record, in);
+    if (f.computed_ends() && factor != 1.0 && record.kind == RecordKind::flow_curve && result.tau_0 &&
+        result.mu && result.mu->value > 0.0)
+      result = fit_vane(f, with_even_ends(f, record, in, factor, result), in);
+    note_beyond_ends(f, in, result);
+    result.notes.insert(result.notes.begin(), record.understood.begin(), record.understood.end());
+    return result;
+  });
+}
+
+// --- the ends' factor
+
+constexpr double usual_bingham_number = 1.0;
+
+/// tau_0/(mu Omega) of the record at the middle of its speeds, by what is given or by a fit without ends, whose quotient
+/// the ends leave as it is; that of usual concrete where the record tells no viscosity or is a protocol's.
+double bingham_number(const Fitting& f, const RecordSource& first, const FitInput& in) {
+  std::optional<double> tau_0 = in.tau_0, mu = in.mu, omega = in.omega;
+  if (!f.options.protocol) {
+    const FitResult none = read_and_fit(f, first, in, 1.0);
+    if (none.tau_0) tau_0 = none.tau_0->value;
+    if (none.mu) mu = none.mu->value;
+    std::vector<double> speeds = none.curve.x;
+    if (none.kind == RecordKind::flow_curve && !speeds.empty()) {
+      std::nth_element(speeds.begin(), speeds.begin() + static_cast<std::ptrdiff_t>(speeds.size() / 2),
+                       speeds.end());
+      omega = speeds[speeds.size() / 2];
+    }
+  }
+  if (!tau_0 || !mu || !omega || *mu <= 0.0 || *omega <= 0.0) return usual_bingham_number;
+  return std::max(0.0, *tau_0 / (*mu * *omega));
+}
+
+/// The factor of the ends on the height of the vane.
+double end_factor(const Fitting& f, const RecordSource& first, const FitInput& in) {
+  if (f.options.ends == "textbook") return textbook_end_factor(in.instrument);
+  if (f.options.ends == "none") return 1.0;
+  return named("--ends computed", [&] {
+    const auto [text, name] = f.ends();
+    return end_factor_from_table(text, name, in.instrument, bingham_number(f, first, in));
+  });
+}
+
+/// By how much the ends move each value: the same fit without them, beside the fit with them.
+std::vector<MoveByEnds> moves_by_ends(const Fitting& f, const RecordSource& source, FitInput in,
+                                      double factor, const FitResult& with) {
+  if (f.options.ends == "none") return {};
+  in.instrument.vane_height /= factor;
+  const FitResult none = read_and_fit(f, source, in, 1.0);
+  std::vector<MoveByEnds> moves;
+  for (const FitParameter& p : fit_parameters()) {
+    const auto a = value_of(with, p), b = value_of(none, p);
+    if (a && b && !a->given && p.member != &FitResult::exponent)
+      moves.push_back({p.key, b->value, a->value / b->value - 1.0});
+  }
+  return moves;
+}
+
+ProtocolFit fit_protocol(const Fitting& f, const std::string& file, const FitInput& in) {
+  return named(file, [&] {
+    ProtocolFit p{parse_protocol_record(read_text_file(file), file, f.options.torque_offset), {}};
+    p.reading = read_protocol(p.record, in, {.compliance = f.options.instrument_compliance});
+    return p;
+  });
+}
+
+}  // namespace
+
+RecordFits fit_records(const std::vector<RecordSource>& sources, const FitOptions& options,
+                       const std::vector<std::filesystem::path>& data_folders) {
+  check(options, sources.size());
+  const Fitting f{options, data_folders};
+  FitInput in = input_of(options);
+  named("the instrument", [&] { check(in.instrument); });
+  RecordFits all;
+  all.options = options;
+  all.end_factor = end_factor(f, sources.front(), in);
+  in.instrument.vane_height *= all.end_factor;  // torque and height enter all formulas as their quotient
+  all.instrument = in.instrument;
+  if (options.protocol) {
+    all.protocol = fit_protocol(f, sources.front().name, in);
+    all.reasons = all.protocol->reading.reasons;
+    return all;
+  }
+  for (const RecordSource& source : sources) {
+    all.fits.push_back(read_and_fit(f, source, in, all.end_factor));
+    for (const auto& why : all.fits.back().reasons)
+      all.reasons.push_back(sources.size() > 1 ? source.name + ": " + why : why);
+  }
+  if (sources.size() > 1)
+    all.means = replicate_means(all.fits);
+  else
+    all.moves = moves_by_ends(f, sources.front(), in, all.end_factor, all.fits.front());
+  return all;
+}
+
+}  // namespace tremie
