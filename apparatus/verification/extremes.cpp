@@ -11,13 +11,14 @@
 #include "apparatus/registry/registry.hpp"
 #include "apparatus/scene/document.hpp"
 #include "apparatus/verification/case.hpp"
+#include "libmpm/constitutive/constants.hpp"
 #include "rheometer/reference/instrument.hpp"
 #include "rheometer/reference/reiner_riwlin.hpp"
 
 namespace tremie::verification {
 namespace {
 
-constexpr double rho = 2400.0, g = 9.81;
+constexpr double rho = 2400.0, g = gravity;
 constexpr double cone_volume = 5.498e-3, cone_centroid = 0.1018;  // [m^3], [m] above the floor
 
 const char* const slump_scene = R"(apparatus = "slump_flow"

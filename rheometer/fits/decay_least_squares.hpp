@@ -2,7 +2,6 @@
 
 // The least squares of the thixotropic Couette model to a torque decay. Private to rheometer/.
 
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -26,11 +25,6 @@ struct Layout {
     DecayParameters result = all;
     for (std::size_t k = 0; k < free.size(); ++k) result[free[k]] = p[k];
     return result;
-  }
-  std::optional<std::size_t> place_of(std::size_t index) const {
-    const auto at = std::find(free.begin(), free.end(), index);
-    if (at == free.end()) return std::nullopt;
-    return static_cast<std::size_t>(at - free.begin());
   }
 };
 

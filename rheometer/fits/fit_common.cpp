@@ -142,6 +142,13 @@ Readings without(const Readings& all, const std::vector<char>& leave_out) {
   return kept;
 }
 
+Readings dropping(const Readings& all, const std::vector<char>& leave_out, const std::string& reason,
+                  FitResult& result) {
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (leave_out[i]) drop(result, all.line[i], all.x[i], all.torque[i], reason);
+  return without(all, leave_out);
+}
+
 std::optional<ParameterEstimate> estimate(double value, double variance, double degrees, double scale) {
   if (!std::isfinite(value) || !std::isfinite(variance)) return std::nullopt;
   if (degrees <= 0.0) return ParameterEstimate{value, std::nullopt, false};
@@ -152,10 +159,21 @@ std::optional<ParameterEstimate> estimate(double value, double variance, double 
 
 ParameterEstimate given(double value) { return {value, Interval{value, value}, true}; }
 
-std::string misfit_of(std::span<const double> x, std::span<const double> residual, const std::string& what) {
+Residuals kept_residuals(const Readings& readings, const LeastSquaresFit& fit) {
+  Residuals kept;
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    if (fit.outlier[i]) continue;
+    kept.x.push_back(readings.x[i]);
+    kept.residual.push_back(fit.residual[i]);
+  }
+  return kept;
+}
+
+std::string misfit_of(const Readings& readings, const LeastSquaresFit& fit, const std::string& what) {
+  const auto [x, residual] = kept_residuals(readings, fit);
   const LackOfFit l = lack_of_fit(x, residual);
   const double whole = std::hypot(l.systematic, l.noise);
-  const double correlation = successive_correlation({residual.begin(), residual.end()});
+  const double correlation = successive_correlation(residual);
   const bool smooth = l.systematic >= 0.02 && l.probability < 1e-3;
   // a jump is no smooth curve: far above the noise of neighbouring readings, and neighbours miss alike
   const bool rough = whole >= 0.05 && whole > 5.0 * l.roughness_noise && correlation > 0.5;
@@ -166,6 +184,19 @@ std::string misfit_of(std::span<const double> x, std::span<const double> residua
              "neighbouring readings scatter by %.2g %%: ",
              100.0 * whole, 100.0 * l.systematic, 100.0 * l.roughness_noise) +
          what;
+}
+
+void add_candidate(const std::string& name, const Readings& readings, const LeastSquaresFit& fit, double aicc,
+                   double least, bool chosen, FitResult& result) {
+  const auto finite = [&](double value) { return std::isfinite(aicc) ? std::optional(value) : std::nullopt; };
+  result.candidates.push_back({.name = name,
+                               .parameters = static_cast<int>(fit.parameters.size()),
+                               .scatter = scatter_of_rows(readings, fit),
+                               .correlation = fit.correlation,
+                               .aicc = finite(aicc),
+                               .difference = finite(aicc - least),
+                               .fits = misfit_of(readings, fit, "").empty(),
+                               .chosen = chosen});
 }
 
 double scatter_of_rows(const Readings& readings, const LeastSquaresFit& fit) {

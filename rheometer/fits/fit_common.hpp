@@ -31,6 +31,10 @@ Readings condense(const Readings& all, std::size_t most, FitResult& result);
 /// Without the marked readings.
 Readings without(const Readings& all, const std::vector<char>& leave_out);
 
+/// The same; the marked ones are dropped for a reason.
+Readings dropping(const Readings& all, const std::vector<char>& leave_out, const std::string& reason,
+                  FitResult& result);
+
 /// value with its 95 % interval, cut at 0; empty, not identifiable, where the interval is wider than `scale` to each side.
 std::optional<ParameterEstimate> estimate(double value, double variance, double degrees, double scale);
 
@@ -43,9 +47,19 @@ double scatter_of_rows(const Readings& readings, const LeastSquaresFit& fit);
 /// Names the outliers and fills in the scatter and the curve.
 void report(const Readings& readings, const LeastSquaresFit& fit, FitResult& result);
 
-/// Why a model with these relative residuals, outliers left out, does not describe its readings, as a sentence that
-/// ends with `what`; empty where it does. Systematic parts below 2 % are within what instruments and models promise.
-std::string misfit_of(std::span<const double> x, std::span<const double> residual, const std::string& what);
+/// The fit's residuals over x, outliers left out.
+struct Residuals {
+  std::vector<double> x, residual;
+};
+Residuals kept_residuals(const Readings& readings, const LeastSquaresFit& fit);
+
+/// Why the model does not describe the readings, as a sentence that ends with `what`; empty where it does. Systematic parts
+/// below 2 % are within what instruments and models promise.
+std::string misfit_of(const Readings& readings, const LeastSquaresFit& fit, const std::string& what);
+
+/// Adds a model to those that were compared; `least`: the chosen one's AICc.
+void add_candidate(const std::string& name, const Readings& readings, const LeastSquaresFit& fit, double aicc,
+                   double least, bool chosen, FitResult& result);
 
 FitResult fit_flow_curve(const TorqueRecord& record, const FitInput& input);
 FitResult fit_torque_decay(const TorqueRecord& record, const FitInput& input);

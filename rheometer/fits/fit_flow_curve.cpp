@@ -199,17 +199,6 @@ void report_parameters(const Readings& r, const Fitted& f, const FitInput& input
   note_unidentifiable(f, result);
 }
 
-/// Residuals in the order of speed, without outliers.
-std::string misfit(const Readings& r, const LeastSquaresFit& f) {
-  std::vector<double> x, residual;
-  for (std::size_t i = 0; i < r.size(); ++i) {
-    if (f.outlier[i]) continue;
-    x.push_back(r.x[i]);
-    residual.push_back(f.residual[i]);
-  }
-  return misfit_of(x, residual, "the torque goes otherwise with the speed than this law");
-}
-
 double mean_square(const LeastSquaresFit& f) {
   double sum = 0.0;
   for (const double e : f.residual) sum += e * e;
@@ -267,14 +256,8 @@ Fitted choose(const Readings& r, const FitInput& input, FitResult& result) {
   std::size_t best = 0;
   for (std::size_t i = 1; i < fits.size(); ++i)
     if (aicc[i] < aicc[0] - clearly && (best == 0 || aicc[i] < aicc[best])) best = i;
-  for (std::size_t i = 0; i < fits.size(); ++i) {
-    const bool finite = std::isfinite(aicc[i]);
-    result.candidates.push_back({fits[i].law->name, static_cast<int>(fits[i].free.size()),
-                                 scatter_of_rows(r, fits[i].fit), fits[i].fit.correlation,
-                                 finite ? std::optional(aicc[i]) : std::nullopt,
-                                 finite ? std::optional(aicc[i] - aicc[best]) : std::nullopt,
-                                 misfit(r, fits[i].fit).empty(), i == best});
-  }
+  for (std::size_t i = 0; i < fits.size(); ++i)
+    add_candidate(fits[i].law->name, r, fits[i].fit, aicc[i], aicc[best], i == best, result);
   if (fits.size() > 1) result.choice = choice_of(fits, best, r.size());
   return fits[best];
 }
@@ -307,17 +290,10 @@ std::string better_law(const Readings& r, const FitInput& input, const Fitted& f
 
 /// The torque falls as the speed rises, over the whole record and by more than scatter: no material of either law does.
 bool torque_falls(const Readings& r) {
-  const auto n = static_cast<double>(r.size());
-  if (n < 4.0) return r.torque.back() < 0.97 * r.torque.front();
-  double mx = 0.0, my = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
-  for (std::size_t i = 0; i < r.size(); ++i) mx += r.x[i] / n, my += r.torque[i] / n;
-  for (std::size_t i = 0; i < r.size(); ++i) {
-    const double x = r.x[i] - mx, y = r.torque[i] - my;
-    xx += x * x, xy += x * y, yy += y * y;
-  }
-  const double slope = xy / xx, rest = std::max(0.0, yy - slope * xy) / (n - 2.0);
-  return slope < -student_quantile(0.999, n - 2.0) * std::sqrt(rest / xx) &&
-         slope * (r.x.back() - r.x.front()) < -0.03 * my;
+  if (r.size() < 4) return r.torque.back() < 0.97 * r.torque.front();
+  const StraightLine line = straight_line(r.x, r.torque);
+  return line.slope < -student_quantile(0.999, line.n - 2.0) * line.deviation / std::sqrt(line.spread_x) &&
+         line.slope * (r.x.back() - r.x.front()) < -0.03 * line.mean_y;
 }
 
 void withdraw(const FitInput& input, FitResult& result) {
@@ -346,14 +322,9 @@ FitResult fit_flow_curve(const TorqueRecord& record, const FitInput& input) {
   if (!several_speeds(r))
     throw std::invalid_argument("all rows have the same speed; a flow curve needs two speeds or more");
 
-  const std::size_t slow = below_torque_minimum(r, input);
   std::vector<char> leave_out(r.size(), 0);
-  for (std::size_t i = 0; i < slow; ++i) {
-    drop(result, r.line[i], r.x[i], r.torque[i],
-         "below the torque minimum: the torque rises as the speed falls");
-    leave_out[i] = 1;
-  }
-  r = without(r, leave_out);
+  std::fill_n(leave_out.begin(), below_torque_minimum(r, input), 1);
+  r = dropping(r, leave_out, "below the torque minimum: the torque rises as the speed falls", result);
   const double slip = below_the_curve(r, input);
   const Fitted f = choose(r, input, result);
   result.model = f.law->name;
@@ -374,7 +345,9 @@ FitResult fit_flow_curve(const TorqueRecord& record, const FitInput& input) {
     result.reasons.push_back(
         "the torque falls as the speed rises, which neither a Bingham nor a Herschel-Bulkley "
         "material does: structure still broke down, or a layer slips at the vane");
-  if (const std::string why = misfit(r, f.fit); !why.empty()) result.reasons.push_back(why);
+  if (const std::string why = misfit_of(r, f.fit, "the torque goes otherwise with the speed than this law");
+      !why.empty())
+    result.reasons.push_back(why);
   if (const std::string better = better_law(r, input, f); !better.empty()) {
     result.law_in_doubt = true;
     result.notes.push_back(better);

@@ -6,6 +6,7 @@
 #include "rheometer/fits/apparent_alpha.hpp"
 #include "rheometer/fits/decay_least_squares.hpp"
 #include "rheometer/fits/fit_common.hpp"
+#include "rheometer/fits/parameters.hpp"
 #include "rheometer/reference/thixotropic_couette.hpp"
 #include "rheometer/regression/lack_of_fit.hpp"
 #include "rheometer/regression/statistics.hpp"
@@ -95,17 +96,11 @@ Readings readings_of(const TorqueRecord& record, FitResult& result) {
     else
       all.push(record.time[i], record.torque[i], 1.0, record.line[i]);
   }
-  const std::vector<char> spike = spikes_of(all);
-  for (std::size_t i = 0; i < all.size(); ++i)
-    if (spike[i]) drop(result, all.line[i], all.x[i], all.torque[i], "spike among its neighbours");
-  all = without(all, spike);
+  all = dropping(all, spikes_of(all), "spike among its neighbours", result);
   const std::size_t rising = rising_rows(all);
   std::vector<char> leave_out(all.size(), 0);
-  for (std::size_t i = 0; i < rising; ++i) {
-    drop(result, all.line[i], all.x[i], all.torque[i], before_peak);
-    leave_out[i] = 1;
-  }
-  Readings kept = without(all, leave_out);
+  std::fill_n(leave_out.begin(), rising, 1);
+  Readings kept = dropping(all, leave_out, before_peak, result);
   if (kept.size() < 2) return kept;
   const double step = (kept.x.back() - kept.x.front()) / static_cast<double>(kept.size() - 1);
   if (rising > 0 || kept.x.front() > 1.5 * step) {
@@ -228,24 +223,6 @@ void report_apparent(const Readings& r, const FitInput& in, const Identified& id
   if (!a.windows.empty()) result.apparent = a;
 }
 
-/// Residuals and times without outliers.
-std::pair<std::vector<double>, std::vector<double>> kept_residuals(const Readings& r,
-                                                                   const LeastSquaresFit& f) {
-  std::pair<std::vector<double>, std::vector<double>> kept;
-  for (std::size_t i = 0; i < r.size(); ++i) {
-    if (f.outlier[i]) continue;
-    kept.first.push_back(r.x[i]);
-    kept.second.push_back(f.residual[i]);
-  }
-  return kept;
-}
-
-/// What is wrong with the fit as a description of the record; empty where it describes it.
-std::string misfit(const Readings& r, const LeastSquaresFit& f) {
-  const auto [x, residual] = kept_residuals(r, f);
-  return misfit_of(x, residual, "the decay has another shape than these kinetics give it");
-}
-
 std::string name_of(const Kinetics& k) { return std::string(word(k)); }
 
 /// Root mean square over the readings that at least one of the models keeps: all are judged on the same readings.
@@ -278,14 +255,8 @@ std::size_t choose(const Readings& r, const std::vector<DecayFit>& fits, FitResu
     aicc.push_back(corrected_akaike(common_mean_square(fits, f.fit, n), independent,
                                     static_cast<int>(f.layout.free.size())));
   const auto best = static_cast<std::size_t>(std::min_element(aicc.begin(), aicc.end()) - aicc.begin());
-  for (std::size_t i = 0; i < fits.size(); ++i) {
-    const bool finite = std::isfinite(aicc[i]);
-    result.candidates.push_back({name_of(fits[i].kinetics), static_cast<int>(fits[i].layout.free.size()),
-                                 scatter_of_rows(r, fits[i].fit), fits[i].fit.correlation,
-                                 finite ? std::optional(aicc[i]) : std::nullopt,
-                                 finite ? std::optional(aicc[i] - aicc[best]) : std::nullopt,
-                                 misfit(r, fits[i].fit).empty(), i == best});
-  }
+  for (std::size_t i = 0; i < fits.size(); ++i)
+    add_candidate(name_of(fits[i].kinetics), r, fits[i].fit, aicc[i], aicc[best], i == best, result);
   result.choice = "kinetics " + name_of(fits[best].kinetics) + ": the smallest AICc of " +
                   std::to_string(fits.size()) + " kinetics, on " + std::to_string(std::lround(independent)) +
                   " independent readings of " + std::to_string(std::lround(n)) +
@@ -364,18 +335,13 @@ void judge_fall(const Readings& r, std::size_t rows, const FitInput& in, FitResu
 }
 
 /// No parameter is identifiable by a model that does not describe the record.
-void withdraw(const FitInput& in, FitResult& result) {
-  const auto forget = [&](std::optional<ParameterEstimate>& e, const char* name) {
+void withdraw(FitResult& result) {
+  const auto forget = [&](std::optional<ParameterEstimate>& e, const std::string& name) {
     if (!e || e->given) return;
     e.reset();
-    result.notes.push_back(std::string(name) + ": a model that does not fit does not tell it");
+    result.notes.push_back(name + ": a model that does not fit does not tell it");
   };
-  if (!in.tau_0) forget(result.tau_0, "yield_stress");
-  if (!in.mu) forget(result.mu, "plastic_viscosity");
-  forget(result.static_yield_stress, "static_yield_stress");
-  forget(result.lambda_0, "flocculation_start");
-  forget(result.alpha, "alpha");
-  forget(result.A_thix, "structuration_rate");
+  for (const FitParameter& p : parameters_of(result)) forget(result.*p.member, p.name);
   forget(result.exponent, "exponent");
 }
 
@@ -407,11 +373,14 @@ FitResult fit_torque_decay(const TorqueRecord& record, const FitInput& input) {
   const Identified identified{best.layout, best.fit, best.parameters()};
   report(r, best.fit, result);
   result.effective_readings = effective_number(static_cast<double>(r.size()), best.fit.correlation);
-  if (const std::string why = misfit(r, best.fit); !why.empty()) result.reasons.push_back(why);
+  if (const std::string why =
+          misfit_of(r, best.fit, "the decay has another shape than these kinetics give it");
+      !why.empty())
+    result.reasons.push_back(why);
   report_parameters(r, identified, in, result);
   report_flow(r, identified.p, in, result);
   report_apparent(r, in, identified, result);
-  if (!result.reasons.empty()) withdraw(in, result);
+  if (!result.reasons.empty()) withdraw(result);
   return result;
 }
 

@@ -102,8 +102,7 @@ std::optional<LeastSquaresFit> shape_fit(const std::vector<double>& t, const std
   }
 }
 
-}  // namespace
-
+/// The shape of the torque from its peak on; time counts from the peak.
 DecayShape read_decay_shape(const std::vector<double>& time, const std::vector<double>& torque) {
   DecayShape d;
   d.peak_torque = torque.front();
@@ -129,6 +128,8 @@ DecayShape read_decay_shape(const std::vector<double>& time, const std::vector<d
   }
   return d;
 }
+
+}  // namespace
 
 ProtocolReading read_protocol(const ProtocolRecord& record, const FitInput& input,
                               const ProtocolOptions& options) {

@@ -70,9 +70,6 @@ StartUpReading read_start_up(const ProtocolRecord& record, const Section& sectio
                              const Instrument& instrument, const ProtocolOptions& options,
                              std::vector<std::string>& notes);
 
-/// The shape of the torque from its peak on; time counts from the peak.
-DecayShape read_decay_shape(const std::vector<double>& time, const std::vector<double>& torque);
-
 /// The line through the peaks of the start-ups whose peak lies inside.
 Structuration structuration_of(const std::vector<SectionReading>& sections);
 

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 
 #include "rheometer/records/table.hpp"
+#include "rheometer/records/text_lines.hpp"
 #include "rheometer/records/torque_record.hpp"
 
 namespace tremie {
+
+using detail::LineReader, detail::lower, detail::split, detail::trimmed;
 
 namespace {
 
@@ -20,38 +22,22 @@ const std::array<std::vector<std::string_view>, 3> known_names{
      {"speed", "drehzahl", "rotational speed", "rotation speed", "rotational velocity", "velocity"},
      {"torque", "moment", "drehmoment"}}};
 
-std::vector<std::string> lines_of(std::string_view text) {
-  std::vector<std::string> lines;
-  while (!text.empty()) {
-    const std::size_t end = text.find_first_of("\r\n");
-    lines.emplace_back(text.substr(0, end));
-    if (end == std::string_view::npos) break;
-    const bool crlf = text[end] == '\r' && end + 1 < text.size() && text[end + 1] == '\n';
-    text.remove_prefix(end + (crlf ? 2 : 1));
-  }
+std::vector<std::string_view> lines_of(std::string_view text) {
+  std::vector<std::string_view> lines;
+  LineReader reader{text};
+  while (const auto line = reader.next()) lines.push_back(*line);
   return lines;
 }
 
-std::string trimmed(std::string_view s) {
-  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '"'; };
-  while (!s.empty() && blank(s.front())) s.remove_prefix(1);
-  while (!s.empty() && blank(s.back())) s.remove_suffix(1);
-  return std::string(s);
+std::vector<std::string_view> fields_of(std::string_view line, char separator) {
+  std::vector<std::string_view> fields;
+  split(line, separator, fields);
+  for (std::string_view& field : fields) field = trimmed(field);
+  return fields;
 }
 
-std::vector<std::string> fields_of(const std::string& line, char separator) {
-  std::vector<std::string> fields;
-  for (std::size_t start = 0;;) {
-    const std::size_t end = line.find(separator, start);
-    fields.push_back(
-        trimmed(std::string_view(line).substr(start, end == std::string::npos ? end : end - start)));
-    if (end == std::string::npos) return fields;
-    start = end + 1;
-  }
-}
-
-char separator_of(const std::string& line) {
-  return line.find('\t') != std::string::npos ? '\t' : line.find(';') != std::string::npos ? ';' : ',';
+char separator_of(std::string_view line) {
+  return line.find('\t') != line.npos ? '\t' : line.find(';') != line.npos ? ';' : ',';
 }
 
 /// The quantity that a header names, and what follows the name ("[mN m]").
@@ -60,13 +46,12 @@ struct Named {
   std::string unit;
 };
 
-std::optional<Named> named(const std::string& header) {
-  std::string lower = header;
-  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+std::optional<Named> named(std::string_view header) {
+  const std::string text = lower(header);
   for (std::size_t q = 0; q < 3; ++q)
     for (const std::string_view name : known_names[q]) {
-      if (!lower.starts_with(name)) continue;
-      const std::string rest = trimmed(std::string_view(header).substr(name.size()));
+      if (!text.starts_with(name)) continue;
+      const std::string rest(trimmed(header.substr(name.size())));
       const bool unit = rest.empty() || std::string_view("[(_,").find(rest.front()) != std::string_view::npos;
       if (unit) return Named{q, rest};
     }
@@ -80,7 +65,7 @@ struct Header {
   std::array<std::string, 3> unit;
 };
 
-std::optional<Header> header_at(const std::vector<std::string>& lines, std::size_t at) {
+std::optional<Header> header_at(const std::vector<std::string_view>& lines, std::size_t at) {
   Header h;
   h.line = h.units_line = at;
   h.separator = separator_of(lines[at]);
@@ -95,7 +80,7 @@ std::optional<Header> header_at(const std::vector<std::string>& lines, std::size
 }
 
 /// Units in brackets in one of the three lines below the header.
-void find_units(const std::vector<std::string>& lines, Header& h, const std::string& name) {
+void find_units(const std::vector<std::string_view>& lines, Header& h, const std::string& name) {
   for (std::size_t below = 1; below <= 3 && h.line + below < lines.size(); ++below) {
     const auto fields = fields_of(lines[h.line + below], h.separator);
     for (std::size_t q = 0; q < 3; ++q) {
@@ -126,7 +111,7 @@ std::string plain_number(std::string field, char separator) {
 }  // namespace
 
 std::optional<PlainExport> plain_export(std::string_view text, const std::string& name) {
-  const std::vector<std::string> lines = lines_of(text.substr(0, text.size()));
+  const std::vector<std::string_view> lines = lines_of(text);
   std::optional<Header> found;
   for (std::size_t i = 0; i < std::min<std::size_t>(lines.size(), 200) && !found; ++i)
     if (!lines[i].starts_with('#')) found = header_at(lines, i);
@@ -134,9 +119,8 @@ std::optional<PlainExport> plain_export(std::string_view text, const std::string
   // Plain English columns without a speed beside a time need no help, and keep the messages of their reader.
   const auto fields = fields_of(lines[found->line], found->separator);
   const bool both = found->column[q_time] != 0 && found->column[q_speed] != 0;
-  const bool first =
-      std::all_of(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(found->line),
-                  [](const std::string& l) { return trimmed(l).empty() || l.starts_with('#'); });
+  const bool first = std::all_of(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(found->line),
+                                 [](std::string_view l) { return trimmed(l).empty() || l.starts_with('#'); });
   const std::size_t x = found->column[q_time] != 0 ? q_time : q_speed;
   if (first && !both && !found->unit[x].empty() && !found->unit[q_torque].empty() &&
       fields[found->column[q_torque] - 1].starts_with("torque"))
@@ -164,7 +148,7 @@ std::optional<PlainExport> plain_export(std::string_view text, const std::string
     for (std::size_t q = 0; q < 3; ++q) {
       const std::size_t c = found->column[q];
       if (c == 0) continue;
-      if (cells.size() >= c) values[q] = plain_number(cells[c - 1], found->separator);
+      if (cells.size() >= c) values[q] = plain_number(std::string(cells[c - 1]), found->separator);
       complete = complete && !values[q].empty();
     }
     if (!complete) {
@@ -182,8 +166,8 @@ std::optional<PlainExport> plain_export(std::string_view text, const std::string
   for (std::size_t q = 0; q < 3; ++q)
     if (found->column[q] != 0)
       out.understood.push_back("column " + std::to_string(found->column[q]) + " '" +
-                               fields[found->column[q] - 1] + "' is the " + plain_name[q] + ", unit " +
-                               found->unit[q]);
+                               std::string(fields[found->column[q] - 1]) + "' is the " + plain_name[q] +
+                               ", unit " + found->unit[q]);
   out.understood.push_back(std::to_string(rows) + " rows below line " +
                            std::to_string(found->units_line + 1) + "; " + std::to_string(empty) +
                            " lines without a value left out, " + std::to_string(repeated) +

@@ -90,13 +90,11 @@ double highest(const std::vector<double>& omega, std::size_t begin, std::size_t 
 
 Section flow_curve(const std::vector<double>& omega, std::size_t begin, std::size_t end, bool up,
                    bool stepped) {
-  Section s;
-  s.kind = up ? SectionKind::flow_curve_up : SectionKind::flow_curve_down;
-  s.begin = begin;
-  s.end = end;
-  s.omega = highest(omega, begin, end);
-  s.stepped = stepped;
-  return s;
+  return {.kind = up ? SectionKind::flow_curve_up : SectionKind::flow_curve_down,
+          .begin = begin,
+          .end = end,
+          .omega = highest(omega, begin, end),
+          .stepped = stepped};
 }
 
 /// Rows that keep no speed: a ramp up, a ramp down, or both.
@@ -111,11 +109,7 @@ void add_ramps(const std::vector<double>& omega, const Piece& p, std::vector<Sec
   if (rows(behind, p.end) && omega[p.end - 1] < 0.77 * highest(omega, behind, p.end)) {
     sections.push_back(flow_curve(omega, behind, p.end, false, false));
   } else if (behind < p.end) {
-    Section s;
-    s.begin = behind;
-    s.end = p.end;
-    s.omega = highest(omega, behind, p.end);
-    sections.push_back(s);
+    sections.push_back({.begin = behind, .end = p.end, .omega = highest(omega, behind, p.end)});
   }
 }
 
@@ -145,12 +139,10 @@ void add_shear(const std::vector<double>& omega, std::size_t begin, std::size_t 
       continue;
     }
     if (pieces[i].constant) {
-      Section s;
-      s.kind = SectionKind::constant_rate;
-      s.begin = pieces[i].begin;
-      s.end = pieces[i].end;
-      s.omega = speed[i];
-      sections.push_back(s);
+      sections.push_back({.kind = SectionKind::constant_rate,
+                          .begin = pieces[i].begin,
+                          .end = pieces[i].end,
+                          .omega = speed[i]});
     } else {
       add_ramps(omega, pieces[i], sections);
     }
@@ -223,7 +215,7 @@ std::vector<Section> find_sections(const ProtocolRecord& r) {
     for (end = begin + 1; end < r.omega.size() && rests(end) == rests(begin); ++end) {
     }
     if (rests(begin))
-      sections.push_back({SectionKind::rest, begin, end, 0.0, 0.0, false, false});
+      sections.push_back({.kind = SectionKind::rest, .begin = begin, .end = end});
     else
       add_shear(r.omega, begin, end, sections);
   }

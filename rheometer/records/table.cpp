@@ -6,9 +6,12 @@
 #include <optional>
 
 #include "rheometer/records/number_text.hpp"
+#include "rheometer/records/text_lines.hpp"
 #include "rheometer/records/torque_record.hpp"
 
 namespace tremie {
+
+using detail::LineReader, detail::lower, detail::split, detail::trimmed;
 
 std::string at_position(const std::string& name, long line, std::size_t column, const std::string& what) {
   return name + ":" + std::to_string(line) + ":" + std::to_string(column) + ": " + what;
@@ -20,47 +23,9 @@ namespace {
   throw RecordError(at_position(name, line, column, what));
 }
 
-/// One line after another, without its line end; numbered from 1.
-struct LineReader {
-  std::string_view text;
-  long number = 0;
-
-  std::optional<std::string_view> next() {
-    if (text.empty()) return std::nullopt;
-    const std::size_t end = text.find_first_of("\r\n");
-    const std::string_view line = text.substr(0, end);
-    if (end == std::string_view::npos) {
-      text = {};
-    } else {
-      const bool crlf = text[end] == '\r' && end + 1 < text.size() && text[end + 1] == '\n';
-      text.remove_prefix(end + (crlf ? 2 : 1));
-    }
-    ++number;
-    return line;
-  }
-};
-
-std::string_view trimmed(std::string_view s) {
-  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '"'; };
-  while (!s.empty() && blank(s.front())) s.remove_prefix(1);
-  while (!s.empty() && blank(s.back())) s.remove_suffix(1);
-  return s;
-}
-
 bool carries_nothing(std::string_view line) {
   const std::string_view s = trimmed(line);
   return s.empty() || s.front() == '#';
-}
-
-/// Where the fields of a line begin and end; the buffer is kept between lines.
-void split(std::string_view line, char separator, std::vector<std::string_view>& fields) {
-  fields.clear();
-  for (std::size_t start = 0;;) {
-    const std::size_t end = line.find(separator, start);
-    fields.push_back(line.substr(start, end == std::string_view::npos ? end : end - start));
-    if (end == std::string_view::npos) return;
-    start = end + 1;
-  }
 }
 
 /// Lower case, "per" as "/", micro as "u", without blanks, brackets, underscores and multiplication signs.
@@ -81,12 +46,6 @@ std::string normal_unit(std::string_view text) {
       s += static_cast<char>(std::tolower(static_cast<unsigned char>(text.front())));
     text.remove_prefix(1);
   }
-  return s;
-}
-
-std::string lower(std::string_view text) {
-  std::string s(text);
-  for (char& c : s) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return s;
 }
 

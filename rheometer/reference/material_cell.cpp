@@ -15,12 +15,6 @@ namespace tremie {
 
 namespace {
 
-double duration_of(const std::vector<ShearSegment>& history) {
-  double sum = 0.0;
-  for (const ShearSegment& s : history) sum += s.duration;
-  return sum;
-}
-
 /// Steps in one segment: the time step as given, else its share of 2000, and some in a short one too.
 long steps_in(const MaterialCell& cell, const ShearSegment& s, double total) {
   const double count = static_cast<double>(cell.history.size());
@@ -38,7 +32,7 @@ class Run {
   }
 
   CellResult operator()() {
-    const double total = duration_of(cell_.history);
+    const double total = duration(linear_pieces(cell_.history));
     double start = 0.0;
     for (const ShearSegment& s : cell_.history) {
       if (result_.samples.empty() || s.from != result_.samples.back().shear_rate) add(start, s.from);

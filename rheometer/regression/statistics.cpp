@@ -7,8 +7,6 @@
 
 namespace tremie {
 
-double student_probability(double t, double degrees) { return cdf(boost::math::students_t(degrees), t); }
-
 double fisher_tail(double f, double d1, double d2) {
   return f > 0.0 ? cdf(complement(boost::math::fisher_f(d1, d2), f)) : 1.0;
 }

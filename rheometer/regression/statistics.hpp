@@ -6,13 +6,10 @@
 
 namespace tremie {
 
-/// P(T <= t) of Student's distribution with `degrees` > 0 degrees of freedom.
-double student_probability(double t, double degrees);
-
 /// P(F > f) of Fisher's distribution with d1 and d2 > 0 degrees of freedom.
 double fisher_tail(double f, double d1, double d2);
 
-/// The t with P(T <= t) = probability, 0 < probability < 1.
+/// The t with P(T <= t) = probability, 0 < probability < 1, of Student's distribution with `degrees` > 0.
 double student_quantile(double probability, double degrees);
 
 /// Median; 0 for an empty vector.

@@ -24,11 +24,7 @@ std::string line_of(const FitResult& fit) {
 
 std::string value_text(const std::optional<ParameterEstimate>& e) {
   if (!e) return "not told by this record";
-  const std::string text = scene::rounded(e->value, 4);
-  if (e->given) return text + " (given)";
-  return e->ci95 ? fmt::format("{} ({} to {})", text, scene::rounded(e->ci95->low, 4),
-                               scene::rounded(e->ci95->high, 4))
-                 : text + " (no interval)";
+  return e->given ? scene::rounded(e->value, 4) + " (given)" : with_interval(*e, 4);
 }
 
 /// A pure number of a law goes by its symbol too: "flow index n".
@@ -227,6 +223,13 @@ std::vector<double> shown_x(const FitResult& fit) {
 }
 
 std::string x_label(const FitResult& fit) { return is_decay(fit) ? "time (s)" : "speed (rev/s)"; }
+
+std::string with_interval(const ParameterEstimate& e, int digits) {
+  const std::string text = scene::rounded(e.value, digits);
+  return e.ci95 ? fmt::format("{} ({} to {})", text, scene::rounded(e.ci95->low, digits),
+                              scene::rounded(e.ci95->high, digits))
+                : text + " (no interval)";
+}
 
 std::string unit_on_page(const FitParameter& p) {
   return p.unit == "Pa s" ? "Pa·s" : p.unit == "Pa s^n" ? "Pa·sⁿ" : p.unit;

@@ -24,6 +24,9 @@ std::vector<std::pair<std::string, std::string>> fit_chart_files(const FitResult
 std::vector<double> shown_x(const FitResult& fit);
 std::string x_label(const FitResult& fit);
 
+/// "54.1 (53.2 to 55)", of so many digits.
+std::string with_interval(const ParameterEstimate& estimate, int digits);
+
 /// "Pa·sⁿ".
 std::string unit_on_page(const FitParameter& parameter);
 

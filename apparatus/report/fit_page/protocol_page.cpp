@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "apparatus/report/fit_page/fit_page.hpp"
 #include "apparatus/report/page/charts.hpp"
 #include "apparatus/report/page/page.hpp"
 #include "apparatus/scene/units.hpp"
@@ -13,12 +14,6 @@ namespace tremie::report {
 namespace {
 
 std::string text_of(const std::optional<double>& v) { return v ? scene::rounded(*v, 4) : "–"; }
-
-std::string interval(const ParameterEstimate& e) {
-  return e.ci95 ? fmt::format("{} ({} to {})", scene::rounded(e.value, 3), scene::rounded(e.ci95->low, 3),
-                              scene::rounded(e.ci95->high, 3))
-                : scene::rounded(e.value, 3) + " (no interval)";
-}
 
 bool is_curve(const SectionReading& s) {
   return s.section.kind == SectionKind::flow_curve_up || s.section.kind == SectionKind::flow_curve_down;
@@ -85,9 +80,10 @@ std::string protocol_html(const ProtocolRecord& record, const ProtocolReading& r
                           const std::string& file, const std::string& command) {
   Page page;
   const Structuration& a = reading.structuration;
-  page.headline = fmt::format("{}, a test of {} sections: {}",
-                              std::filesystem::path(file).filename().string(), reading.sections.size(),
-                              a.A_thix ? "A_thix " + interval(*a.A_thix) + " Pa/s" : "tells no A_thix");
+  page.headline =
+      fmt::format("{}, a test of {} sections: {}", std::filesystem::path(file).filename().string(),
+                  reading.sections.size(),
+                  a.A_thix ? "A_thix " + with_interval(*a.A_thix, 3) + " Pa/s" : "tells no A_thix");
   page.title = "Tremie: " + page.headline;
   const bool good = reading.reasons.empty();
   page.verdict = {

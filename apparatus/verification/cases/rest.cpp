@@ -5,11 +5,12 @@
 
 #include "apparatus/verification/references/bodies.hpp"
 #include "apparatus/verification/suite.hpp"
+#include "libmpm/constitutive/constants.hpp"
 
 namespace tremie::verification {
 namespace {
 
-constexpr double rho = 2400.0, g = 9.81, height = 0.3;
+constexpr double rho = 2400.0, g = gravity, height = 0.3;
 
 /// Worst pressure error in a point after a second, in units of rho g H, of a column `levels` cells high.
 template <class Geometry>

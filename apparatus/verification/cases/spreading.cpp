@@ -8,6 +8,7 @@
 #include "apparatus/verification/references/huppert.hpp"
 #include "apparatus/verification/references/slender.hpp"
 #include "apparatus/verification/suite.hpp"
+#include "libmpm/constitutive/constants.hpp"
 
 namespace tremie::verification {
 namespace {
@@ -141,7 +142,7 @@ Problem rest_balance() {
       .bounds = {}};
   const double start = cpu_seconds();
   const auto outcome = cone::run(instant_release(130.0, 30.2, cone::Scene{}.duration));
-  const Fluid fluid{2400.0, 9.81, 130.0, 30.2};
+  const Fluid fluid{2400.0, gravity, 130.0, 30.2};
   const double low = 2.0 * rest_radius(fluid, cone_volume(), plug_normal_stress);
   const double high = 2.0 * rest_radius(fluid, cone_volume(), 0.0);
   one.series[0].runs = {{"10 x 5 mm", 0.0, outcome.results.spread / low - 1.0, cpu_seconds() - start}};

@@ -9,6 +9,7 @@
 #include "apparatus/parts/cone/spread.hpp"
 #include "apparatus/verification/references/bodies.hpp"
 #include "apparatus/verification/references/lubrication.hpp"
+#include "libmpm/constitutive/constants.hpp"
 #include "libmpm/implicit/step.hpp"
 
 namespace tremie::verification {
@@ -19,7 +20,7 @@ ImplicitBody<Axisymmetric> patch(const Mix& mix, double across, double up, doubl
                                  Depth depth) {
   ImplicitBody<Axisymmetric> body;
   body.mix = mix;
-  body.gravity = {0.0, -9.81};
+  body.gravity = {0.0, -gravity};
   body.grid.axes[0] = {.h = across, .low = FaceKind::free_slip};
   body.grid.axes[1] = {.h = up, .low = FaceKind::no_slip};
   const std::array<int, 2> n{static_cast<int>(std::ceil(R / across)) * 6,
@@ -27,7 +28,7 @@ ImplicitBody<Axisymmetric> patch(const Mix& mix, double across, double up, doubl
   seed_box<Axisymmetric>(
       {0.0, 0.0}, {n[0] * across / 6, n[1] * up / 4}, n, mix.density, mix.K,
       [&](const Vec<2>& x) { return x[1] < depth(x[0]); },
-      [&](const Vec<2>& x) { return mix.density * 9.81 * (depth(x[0]) - x[1]); }, body.points);
+      [&](const Vec<2>& x) { return mix.density * gravity * (depth(x[0]) - x[1]); }, body.points);
   return body;
 }
 
@@ -42,7 +43,7 @@ struct HuppertFit {
 inline HuppertFit huppert_decade(double across, double up) {
   omp_set_num_threads(1);
   const double R = 0.3, mu = 200.0, V = 0.75 * std::numbers::pi * R * R * 0.03, nu = mu / 2400.0;
-  const double start = std::pow(R / huppert_prefactor, 8) * 3.0 * nu / (9.81 * V * V * V);
+  const double start = std::pow(R / huppert_prefactor, 8) * 3.0 * nu / (gravity * V * V * V);
   auto body =
       patch(bodies::concrete(0.0, mu), across, up, R, 0.03, [&](double r) { return huppert_depth(V, R, r); });
   const double V_points = bodies::total_volume(body.points);
@@ -65,11 +66,11 @@ inline HuppertFit huppert_decade(double across, double up) {
   for (std::size_t i = 1; i < x.size(); ++i) {
     sxx += (x[i] - x[i - 1]) * (x[i] - mx) * (x[i] - mx);
     sxy += (x[i] - x[i - 1]) * (x[i] - mx) * (y[i] - my);
-    worst =
-        std::max(worst, std::abs(std::exp(y[i]) / huppert_radius(V_points, nu, 9.81, std::exp(x[i])) - 1.0));
+    worst = std::max(worst,
+                     std::abs(std::exp(y[i]) / huppert_radius(V_points, nu, gravity, std::exp(x[i])) - 1.0));
   }
   const double prefactor =
-      std::exp(my - mx / 8.0) / std::pow(9.81 * V_points * V_points * V_points / (3.0 * nu), 0.125);
+      std::exp(my - mx / 8.0) / std::pow(gravity * V_points * V_points * V_points / (3.0 * nu), 0.125);
   return {sxy / sxx, prefactor, worst, V_points / V - 1.0, static_cast<int>(x.size()), unconverged};
 }
 

@@ -8,9 +8,11 @@
 #include <numbers>
 #include <vector>
 
+#include "libmpm/constitutive/constants.hpp"
+
 namespace tremie::lbox_reference {
 
-inline constexpr double rho_g = 2400.0 * 9.81;
+inline constexpr double rho_g = 2400.0 * gravity;
 
 /// Thin-layer profile at rest against an end wall: F(h) - F(h2) = (tau_0 / rho g)(L - x), F = h^2/2 without
 /// side walls (width = 0) and (W/2)[h - (W/2) ln(1 + 2h/W)] with them.
