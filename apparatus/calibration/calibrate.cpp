@@ -42,20 +42,15 @@ const Measurement& reading_of(const State& s, const Emulated& e) {
 
 bool is_measured(const State& s, const Emulated& e) { return e.test < s.lab.measured; }
 
-double numeric(const study::Row& row, std::size_t reading) {
-  const auto* number = std::get_if<double>(&row.readings[reading]);
-  return row.exit_code == 0 && number ? *number : NAN;
-}
-
 void train_one(State& s, Emulated& e) {
   std::vector<Point> points;
   std::vector<double> values;
   e.trials.clear();
   for (std::size_t i = 0; i < s.result.trials.size(); ++i) {
-    const double value = numeric(s.result.trials[i].rows[e.test], e.reading);
-    if (!std::isfinite(value)) continue;
+    const auto value = study::trusted_number(s.result.trials[i].rows[e.test], e.reading);
+    if (!value || !std::isfinite(*value)) continue;
     points.push_back(s.result.trials[i].point);
-    values.push_back(value);
+    values.push_back(*value);
     e.trials.push_back(i);
   }
   e.trained = points.size() >= 5 * s.lab.unknowns.size();
@@ -71,8 +66,8 @@ double variance_of(const State& s, const Emulated& e, const Prediction& p) {
 }
 
 double log_likelihood_of(const State& s, const Emulated& e, const Prediction& p) {
-  const double variance = variance_of(s, e, p), off = reading_of(s, e).value - p.mean;
-  return -0.5 * (off * off / variance + std::log(variance));
+  const Measurement& m = reading_of(s, e);
+  return log_likelihood(m.value, m.error, p, s.discretisation[e.test][e.reading]);
 }
 
 /// At every point of s.points.
@@ -201,7 +196,7 @@ void report_parameters(State& s) {
 std::vector<std::array<double, 2>> left_out_of(const State& s, const Emulated& e) {
   std::vector<std::array<double, 2>> pairs;
   for (std::size_t k = 0; k < e.trials.size(); ++k) {
-    const double run = numeric(s.result.trials[e.trials[k]].rows[e.test], e.reading);
+    const double run = *study::trusted_number(s.result.trials[e.trials[k]].rows[e.test], e.reading);
     pairs.push_back({run, run + e.emulator.left_out[k]});
   }
   return pairs;

@@ -14,13 +14,10 @@ namespace {
 
 using report::person_number;
 using report::unit_for_people;
+using report::with_unit;
 using report::words_of;
 
 constexpr double faint = 0.01;  ///< of the largest density: what is not drawn
-
-std::string with_unit(const std::string& words, const std::string& unit) {
-  return unit.empty() ? words : fmt::format("{} ({})", words, unit);
-}
 
 std::string interval_text(const Estimated& p) {
   return fmt::format("{:.3g}{} ({:.3g} to {:.3g})", p.value, p.unit.empty() ? "" : " " + p.unit, p.low,
@@ -72,8 +69,7 @@ report::Figure pair(const Lab& lab, const Calibration& c, std::size_t a, std::si
   const double most = *std::max_element(weight.begin(), weight.end());
   report::LineChart chart{.title = fmt::format("{} and {}", c.parameters[a].key, c.parameters[b].key),
                           .x_label = with_unit(c.parameters[a].key, c.parameters[a].unit),
-                          .y_label = with_unit(c.parameters[b].key, c.parameters[b].unit),
-                          .curves = {}};
+                          .y_label = with_unit(c.parameters[b].key, c.parameters[b].unit)};
   chart.log_x = lab.unknowns[a].scale == study::Scale::log,
   chart.log_y = lab.unknowns[b].scale == study::Scale::log;
   for (std::size_t k = 0; k < weight.size(); ++k) {
@@ -87,7 +83,7 @@ report::Figure pair(const Lab& lab, const Calibration& c, std::size_t a, std::si
 }
 
 report::Figure emulator(const ReadingReport& r) {
-  report::Curve runs{.label = "runs left out one at a time", .x = {}, .y = {}, .mark = report::Mark::points};
+  report::Curve runs{.label = "runs left out one at a time", .mark = report::Mark::points};
   double low = 1e300, high = -1e300;
   for (const auto& [run, predicted] : r.left_out) {
     runs.x.push_back(run), runs.y.push_back(predicted);
@@ -107,8 +103,7 @@ report::Figure emulator(const ReadingReport& r) {
 report::GridTable fit_table(const Calibration& c) {
   report::GridTable table{"Fit against measurements",
                           {"test", "measured", "± (one standard error)", "best fit", "off by standard errors",
-                           "emulator ±", "cells and steps ±"},
-                          {}};
+                           "emulator ±", "cells and steps ±"}};
   for (const auto& r : c.readings)
     table.rows.push_back(
         {fmt::format("{}, {}", r.words, with_unit(words_of(r.result), unit_for_people(r.result))),
@@ -119,7 +114,7 @@ report::GridTable fit_table(const Calibration& c) {
 }
 
 report::GridTable parameter_table(const Calibration& c) {
-  report::GridTable table{"Parameters", {"", "value", "95 % interval", "unit", "by these measurements"}, {}};
+  report::GridTable table{"Parameters", {"", "value", "95 % interval", "unit", "by these measurements"}};
   for (const auto& p : c.parameters)
     table.rows.push_back({p.key, fmt::format("{:.4g}", p.value),
                           fmt::format("{:.4g} to {:.4g}", p.low, p.high), p.unit, told_in_words(p.told)});
@@ -127,7 +122,7 @@ report::GridTable parameter_table(const Calibration& c) {
 }
 
 report::GridTable forecast_table(const Lab& lab, const Calibration& c) {
-  report::GridTable table{"Forecast", {"test", "value", "95 % interval"}, {}};
+  report::GridTable table{"Forecast", {"test", "value", "95 % interval"}};
   for (std::size_t i = 0; i < c.forecasts.size(); ++i) {
     const auto& test = lab.tests[lab.measured + i];
     for (const auto& f : c.forecasts[i])
@@ -142,8 +137,7 @@ report::GridTable forecast_table(const Lab& lab, const Calibration& c) {
 
 report::GridTable advice_table(const Calibration& c, const std::vector<Advice>& advice) {
   report::GridTable table{"What to measure next",
-                          {"test", "reading", "expected", "± by the posterior", "± of the test", "bits"},
-                          {}};
+                          {"test", "reading", "expected", "± by the posterior", "± of the test", "bits"}};
   for (const auto& p : c.parameters) table.columns.push_back("interval left, " + p.key);
   for (const auto& a : advice) {
     std::vector<std::string> row{a.test,
@@ -190,13 +184,11 @@ std::string calibration_html(const Lab& lab, const Calibration& c, const std::ve
   page.headline = fmt::format("{}: {}", lab.name, fmt::join(values, ", "));
   page.title = "Tremie: " + page.headline;
   page.verdict = verdict_of(c);
-  page.trust = {
-      c.reasons.empty(),
-      fmt::format(
-          "Intervals hold 95 % of the posterior; the error of measurements, emulators, cells and steps is "
-          "in them, that of the model is not. {} runs of each test.",
-          c.trials.size()),
-      c.reasons};
+  page.trust = {c.reasons.empty(),
+                fmt::format("Intervals hold 95 % of the posterior; the error of measurements, emulators, "
+                            "cells and steps is in them, that of the model is not. {} runs of each test.",
+                            c.trials.size()),
+                c.reasons};
   add_figures(lab, c, page);
   page.grids = {parameter_table(c), fit_table(c)};
   if (auto forecasts = forecast_table(lab, c); !forecasts.rows.empty()) page.grids.push_back(forecasts);
@@ -206,8 +198,7 @@ std::string calibration_html(const Lab& lab, const Calibration& c, const std::ve
   if (!advice.empty())
     page.words.push_back(
         "Bits: the information that a test is expected to give; one halves the range of what is possible. "
-        "Interval left: "
-        "of the interval that a parameter has now.");
+        "Interval left: of the interval that a parameter has now.");
   page.made = report::facts_of_this_run(command);
   page.scene = input, page.scene_words = "The laboratory's file";
   return to_html(page);

@@ -11,8 +11,8 @@
 namespace tremie::calibration {
 namespace {
 
+using scene::complain;
 using scene::Dimension;
-using scene::InputError;
 using scene::Node;
 
 /// A reading that may be measured: its key in LAB.toml and its name in summary.json.
@@ -52,10 +52,6 @@ std::string measuring_apparatus() {
   const std::string last = names.back();
   names.pop_back();
   return fmt::format("{} or {}", fmt::join(names, ", "), last);
-}
-
-[[noreturn]] void complain(const Node& node, const std::string& key, const std::string& what) {
-  throw InputError(fmt::format("{}: {}: {}", scene::describe(node.origin), key, what));
 }
 
 const scene::Table& table_of(const Node& node, const std::string& key) {
@@ -198,10 +194,8 @@ scene::Schema schema_of(const Lab& lab, const scene::Table& unknown) {
     if (!ends || ends->size() != 2) complain(range, key, "must be [low, high]");
     overrides.push_back(key + "=" + text_of(ends->front(), key));
   }
-  std::vector<scene::ApparatusKeys> keys;
-  for (const auto& apparatus : scene::all_apparatus()) keys.push_back(apparatus.keys);
   const std::string text = fmt::format("apparatus = \"{}\"\n", lab.tests.front().apparatus);
-  return scene::load({lab.file, overrides, text}, keys).schema;
+  return scene::load({lab.file, overrides, text}, scene::all_keys()).schema;
 }
 
 void read_known(const Node& document, Lab& lab) {
@@ -241,18 +235,16 @@ Lab read_lab(const std::filesystem::path& file) {
   read_unknowns(document, lab);
   read_tests(document, "forecast", lab);
   // Every test's scene is read once, at the middle of the ranges, before anything is run.
-  for (const Test& test : lab.tests)
-    scene::read_text(fmt::format("apparatus = \"{}\"\n", test.apparatus), file.string(),
-                     overrides_at(lab, test, std::vector<double>(lab.unknowns.size(), 0.5)));
+  for (const Test& test : lab.tests) scene_at(lab, test, std::vector<double>(lab.unknowns.size(), 0.5));
   return lab;
 }
 
-std::vector<std::string> overrides_at(const Lab& lab, const Test& test, const std::vector<double>& shares) {
+scene::Scene scene_at(const Lab& lab, const Test& test, const std::vector<double>& shares) {
   std::vector<std::string> overrides = lab.known;
   overrides.insert(overrides.end(), test.overrides.begin(), test.overrides.end());
   for (std::size_t i = 0; i < shares.size(); ++i)
     overrides.push_back(lab.unknowns[i].key + "=" + study::level_at(lab.unknowns[i], shares[i]).text);
-  return overrides;
+  return scene::read_text(fmt::format("apparatus = \"{}\"\n", test.apparatus), lab.file.string(), overrides);
 }
 
 }  // namespace tremie::calibration

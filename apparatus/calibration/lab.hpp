@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "apparatus/registry/registry.hpp"
 #include "apparatus/study/definition.hpp"
 
 namespace tremie::calibration {
@@ -39,7 +40,7 @@ struct Lab {
 /// Throws scene::InputError.
 Lab read_lab(const std::filesystem::path& file);
 
-/// The overrides of a test's scene at a point of the unknowns (shares of their ranges).
-std::vector<std::string> overrides_at(const Lab& lab, const Test& test, const std::vector<double>& shares);
+/// A test's scene at a point of the unknowns (shares of their ranges). Throws scene::InputError.
+scene::Scene scene_at(const Lab& lab, const Test& test, const std::vector<double>& shares);
 
 }  // namespace tremie::calibration

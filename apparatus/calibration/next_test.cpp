@@ -53,8 +53,7 @@ std::vector<Point> drawn(const Posterior& posterior) {
 
 bool can_be_read(const Lab& lab, const Test& test) {
   try {
-    scene::read_text(fmt::format("apparatus = \"{}\"\n", test.apparatus), lab.file.string(),
-                     overrides_at(lab, test, std::vector<double>(lab.unknowns.size(), 0.5)));
+    scene_at(lab, test, std::vector<double>(lab.unknowns.size(), 0.5));
     return true;
   } catch (const scene::InputError&) {
     return false;
@@ -85,8 +84,8 @@ std::vector<Advice> judged(const Lab& lab, const Candidate& c, const std::vector
   std::vector<double> readings;
   std::vector<std::vector<double>> unknowns(lab.unknowns.size());
   for (const Trial& trial : trials) {
-    const auto* number = std::get_if<double>(&trial.rows[test].readings.front());
-    if (!number || trial.rows[test].exit_code != 0) continue;
+    const auto number = study::trusted_number(trial.rows[test], 0);
+    if (!number) continue;
     readings.push_back(*number);
     for (std::size_t i = 0; i < unknowns.size(); ++i) unknowns[i].push_back(trial.point[i]);
   }

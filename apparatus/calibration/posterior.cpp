@@ -89,6 +89,11 @@ double mixture_quantile(const Posterior& posterior, const std::vector<Prediction
   return 0.5 * (low + high);
 }
 
+double log_likelihood(double value, double error, const Prediction& run, double cells) {
+  const double variance = error * error + run.variance + cells * cells, off = value - run.mean;
+  return -0.5 * (off * off / variance + std::log(variance));
+}
+
 std::string told(double low, double high) {
   constexpr double edge = 0.03;
   const double width = high - low;

@@ -33,6 +33,10 @@ double effective_points(const Posterior& posterior);
 /// The value below which `q` of the posterior's weight lies, each point a Gaussian.
 double mixture_quantile(const Posterior& posterior, const std::vector<Prediction>& predictions, double q);
 
+/// Logarithm of the likelihood of a measurement (its value and standard error) where a run is predicted, whose cells and steps
+/// are good to `cells`; the constant is left out.
+double log_likelihood(double value, double error, const Prediction& run, double cells);
+
 /// "identified": the interval is less than half of the range, and off both of its ends. "not_told": it is more
 /// than four fifths of the range. "bound": neither.
 std::string told(double low, double high);

@@ -19,11 +19,6 @@ std::vector<std::string> results_of(const Test& test) {
   return names;
 }
 
-scene::Scene scene_at(const Lab& lab, const Test& test, const Point& point) {
-  return scene::read_text(fmt::format("apparatus = \"{}\"\n", test.apparatus), lab.file.string(),
-                          overrides_at(lab, test, point));
-}
-
 std::vector<std::size_t> first(std::size_t n) {
   std::vector<std::size_t> items(n);
   std::iota(items.begin(), items.end(), std::size_t{0});

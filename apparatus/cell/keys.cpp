@@ -7,8 +7,6 @@
 #include "apparatus/common/shared_keys.hpp"
 #include "apparatus/scene/document.hpp"
 #include "apparatus/scene/input_error.hpp"
-#include "apparatus/scene/load.hpp"
-#include "apparatus/scene/resolved.hpp"
 #include "rheometer/records/torque_record.hpp"
 
 namespace tremie::cell {
@@ -50,11 +48,7 @@ Section history_section() {
 }
 
 Section test_section() {
-  return {
-      .name = "test",
-      .help = "Before the history.",
-      .keys = {
-          {.name = "rest", .dimension = Dimension::time, .range = scene::not_negative, .fallback = "0 s"}}};
+  return {.name = "test", .help = "Before the history.", .keys = {scene::rest_key("0 s", "")}};
 }
 
 Section model_section() {
@@ -115,38 +109,21 @@ Scene build(scene::Loaded& loaded) {
   scene.cell.rest = values.number("test.rest");
   scene.cell.history = read_history(values);
   if (scene.cell.history.empty())
-    throw scene::InputError(
-        loaded.path +
-        ": history: missing; give tables [[history]] with duration, from and to, or history = "
-        "\"file.csv\" above the first table");
+    throw scene::InputError(loaded.path +
+                            ": history: missing; give tables [[history]] with duration, from and to, or "
+                            "history = \"file.csv\" above the first table");
   scene.cell.time_step = values.number_unless("model.time_step", "auto");
   scene.law = scene::read_law(values);
-  scene.resolved = scene::write_resolved(loaded.schema, values);
   return scene;
 }
 
 scene::ApparatusKeys keys() {
-  scene::ApparatusKeys keys{.name = "cell",
-                            .help = "One material cell at a prescribed shear rate: tremie cell.",
-                            .schema = {top_section()},
-                            .presets = {},
-                            .settle = scene::settle_mix,
-                            .command = "cell"};
-  for (const Section& section : scene::mix_sections()) keys.schema.push_back(section);
-  keys.schema.push_back(test_section());
-  keys.schema.push_back(history_section());
-  keys.schema.push_back(model_section());
-  return keys;
-}
-
-Scene read(const std::filesystem::path& path, const std::vector<std::string>& overrides) {
-  scene::Loaded loaded = load({path, overrides, {}}, std::vector{keys()}, "cell");
-  return build(loaded);
-}
-
-Scene read_text(const std::string& text, const std::string& name, const std::vector<std::string>& overrides) {
-  scene::Loaded loaded = load({name, overrides, text}, std::vector{keys()}, "cell");
-  return build(loaded);
+  return {.name = "cell",
+          .help = "One material cell at a prescribed shear rate: tremie cell.",
+          .schema = scene::joined(
+              {{top_section()}, scene::mix_sections(), {test_section(), history_section(), model_section()}}),
+          .settle = scene::settle_mix,
+          .command = "cell"};
 }
 
 CellResult run(const Scene& scene) {

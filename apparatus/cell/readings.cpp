@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "apparatus/cell/cell.hpp"
 #include "apparatus/common/outcome_parts.hpp"
@@ -14,8 +13,6 @@ namespace {
 
 using scene::number;
 using scene::or_nan;
-
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 /// A run as the rows of the table see it.
 struct View {
@@ -100,44 +97,56 @@ std::vector<scene::Chart> charts_of(const View& v) {
   std::vector<scene::Chart> charts;
   const std::string name = v.scene.name + ": ";
   if (largest_stress(v))
-    charts = {
-        {"flow_curve.svg",
-         name + "flow curve",
-         "shear rate (1/s)",
-         "shear stress (Pa)",
-         {"shear_stress_Pa"},
-         {},
-         {},
-         "",
-         "shear_rate_per_s"},
-        {"stress.svg", name + "shear stress", "time (s)", "shear stress (Pa)", {"shear_stress_Pa"}, {}}};
+    charts = {{"flow_curve.svg",
+               name + "flow curve",
+               "shear rate (1/s)",
+               "shear stress (Pa)",
+               {"shear_stress_Pa"},
+               {},
+               {},
+               "",
+               "shear_rate_per_s"},
+              {"stress.svg", name + "shear stress", "time (s)", "shear stress (Pa)", {"shear_stress_Pa"}}};
   if (v.scene.cell.mix.thixotropy)
-    charts.push_back({"flocculation.svg",
-                      name + "flocculation",
-                      "time (s)",
-                      "flocculation state λ",
-                      {"flocculation"},
-                      {}});
+    charts.push_back(
+        {"flocculation.svg", name + "flocculation", "time (s)", "flocculation state λ", {"flocculation"}});
   return charts;
 }
 
-}  // namespace
-
-std::vector<scene::Described> glossary() { return described(readings()); }
-
+/// The result under the names of timeseries.csv and summary.json.
 scene::Outcome outcome(const Scene& scene, const CellResult& result) {
   const View view{scene, result};
   scene::Outcome o;
   o.apparatus = "cell";
   read_into(readings(), view, o);
   o.asked = scene.name + ", one material cell";
-  o.checks.volume_change = o.checks.mass_error = o.checks.max_speed_end = none;  // a cell has none
+  o.has_points = false;
   scene::add_reasons<View>({update_is_off}, view, o.checks.reasons);
   o.cost.steps = result.steps;
   o.cost.points = 1;
   o.cost.simulated = result.samples.back().time;
   o.charts = charts_of(view);
   return o;
+}
+
+std::vector<std::string> uses(const std::any& any_scene) {
+  const MaterialCell& cell = std::any_cast<Scene>(&any_scene)->cell;
+  return {fmt::format("{} pieces of the history; no points, no grid", cell.history.size()),
+          fmt::format("flocculation: {}",
+                      cell.mix.thixotropy ? "computed, and by CVODE beside it" : "not computed")};
+}
+
+}  // namespace
+
+scene::Apparatus apparatus() {
+  scene::Apparatus cell = scene::apparatus_of(keys(), "material cell", readings());
+  cell.read = [](scene::Loaded& loaded) -> std::any { return build(loaded); };
+  cell.uses = uses;
+  cell.run = [](const std::any& any_scene, const scene::RunOptions&, const scene::Observer&) {
+    const Scene& scene = *std::any_cast<Scene>(&any_scene);
+    return outcome(scene, run(scene));
+  };
+  return cell;
 }
 
 }  // namespace tremie::cell

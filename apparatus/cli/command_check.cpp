@@ -10,7 +10,6 @@
 #include "apparatus/cli/commands.hpp"
 #include "apparatus/cli/options/command.hpp"
 #include "apparatus/cli/options/json_option.hpp"
-#include "apparatus/cli/set_option.hpp"
 #include "apparatus/registry/cost_estimate.hpp"
 #include "apparatus/registry/registry.hpp"
 #include "apparatus/report/compare/run_result.hpp"
@@ -106,7 +105,7 @@ void add_command_check(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   Command command(app, "check", "Validate a scene; print it resolved, what it uses and what it costs");
   command.required("scene", options->scene, "Scene file (TOML), or - for the standard input");
-  add_set_option(command, options->overrides);
+  command.overrides(options->overrides);
   add_json_option(command, options->json);
   command.example("tremie check slump.toml, or tremie new slump_flow | tremie check -");
   command.run([options, &exit_code] {

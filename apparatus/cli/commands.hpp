@@ -20,8 +20,11 @@ void add_command_run(CLI::App& app, int& exit_code);
 void add_command_resume(CLI::App& app, int& exit_code);
 void add_command_check(CLI::App& app, int& exit_code);
 void add_command_new(CLI::App& app, int& exit_code);
+void add_command_cell(CLI::App& app, int& exit_code);
 void add_command_compare(CLI::App& app, int& exit_code);
 void add_command_estimate(CLI::App& app, int& exit_code);
+void add_command_study(CLI::App& app, int& exit_code);
+void add_command_calibrate(CLI::App& app, int& exit_code);
 void add_command_verify(CLI::App& app, int& exit_code);
 
 }  // namespace tremie::cli

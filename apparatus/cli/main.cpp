@@ -5,7 +5,6 @@
 
 #include <cstring>
 
-#include "apparatus/cli/command_cell.hpp"
 #include "apparatus/cli/commands.hpp"
 #include "apparatus/cli/hand_over.hpp"
 #include "apparatus/cli/options/command.hpp"

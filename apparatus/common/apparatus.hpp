@@ -1,7 +1,7 @@
 #pragma once
 
 // An apparatus as the program sees it: its keys, and what can be done with a scene of it. Its folder exports
-// one function that returns this; apparatus/registry/apparatus.cmake lists them.
+// one function that returns this, apparatus(); apparatus/registry/apparatus.cmake lists them.
 
 #include <any>
 #include <cstdint>
@@ -46,6 +46,16 @@ struct Apparatus {
   std::function<Model&(std::any&)> model = {};
   std::function<int&(std::any&)> threads = {};
 };
+
+/// The apparatus of a table of readings and of tables of columns: what of it is no function.
+template <class View, class... Columns>
+Apparatus apparatus_of(ApparatusKeys keys, std::string words, const std::vector<Reading<View>>& readings,
+                       const Columns&... columns) {
+  return {.keys = std::move(keys),
+          .words = std::move(words),
+          .headlines = headlines_of(readings),
+          .glossary = described(readings, columns...)};
+}
 
 /// Fills the functions for a Scene that has the members `model` and `threads`.
 template <class TestScene, class Read, class Uses, class Run, class EstimateCost>

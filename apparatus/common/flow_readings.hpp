@@ -1,7 +1,7 @@
 #pragma once
 
-// Rows that the tables of several tests share. View::Sample has the members that the rows name; View has `scene`, `status`, `r`
-// (with stopped_at) and `series`.
+// Rows that the tables of several tests share. View is a RunView whose Sample has the members that the rows name, and whose
+// results have stopped_at.
 
 #include <utility>
 
@@ -85,6 +85,27 @@ Rows<View> flocculation_rows() {
                }},
           {"flocculation_mean_end", "flocculation state λ at the end, mean",
            [](const View& v) { return number(v.series.back().flocculation_mean); }}};
+}
+
+/// Rows that a run has together or not at all.
+template <class View>
+Rows<View> only_where(bool (*applies)(const View&), Rows<View> rows) {
+  for (Reading<View>& row : rows) row.applies = applies;
+  return rows;
+}
+
+/// The outcome of a run, with what its table reads, and what was asked of which mix. Without thixotropy there is no word to
+/// say of a rest.
+template <class View>
+Outcome outcome_of(const std::vector<Reading<View>>& table, const View& view, const std::string& mix_name,
+                   const std::string& test) {
+  Outcome outcome;
+  outcome.status = view.status;
+  outcome.checks = view.run.checks;
+  outcome.cost = view.run.cost;
+  read_into(table, view, outcome);
+  outcome.asked = asked_text(mix_name, test, view.scene.mix.thixotropy ? view.scene.rest : 0.0);
+  return outcome;
 }
 
 /// "not reached yet" of a run that ended early, "never reached" of another.

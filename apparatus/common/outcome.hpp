@@ -50,7 +50,7 @@ struct Chart {
   std::string file;  ///< "spread.svg"
   std::string title, x_label, y_label;
   std::vector<std::string> columns;  ///< their names
-  std::vector<Reference> references;
+  std::vector<Reference> references = {};
   std::vector<std::string> labels = {};  ///< of the columns, where there are several
   std::string table = {};                ///< file of the table that the columns are in; empty: the series
   std::string over = {};                 ///< column on the horizontal axis; empty: the first
@@ -118,6 +118,7 @@ struct Outcome {
   std::vector<std::string> lines;  ///< the result for a person, a line each
   bool axisymmetric = false;       ///< points lie in the plane (r, 0, z) of a body of revolution
   bool pictured = true;            ///< tremie-picture has a way to draw it
+  bool has_points = true;          ///< false: nothing that checks of points and cells could tell
   std::vector<ResultTable> tables = {};
   std::optional<ErrorEstimate> error = {};  ///< where it was asked for
   std::string asked = {};                   ///< "Mix A, slump flow after 240 s of rest"
@@ -146,8 +147,8 @@ struct Progress {
   std::string reading;                ///< "spread 412 mm"
 };
 struct Observer {
-  std::function<void(const Progress&)> on_progress;
-  std::function<void(const Frame&)> on_frame;  ///< at the start, every frame interval and at the end
+  std::function<void(const Progress&)> on_progress = {};
+  std::function<void(const Frame&)> on_frame = {};  ///< at the start, every frame interval and at the end
   const std::atomic<bool>* interrupted = nullptr;
   const Checkpoints* checkpoints = nullptr;
   bool all_frames = true;  ///< false: on_frame sees the last one alone

@@ -10,10 +10,6 @@ double or_nan(std::optional<double> value) {
   return value.value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
-std::string seconds_or(std::optional<double> value, const char* otherwise) {
-  return value ? fmt::format("{:.2f} s", *value) : otherwise;
-}
-
 std::string stopped_line(std::optional<double> stopped_at, Status status) {
   if (stopped_at) return fmt::format("stopped at      {:.2f} s", *stopped_at);
   return fmt::format("stopped         {}", still_moving(status));

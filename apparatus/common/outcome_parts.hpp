@@ -16,9 +16,6 @@ inline constexpr double mm = 1e3;  ///< millimetres in a metre
 /// Not-a-number for no value: an empty field of a table.
 double or_nan(std::optional<double> value);
 
-/// "4.20 s", or what to say without a value.
-std::string seconds_or(std::optional<double> value, const char* otherwise);
-
 /// A run that ended before its test did: what it read is so far.
 inline bool ended_early(Status status) { return status != Status::completed; }
 
@@ -35,24 +32,8 @@ std::vector<std::string> flocculation_lines(std::optional<double> start, std::op
 std::string flocculation_use(const Mix& mix);
 void add_model_uses(const Model& model, std::vector<std::string>& lines);
 
-/// The rest before a test that there is a word to say of [s]: without thixotropy none changes anything.
-template <class Scene>
-double rest_told(const Scene& scene) {
-  return scene.mix.thixotropy ? scene.rest : 0.0;
-}
-
-/// "slump flow at once", "… after 240 s of rest": what was asked of which mix.
+/// "Mix A, slump flow without rest", "… after 240 s of rest": what was asked of which mix.
 std::string asked_text(const std::string& mix_name, const std::string& test, double rest);
-
-/// The outcome of a run, without what its table reads.
-template <class Record>
-Outcome outcome_of(const Record& run) {
-  Outcome outcome;
-  outcome.status = run.status;
-  outcome.checks = run.checks;
-  outcome.cost = run.cost;
-  return outcome;
-}
 
 /// A word, or null for an empty one.
 ResultValue word_or_null(const std::string& word);

@@ -12,6 +12,17 @@
 
 namespace tremie::scene {
 
+/// A run as the rows of its table and its checks see it; an apparatus may add to it what else they need.
+template <class SceneOfRun, class RecordOfRun>
+struct RunView {
+  using Sample = typename RecordOfRun::Sample;
+  const SceneOfRun& scene;
+  const RecordOfRun& run;
+  Status status = run.status;
+  const typename RecordOfRun::Results& r = run.results;
+  const std::vector<Sample>& series = run.series;
+};
+
 /// One reading: a result where it has a `value`, a column over time where it has an `at`. View: what it is computed from, the
 /// scene and the raw run; View::Sample is a line of the run's series, View::series all of them. The unit is the one that the
 /// name ends with. An empty function stands for always, or for nothing.

@@ -144,6 +144,41 @@ Measured read_measured(const Values& values) {
           text("mix.measured_on")};
 }
 
+Key rest_key(const std::string& fallback, const std::string& help) {
+  return {.name = "rest",
+          .dimension = Dimension::time,
+          .range = not_negative,
+          .fallback = fallback,
+          .help = help};
+}
+
+Key duration_key(const std::string& fallback, const std::string& help) {
+  return {.name = "duration",
+          .dimension = Dimension::time,
+          .range = positive,
+          .fallback = fallback,
+          .help = help};
+}
+
+Key lift_key(const std::string& name, const std::string& fallback, const std::string& help) {
+  return {.name = name,
+          .dimension = Dimension::speed,
+          .range = positive,
+          .words = {"instant"},
+          .fallback = fallback,
+          .help = help};
+}
+
+void check_points(const Values& values, double points) {
+  constexpr double most = 1e8;
+  if (points > most)
+    values.fail(
+        "model.cell",
+        fmt::format(
+            "makes about {:.0e} points; allowed: at most {:.0e}, by larger cells or fewer points_per_cell",
+            points, most));
+}
+
 Section measured_section() {
   return {.name = "measured",
           .help = "What was measured on the real concrete, for the verdict; not used by the run.",

@@ -20,6 +20,16 @@ void settle_mix(Values& values);
 
 Mix read_mix(const Values& values);
 
+/// Keys that the schedules of several tests have.
+Key rest_key(const std::string& fallback, const std::string& help);
+Key duration_key(const std::string& fallback,
+                 const std::string& help = "at most; a flow that has come to rest ends earlier");
+/// The speed of a lift, or "instant".
+Key lift_key(const std::string& name, const std::string& fallback, const std::string& help);
+
+/// Throws InputError where the points do not fit into a computer.
+void check_points(const Values& values, double points);
+
 /// What was measured on the real concrete, where the mix says so: for charts, never for the run.
 struct Measured {
   std::string name, source;

@@ -73,8 +73,7 @@ void settle_thixotropy(Values& values) {
   if (values.number("mix.yield_stress") == 0.0)
     values.fail("mix.yield_stress",
                 "is 0 with [mix.thixotropy]: the flocculation state grows by A_thix/tau_0 and has no value; "
-                "give a yield "
-                "stress greater than 0 Pa, or leave [mix.thixotropy] out (thixotropy = false)");
+                "give a yield stress greater than 0 Pa, or leave [mix.thixotropy] out (thixotropy = false)");
 }
 
 std::optional<Thixotropy> read_thixotropy(const Values& values) {

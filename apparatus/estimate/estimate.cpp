@@ -141,10 +141,10 @@ void check(const SlumpTable& table, const Measured& m, const Grid& grid, const M
     e.reasons.push_back(fmt::format("a spread of {:.0f} mm lies outside of the table, {:.0f} to {:.0f} mm",
                                     1e3 * m.spread, 1e3 * *low, 1e3 * *high));
   else if (at.least > far_off * far_off)
-    e.reasons.push_back(fmt::format(
-        "no mix of the table, {:.3g} to {:.3g} Pa and {:.3g} to {:.3g} Pa.s, has this spread and this t500: "
-        "the nearest is {:.1f} standard errors off",
-        grid.tau_0.low, grid.tau_0.high, grid.mu.low, grid.mu.high, std::sqrt(at.least)));
+    e.reasons.push_back(
+        fmt::format("no mix of the table, {:.3g} to {:.3g} Pa and {:.3g} to {:.3g} Pa.s, has this spread and "
+                    "this t500: the nearest is {:.1f} standard errors off",
+                    grid.tau_0.low, grid.tau_0.high, grid.mu.low, grid.mu.high, std::sqrt(at.least)));
   else if (beyond(at.tau_0, at.best_tau_0))
     e.reasons.push_back(fmt::format("the yield stress may lie outside of the table, {:.3g} to {:.3g} Pa",
                                     grid.tau_0.low, grid.tau_0.high));
@@ -153,8 +153,7 @@ void check(const SlumpTable& table, const Measured& m, const Grid& grid, const M
                                     grid.mu.low, grid.mu.high));
   if (m.density < least_density || m.density > most_density)
     e.reasons.push_back(
-        fmt::format("a density of {:.0f} kg/m3 lies outside of what the table serves, {:.0f} to "
-                    "{:.0f} kg/m3",
+        fmt::format("a density of {:.0f} kg/m3 lies outside of what the table serves, {:.0f} to {:.0f} kg/m3",
                     m.density, least_density, most_density));
 }
 

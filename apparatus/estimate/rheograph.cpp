@@ -52,11 +52,8 @@ report::Band accepted_range(const SlumpTable& table) {
 /// `words` stands at `at`; `label` is in the legend.
 void add_contour(const Line& line, const std::string& words, std::pair<double, double> at, const char* label,
                  Colour colour, report::LineChart& chart) {
-  report::Curve curve{.label = label,
-                      .x = {},
-                      .y = {},
-                      .mark = colour == blue ? report::Mark::line : report::Mark::dashed,
-                      .colour = colour};
+  report::Curve curve{
+      .label = label, .mark = colour == blue ? report::Mark::line : report::Mark::dashed, .colour = colour};
   for (const auto& [mu, tau_0] : line) curve.x.push_back(mu), curve.y.push_back(tau_0);
   chart.curves.push_back(std::move(curve));
   chart.notes.push_back({words, at.first, at.second, colour});
@@ -74,8 +71,7 @@ void add_contours(const SlumpTable& table, report::LineChart& chart) {
 }
 
 void add_mixes(const std::vector<NamedMix>& mixes, report::LineChart& chart) {
-  report::Curve points{
-      .label = "published mixes", .x = {}, .y = {}, .mark = report::Mark::points, .colour = green};
+  report::Curve points{.label = "published mixes", .mark = report::Mark::points, .colour = green};
   for (const NamedMix& mix : mixes) {
     points.x.push_back(mix.mu), points.y.push_back(mix.tau_0);
     chart.notes.push_back({mix.name, mix.mu, 1.15 * mix.tau_0, green});
@@ -129,19 +125,16 @@ Line t500_contour(const SlumpTable& table, double t500) {
 
 std::string rheograph_svg(const SlumpTable& table, const std::vector<NamedMix>& mixes,
                           const std::optional<MixEstimate>& estimate) {
-  report::LineChart chart{
-      .title = fmt::format(
-          "Slump flow and t500 of fresh concrete, {:.0f} kg/m³: exact Bingham, no slip, cone lifted "
-          "at 15 cm/s",
-          table.density),
-      .x_label = "plastic viscosity μ (Pa·s)",
-      .y_label = "yield stress τ₀ (Pa)",
-      .curves = {},
-      .bands = {accepted_range(table)},
-      .log_x = true,
-      .log_y = true,
-      .width = 720,
-      .height = 560};
+  report::LineChart chart{.title = fmt::format("Slump flow and t500 of fresh concrete, {:.0f} kg/m³: exact "
+                                               "Bingham, no slip, cone lifted at 15 cm/s",
+                                               table.density),
+                          .x_label = "plastic viscosity μ (Pa·s)",
+                          .y_label = "yield stress τ₀ (Pa)",
+                          .bands = {accepted_range(table)},
+                          .log_x = true,
+                          .log_y = true,
+                          .width = 720,
+                          .height = 560};
   add_contours(table, chart);
   add_mixes(mixes, chart);
   if (estimate) add_estimate(*estimate, chart);

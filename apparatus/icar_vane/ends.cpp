@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "apparatus/icar_vane/instrument.hpp"
-#include "apparatus/icar_vane/stages.hpp"
 #include "rheometer/reference/instrument.hpp"
 
 namespace tremie::icar_vane {
@@ -240,9 +239,7 @@ Outcome run_with_ends(const Scene& scene, const scene::Observer& observer) {
   body = {};  // the plane section takes its place
   outcome.results.torque_plane = plane_torque(scene, last_speed, outcome.checks);
   outcome.results.end_factor = t.blades / *outcome.results.torque_plane;
-  read_instrument(scene, outcome);
-  check_torques_agree(scene, outcome);
-  check_against_reference(scene, outcome);
+  read_and_check(scene, outcome);
   return outcome;
 }
 

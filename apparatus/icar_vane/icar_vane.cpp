@@ -5,7 +5,6 @@
 #include "apparatus/icar_vane/ends.hpp"
 #include "apparatus/icar_vane/instrument.hpp"
 #include "apparatus/icar_vane/sections.hpp"
-#include "apparatus/icar_vane/stages.hpp"
 #include "apparatus/run/experiment.hpp"
 #include "libmpm/implicit/archived_state.hpp"
 #include "rheometer/reference/instrument.hpp"
@@ -136,9 +135,7 @@ Outcome run_section(const Scene& scene, const Section& section, const scene::Obs
       },
       [&](std::optional<double>) {
         outcome.results.profile = profile(body, section, scene.model.cell[0]);
-        read_instrument(scene, outcome);
-        check_torques_agree(scene, outcome);
-        check_against_reference(scene, outcome);
+        read_and_check(scene, outcome);
       },
       outcome);
   return outcome;

@@ -107,6 +107,18 @@ Outcome run(const Scene& scene, const scene::Observer& observer = {});
 
 scene::SizeEstimate estimate(const Scene& scene);
 
+/// A speed held for a time.
+struct Stage {
+  double speed = 0.0, duration = 0.0;  ///< [rev/s], [s]
+};
+
+inline std::vector<Stage> stages_of(const Scene& scene) {
+  if (scene.speeds.empty()) return {{scene.speed, scene.duration}};
+  std::vector<Stage> stages = {{scene.pre_shear_speed, scene.pre_shear_time}};
+  for (double speed : scene.speeds) stages.push_back({speed, scene.hold_time});
+  return stages;
+}
+
 /// Whole time of the schedule [s].
 double whole_time(const Scene& scene);
 
@@ -115,14 +127,7 @@ double whole_time(const Scene& scene);
 scene::ApparatusKeys keys();
 Scene read_scene(const scene::Values& values);
 
-/// Runs the test and reads it.
-scene::Outcome run_and_read(Scene scene, const scene::RunOptions& options, const scene::Observer& observer);
-
-/// What error bars are for, and what the names of readings mean.
-std::vector<scene::Headline> headlines();
-std::vector<scene::Described> glossary();
-
-/// What the scene carries and what it leaves out, a line each.
-std::vector<std::string> uses(const Scene& scene);
+/// The apparatus for the registry.
+scene::Apparatus apparatus();
 
 }  // namespace tremie::icar_vane

@@ -136,20 +136,7 @@ void read_decay(Outcome& outcome) {
   if (coefficient) r.alpha_apparent = *coefficient / r.shear_rate_nominal;
 }
 
-}  // namespace
-
-std::optional<double> apparent_flocculation(const Scene& scene, double torque, double speed) {
-  if (!scene.mix.thixotropy || speed == 0.0) return std::nullopt;
-  const Instrument instrument = instrument_of(scene.vane);
-  const double omega = angular_speed(std::abs(speed));
-  const double offset =
-      is_bingham(scene) ? reiner_riwlin({scene.mix.tau_0, scene.mix.mu}, omega, instrument).torque
-                        : couette_torque(scene.model.law, scene.mix.tau_0, scene.mix.mu, omega, instrument);
-  return apparent_lambda(std::abs(torque), offset, scene.mix.tau_0, instrument);
-}
-
-std::string progress_text(const Sample& s) { return fmt::format("torque {:.3f} N.m", s.torque); }
-
+/// Fills the results from the series.
 void read_instrument(const Scene& scene, Outcome& outcome) {
   Results& r = outcome.results;
   const Instrument instrument = instrument_of(scene.vane);
@@ -176,6 +163,8 @@ void read_instrument(const Scene& scene, Outcome& outcome) {
   read_decay(outcome);
 }
 
+/// Torques on the blades, on the wall (with the rate of angular momentum) and from the power must agree at
+/// the end; a reason where they do not.
 void check_torques_agree(const Scene& scene, Outcome& outcome) {
   const Results& r = outcome.results;
   const double momentum_rate = momentum_rate_over(outcome.series, averaged_time(outcome.series));
@@ -196,6 +185,8 @@ void check_torques_agree(const Scene& scene, Outcome& outcome) {
                              : "not steady, or cells too large"));
 }
 
+/// Adds a reason where a Couette section's torque at the end is not that of the radial equations, which its
+/// own three readings cannot tell when all of them follow one wrong stress.
 void check_against_reference(const Scene& scene, Outcome& outcome) {
   const auto& reference = outcome.results.torque_couette_reference;
   const Sample& last = outcome.series.back();
@@ -205,14 +196,33 @@ void check_against_reference(const Scene& scene, Outcome& outcome) {
   if (!is_exact(scene.model.law) && std::abs(off) > (cylinder ? agreement_regularised : agreement_of_blades))
     outcome.checks.reasons.push_back(
         fmt::format("the torque is {:.0f} % off that of the yield stress itself: at this speed the "
-                    "regularised law does not reach "
-                    "it; model.yield = \"exact\"{}",
+                    "regularised law does not reach it; model.yield = \"exact\"{}",
                     100.0 * off, cylinder ? "" : ", or smaller cells"));
   if (is_exact(scene.model.law) && cylinder && std::abs(off) > agreement_with_reference)
-    outcome.checks.reasons.push_back(fmt::format(
-        "the torque is {:.1f} % off that of the equations without inertia: not steady, or a sheared layer "
-        "that the cells do not resolve",
-        100.0 * off));
+    outcome.checks.reasons.push_back(
+        fmt::format("the torque is {:.1f} % off that of the equations without inertia: not steady, or a "
+                    "sheared layer that the cells do not resolve",
+                    100.0 * off));
+}
+
+}  // namespace
+
+std::optional<double> apparent_flocculation(const Scene& scene, double torque, double speed) {
+  if (!scene.mix.thixotropy || speed == 0.0) return std::nullopt;
+  const Instrument instrument = instrument_of(scene.vane);
+  const double omega = angular_speed(std::abs(speed));
+  const double offset =
+      is_bingham(scene) ? reiner_riwlin({scene.mix.tau_0, scene.mix.mu}, omega, instrument).torque
+                        : couette_torque(scene.model.law, scene.mix.tau_0, scene.mix.mu, omega, instrument);
+  return apparent_lambda(std::abs(torque), offset, scene.mix.tau_0, instrument);
+}
+
+std::string progress_text(const Sample& s) { return fmt::format("torque {:.3f} N.m", s.torque); }
+
+void read_and_check(const Scene& scene, Outcome& outcome) {
+  read_instrument(scene, outcome);
+  check_torques_agree(scene, outcome);
+  check_against_reference(scene, outcome);
 }
 
 }  // namespace tremie::icar_vane

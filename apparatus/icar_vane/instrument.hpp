@@ -16,15 +16,7 @@ std::optional<double> apparent_flocculation(const Scene& scene, double torque, d
 /// "torque 0.512 N.m": while a run goes on.
 std::string progress_text(const Sample& sample);
 
-/// Fills the results from the series.
-void read_instrument(const Scene& scene, Outcome& outcome);
-
-/// Torques on the blades, on the wall (with the rate of angular momentum) and from the power must agree at
-/// the end; a reason where they do not.
-void check_torques_agree(const Scene& scene, Outcome& outcome);
-
-/// Adds a reason where a Couette section's torque at the end is not that of the radial equations, which its
-/// own three readings cannot tell when all of them follow one wrong stress.
-void check_against_reference(const Scene& scene, Outcome& outcome);
+/// Fills the results from the series, and adds the reasons why they are not to be trusted.
+void read_and_check(const Scene& scene, Outcome& outcome);
 
 }  // namespace tremie::icar_vane

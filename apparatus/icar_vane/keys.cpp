@@ -12,10 +12,8 @@ namespace tremie::icar_vane {
 
 using namespace scene;
 
-
 namespace {
 
-constexpr double most_points = 1e8;
 constexpr double most_cells_with_ends = 3e4;  // of a sector: its factor then takes some 3 GB
 constexpr const char* speeds_key = "test.speeds";
 
@@ -50,42 +48,33 @@ Section vane_section() {
       .help =
           "The vane and its container; the defaults are the ICAR's. In the cylindrical space the vane has "
           "its ends.",
-      .keys = {
-          {.name = "radius", .range = positive, .fallback = "63.5 mm", .help = "of the blades' tips"},
-          {.name = "height", .range = positive, .fallback = "127 mm"},
-          {.name = "container_radius", .range = positive, .fallback = "143 mm"},
-          {.name = "blades",
-           .kind = Kind::integer,
-           .range = between(2, 12),
-           .fallback = "4",
-           .help = "in the plane; a Couette section has a solid cylinder"},
-          {.name = "blade_thickness", .range = positive, .fallback = "3 mm", .help = "in the plane"},
-          {.name = "shaft_radius",
-           .range = positive,
-           .fallback = "10 mm",
-           .help = "in the plane: about which the blades stand; concrete there turns with them; with ends it "
-                   "goes up to the surface"},
-          {.name = bottom_gap.name, .range = positive, .example = "80 mm", .help = bottom_gap.help},
-          {.name = cover.name, .range = positive, .example = "80 mm", .help = cover.help}}};
+      .keys = {{.name = "radius", .range = positive, .fallback = "63.5 mm", .help = "of the blades' tips"},
+               {.name = "height", .range = positive, .fallback = "127 mm"},
+               {.name = "container_radius", .range = positive, .fallback = "143 mm"},
+               {.name = "blades",
+                .kind = Kind::integer,
+                .range = between(2, 12),
+                .fallback = "4",
+                .help = "in the plane; a Couette section has a solid cylinder"},
+               {.name = "blade_thickness", .range = positive, .fallback = "3 mm", .help = "in the plane"},
+               {.name = "shaft_radius",
+                .range = positive,
+                .fallback = "10 mm",
+                .help = "in the plane: about which the blades stand; concrete there turns with them; with "
+                        "ends it goes up to the surface"},
+               {.name = bottom_gap.name, .range = positive, .example = "80 mm", .help = bottom_gap.help},
+               {.name = cover.name, .range = positive, .example = "80 mm", .help = cover.help}}};
 }
 
 Section test_section() {
   Section section{.name = "test",
                   .help = "The schedule: one constant speed, or with `speeds` a flow curve.",
-                  .keys = {{.name = "rest",
-                            .dimension = Dimension::time,
-                            .range = not_negative,
-                            .fallback = "0 s",
-                            .help = "before the vane turns"},
+                  .keys = {rest_key("0 s", "before the vane turns"),
                            {.name = "speed",
                             .dimension = Dimension::rotation,
                             .fallback = "0.25 rev/s",
                             .help = "constant; negative turns the other way"},
-                           {.name = "duration",
-                            .dimension = Dimension::time,
-                            .range = positive,
-                            .fallback = "20 s",
-                            .help = "at the constant speed"},
+                           duration_key("20 s", "at the constant speed"),
                            {.name = "speeds",
                             .dimension = Dimension::rotation,
                             .range = positive,
@@ -223,10 +212,10 @@ void check_cells(const Values& values, const Scene& scene) {
     const double least =
         std::min({scene.vane.bottom_gap, scene.vane.cover, scene.vane.height, scene.vane.radius});
     if (2.0 * across > least * (1.0 + 1e-9))
-      values.fail("model.cell",
-                  fmt::format("leaves less than two cells to the vane, its gap or its cover; allowed: at "
-                              "most \"{}\"",
-                              write_quantity(0.5 * least, Dimension::length)));
+      values.fail(
+          "model.cell",
+          fmt::format("leaves less than two cells to the vane, its gap or its cover; allowed: at most \"{}\"",
+                      write_quantity(0.5 * least, Dimension::length)));
     const double height = scene.vane.bottom_gap + scene.vane.height + scene.vane.cover;
     const double cells = R / across * height / across * two_pi * scene.vane.radius / scene.vane.blades / up;
     if (cells > most_cells_with_ends)
@@ -239,11 +228,7 @@ void check_cells(const Values& values, const Scene& scene) {
   const double points =
       couette ? gap / across * n_across
               : R / across * n_across * two_pi * scene.vane.radius / scene.vane.blades / up * n_up;
-  if (points > most_points)
-    values.fail("model.cell",
-                fmt::format("makes about {:.0e} points; allowed: at most {:.0e}, by larger cells or fewer "
-                            "points_per_cell",
-                            points, most_points));
+  check_points(values, points);
 }
 
 /// rad/s as rev/s, in the digits that a person would have written where those mean the same: "0.1 rev/s"
@@ -271,23 +256,17 @@ void read_schedule(const Values& values, Scene& scene) {
 }  // namespace
 
 ApparatusKeys keys() {
-  ApparatusKeys keys{.name = "icar_vane",
-                     .help = "The ICAR vane rheometer: a vane turning in a container of concrete.",
-                     .schema = mix_sections(),
-                     .presets = {},
-                     .settle = settle};
-  keys.schema.push_back(vane_section());
-  keys.schema.push_back(test_section());
-  keys.schema.push_back(
-      model_section({"couette", "plane", "cylindrical"},
-                    {.cell = "",
-                     .points_per_cell = "3",
-                     .cell_help = "1 mm for \"couette\", 5 mm for \"plane\", 9 mm for "
-                                  "\"cylindrical\", if left out; in the last two [along the radius (and the "
-                                  "height), around at the tips]",
-                     .points_help = "[across, up], or one number for each direction"}));
-  keys.schema.push_back(output_section());
-  return keys;
+  const Section model = model_section(
+      {"couette", "plane", "cylindrical"},
+      {.cell = "",
+       .points_per_cell = "3",
+       .cell_help = "1 mm for \"couette\", 5 mm for \"plane\", 9 mm for \"cylindrical\", if left out; in the "
+                    "last two [along the radius (and the height), around at the tips]",
+       .points_help = "[across, up], or one number for each direction"});
+  return {.name = "icar_vane",
+          .help = "The ICAR vane rheometer: a vane turning in a container of concrete.",
+          .schema = joined({mix_sections(), {vane_section(), test_section(), model, output_section()}}),
+          .settle = settle};
 }
 
 Scene read_scene(const Values& values) {

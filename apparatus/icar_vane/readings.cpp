@@ -38,14 +38,7 @@ VaneInput vane_input(const Scene& scene) {
   return in;
 }
 
-/// A run as the rows of the table see it.
-struct View {
-  using Sample = icar_vane::Sample;
-  const Scene& scene;
-  const Outcome& run;
-  Status status = run.status;
-  const Results& r = run.results;
-  const std::vector<Sample>& series = run.series;
+struct View : RunView<Scene, Outcome> {
   const VaneInput in = vane_input(scene);
 };
 
@@ -100,10 +93,10 @@ std::vector<std::string> agreement_lines(const View& v) {
   const double scale = std::abs(r.torque_end) > 0.0 ? std::abs(r.torque_end) : 1.0;
   const double wall = (r.torque_wall_end + momentum) / scale - r.torque_end / scale;
   const double power = (r.torque_power_end - r.torque_end) / scale;
-  std::vector<std::string> lines{fmt::format(
-      "on the wall     {:.4g} N.m ({:+.2f} % with the rate of angular momentum)   power/speed {:.4g} "
-      "N.m ({:+.2f} %)",
-      r.torque_wall_end, 100.0 * wall, r.torque_power_end, 100.0 * power)};
+  std::vector<std::string> lines{
+      fmt::format("on the wall     {:.4g} N.m ({:+.2f} % with the rate of angular momentum)   power/speed "
+                  "{:.4g} N.m ({:+.2f} %)",
+                  r.torque_wall_end, 100.0 * wall, r.torque_power_end, 100.0 * power)};
   if (std::max(std::abs(wall), std::abs(power)) > torques_must_agree)
     lines.push_back(
         "                the three torques differ by more than 1 %: not steady, or cells too large");
@@ -173,38 +166,38 @@ Rows<View> torque_rows() {
 
 Rows<View> instrument_rows() {
   const auto has_curve = [](V v) { return v.r.reiner_riwlin.has_value(); };
-  return {{.name = "reiner_riwlin.yield_stress_Pa",
-           .words = "yield stress by Reiner-Riwlin, as the instrument reports",
-           .value = [](V v) { return number(v.r.reiner_riwlin->yield_stress); },
-           .applies = has_curve},
-          {.name = "reiner_riwlin.plastic_viscosity_Pa_s",
-           .words = "plastic viscosity by Reiner-Riwlin, as the instrument reports",
-           .value = [](V v) { return number(v.r.reiner_riwlin->plastic_viscosity); },
-           .applies = has_curve},
-          {"flocculation_apparent_start", "flocculation state λ at the start, as read off the torque",
-           [](V v) { return number(v.r.flocculation_apparent_start); }},
-          {"alpha_apparent", "α as read off the decay", [](V v) { return number(v.r.alpha_apparent); }},
-          {"alpha_window_s", "time over which α is read",
-           [](V v) { return number(if_alpha(v, v.r.alpha_window)); }},
-          {"shear_rate_nominal_per_s", "nominal shear rate 2Ω/(1 − r²/R²), by which α is read",
-           [](V v) {
-             return number(v.scene.speeds.empty() ? std::optional(v.r.shear_rate_nominal) : std::nullopt);
-           }},
-          {"static_yield_stress_apparent_Pa", "T/(2πr²h) at the peak: apparent static yield stress",
-           [](V v) { return number(v.r.static_yield_stress_apparent); }},
-          {"dynamic_yield_stress_apparent_Pa",
-           "T/(2πr²h) at the end: apparent, with viscous part and flocculation left",
-           [](V v) { return number(v.r.dynamic_yield_stress_apparent); }},
-          {.name = "torque_couette_reference_N_m",
-           .words = "torque of a solid cylinder in the same container (Couette flow)",
-           .value = [](V v) { return number(v.r.torque_couette_reference); },
-           .lines = cylinder_lines},
-          {"torque_plane_N_m", "torque of the plane section times the height",
-           [](V v) { return number(v.r.torque_plane); }},
-          {.name = "end_factor",
-           .words = "torque over that of the plane section",
-           .value = [](V v) { return number(v.r.end_factor); },
-           .lines = end_lines}};
+  const Rows<View> of_a_curve{
+      {"reiner_riwlin.yield_stress_Pa", "yield stress by Reiner-Riwlin, as the instrument reports",
+       [](V v) { return number(v.r.reiner_riwlin->yield_stress); }},
+      {"reiner_riwlin.plastic_viscosity_Pa_s",
+       "plastic viscosity by Reiner-Riwlin, as the instrument reports",
+       [](V v) { return number(v.r.reiner_riwlin->plastic_viscosity); }}};
+  Rows<View> rows{
+      {"flocculation_apparent_start", "flocculation state λ at the start, as read off the torque",
+       [](V v) { return number(v.r.flocculation_apparent_start); }},
+      {"alpha_apparent", "α as read off the decay", [](V v) { return number(v.r.alpha_apparent); }},
+      {"alpha_window_s", "time over which α is read",
+       [](V v) { return number(if_alpha(v, v.r.alpha_window)); }},
+      {"shear_rate_nominal_per_s", "nominal shear rate 2Ω/(1 − r²/R²), by which α is read",
+       [](V v) {
+         return number(v.scene.speeds.empty() ? std::optional(v.r.shear_rate_nominal) : std::nullopt);
+       }},
+      {"static_yield_stress_apparent_Pa", "T/(2πr²h) at the peak: apparent static yield stress",
+       [](V v) { return number(v.r.static_yield_stress_apparent); }},
+      {"dynamic_yield_stress_apparent_Pa",
+       "T/(2πr²h) at the end: apparent, with viscous part and flocculation left",
+       [](V v) { return number(v.r.dynamic_yield_stress_apparent); }},
+      {.name = "torque_couette_reference_N_m",
+       .words = "torque of a solid cylinder in the same container (Couette flow)",
+       .value = [](V v) { return number(v.r.torque_couette_reference); },
+       .lines = cylinder_lines},
+      {"torque_plane_N_m", "torque of the plane section times the height",
+       [](V v) { return number(v.r.torque_plane); }},
+      {.name = "end_factor",
+       .words = "torque over that of the plane section",
+       .value = [](V v) { return number(v.r.end_factor); },
+       .lines = end_lines}};
+  return table_of<View>(only_where<View>(has_curve, of_a_curve), rows);
 }
 
 /// What went in, to be read beside what the instrument would report.
@@ -334,16 +327,15 @@ std::vector<std::string> remarks_on(const Scene& scene, const Results& r) {
   std::vector<std::string> remarks;
   if (r.reiner_riwlin)
     remarks.push_back(fmt::format(
-        "From this curve an instrument reports a yield stress of {:.4g} Pa and a plastic viscosity of "
-        "{:.4g} Pa·s; {:.4g} Pa and {:.4g} Pa·s went in.",
+        "From this curve an instrument reports a yield stress of {:.4g} Pa and a plastic viscosity of {:.4g} "
+        "Pa·s; {:.4g} Pa and {:.4g} Pa·s went in.",
         r.reiner_riwlin->yield_stress, r.reiner_riwlin->plastic_viscosity, scene.mix.tau_0, scene.mix.mu));
   if (scene.mix.thixotropy && scene.rest > 0.0 && scene.speeds.empty())
     remarks.push_back(
         "The apparent yield stresses are T/(2πr²h), as the instrument reads them: in rested concrete the one "
-        "at the "
-        "end still holds what flocculation is left there and the viscous part, so it lies far above the "
-        "dynamic "
-        "yield stress that went in. It is what the instrument would say, not an error of the computation.");
+        "at the end still holds what flocculation is left there and the viscous part, so it lies far above "
+        "the dynamic yield stress that went in. It is what the instrument would say, not an error of the "
+        "computation.");
   return remarks;
 }
 
@@ -401,9 +393,9 @@ std::vector<std::string> uses_with_ends(const Scene& scene) {
   lines.push_back(
       grid.n_thick > 0
           ? fmt::format("blades: {} of {:g} mm", scene.vane.blades, scene.vane.blade_thickness * mm)
-          : fmt::format("blades: {} without thickness (thinner than half a cell); 3 mm of the "
-                        "ICAR's take 3 % more",
-                        scene.vane.blades));
+          : fmt::format(
+                "blades: {} without thickness (thinner than half a cell); 3 mm of the ICAR's take 3 % more",
+                scene.vane.blades));
   lines.push_back(fmt::format(
       "ends: {:.3g} mm to the floor, {:.3g} mm of cover, a shaft of {:.3g} mm (faces of the grid)",
       grid.bottom_gap() * mm, grid.cover() * mm, grid.shaft_radius() * mm));
@@ -415,19 +407,11 @@ std::vector<std::string> uses_with_ends(const Scene& scene) {
   return lines;
 }
 
-}  // namespace
-
-std::vector<Headline> headlines() { return headlines_of(readings()); }
-std::vector<Described> glossary() {
-  return described(readings(), profile_columns, curve_columns, record_columns);
-}
-
 scene::Outcome run_and_read(Scene scene, const RunOptions& options, const Observer& observer) {
   scene.with_reference = scene.with_reference && !options.coarser;
   const Outcome raw = run(scene, observer);
-  scene::Outcome outcome = outcome_of(raw);
-  read_into(readings(), View{scene, raw}, outcome);
-  outcome.asked = asked_text(options.measured.name, test_text(scene), rest_told(scene));
+  scene::Outcome outcome =
+      outcome_of(readings(), View{{scene, raw}}, options.measured.name, test_text(scene));
   outcome.remarks = remarks_on(scene, raw.results);
   outcome.stage = stage_of(scene, raw.series);
   outcome.tables = {profile_of(raw.results.profile), record_of(scene, raw)};
@@ -450,6 +434,14 @@ std::vector<std::string> uses(const Scene& scene) {
   lines.push_back(flow_curve_use(scene));
   add_model_uses(scene.model, lines);
   return lines;
+}
+
+}  // namespace
+
+Apparatus apparatus() {
+  return make_apparatus<Scene>(
+      apparatus_of(keys(), "vane", readings(), profile_columns, curve_columns, record_columns), read_scene,
+      uses, run_and_read, estimate);
 }
 
 }  // namespace tremie::icar_vane

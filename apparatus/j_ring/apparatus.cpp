@@ -1,8 +1,6 @@
 // The J-ring: the cone is lifted inside a ring of bars, and the spread and the step that the bars make are read. The spread
 // without the ring comes from a second run of the same scene.
 
-#include "apparatus/j_ring/apparatus.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
@@ -45,17 +43,13 @@ void settle(Values& values) {
 }
 
 ApparatusKeys keys() {
-  ApparatusKeys keys{.name = "j_ring",
-                     .help = "The J-ring test of EN 12350-12.",
-                     .schema = mix_sections(),
-                     .presets = {},
-                     .settle = settle};
-  for (const Section& section : cone::sections()) keys.schema.push_back(section);
-  keys.schema.push_back(ring_section());
-  keys.schema.push_back(floor_section());
-  keys.schema.push_back(model_section({"quarter", "full"}));
-  keys.schema.push_back(output_section());
-  return keys;
+  return {.name = "j_ring",
+          .help = "The J-ring test of EN 12350-12.",
+          .schema = joined(
+              {mix_sections(),
+               cone::sections(),
+               {ring_section(), floor_section(), model_section({"quarter", "full"}), output_section()}}),
+          .settle = settle};
 }
 
 /// The bars must stand clear of the cone and of each other.
@@ -94,33 +88,28 @@ std::optional<double> spread_lost(const View& v) {
 const std::vector<Reading<View>>& readings() {
   using V = const View&;
   using S = const cone::Sample&;
-  static const auto table = [] {
-    Reading<View> t500 = cone::time_row<View>("t500_s", "t500, time to a diameter of 500 mm", "t500",
-                                              [](V v) { return number(v.r.t500); });
-    t500.headline = 3;
-    return table_of<View>(
-        time_column<View>(),
-        Rows<View>{cone::spread_row<View>(),
-                   t500,
-                   {.name = "step_mm",
-                    .words = "step, mean height inside the ring less that over 50 mm outside of it",
-                    .value = [](V v) { return number(v.r.step, mm); },
-                    .label = "step",
-                    .digits = 1,
-                    .answer = [](V) { return std::optional<std::string>("step"); },
-                    .headline = 2,
-                    .headline_digits = 1,
-                    .measurable = true},
-                   {.name = "spread_lost_mm",
-                    .words = "spread without the ring less that with it",
-                    .value = [](V v) { return number(spread_lost(v), mm); },
-                    .label = "spread lost",
-                    .none = [](V) { return std::string("not known: a run did not come to its end"); },
-                    .measurable = true},
-                   {"height_mm", "height at the centre", [](V v) { return number(v.r.height, mm); },
-                    [](V, S s) { return s.height * mm; }}},
-        stopped_row<View>(), flocculation_rows<View>(), motion_columns<View>(), step_columns<View>());
-  }();
+  static const auto table = table_of<View>(
+      time_column<View>(),
+      Rows<View>{cone::spread_row<View>(),
+                 cone::t500_row<View>(),
+                 {.name = "step_mm",
+                  .words = "step, mean height inside the ring less that over 50 mm outside of it",
+                  .value = [](V v) { return number(v.r.step, mm); },
+                  .label = "step",
+                  .digits = 1,
+                  .answer = [](V) { return std::optional<std::string>("step"); },
+                  .headline = 2,
+                  .headline_digits = 1,
+                  .measurable = true},
+                 {.name = "spread_lost_mm",
+                  .words = "spread without the ring less that with it",
+                  .value = [](V v) { return number(spread_lost(v), mm); },
+                  .label = "spread lost",
+                  .none = [](V) { return std::string("not known: a run did not come to its end"); },
+                  .measurable = true},
+                 {"height_mm", "height at the centre", [](V v) { return number(v.r.height, mm); },
+                  [](V, S s) { return s.height * mm; }}},
+      stopped_row<View>(), flocculation_rows<View>(), motion_columns<View>(), step_columns<View>());
   return table;
 }
 
@@ -145,19 +134,16 @@ std::string wide_cells_at_the_bars(const View& v) {
 /// The same scene without the ring; its progress is shown, its frames are nobody's.
 cone::Outcome run_without_ring(cone::Scene scene, const Observer& observer) {
   scene.ring.reset();
-  return cone::run(
-      scene, {.on_progress = observer.on_progress, .on_frame = {}, .interrupted = observer.interrupted});
+  return cone::run(scene, {.on_progress = observer.on_progress, .interrupted = observer.interrupted});
 }
 
 Outcome run(const cone::Scene& scene, const RunOptions& options, const Observer& observer) {
   const cone::Outcome plain = run_without_ring(scene, observer), raw = cone::run(scene, observer);
   const View view{{scene, raw}, plain};
-  Outcome outcome = outcome_of(raw);
-  read_into(readings(), view, outcome);
+  Outcome outcome = outcome_of(readings(), view, options.measured.name, "J-ring");
   add_reasons<View>({inertia_at_the_bars, wide_cells_at_the_bars}, view, outcome.checks.reasons);
   for (const std::string& reason : plain.checks.reasons)
     outcome.checks.reasons.push_back("without the ring: " + reason);
-  outcome.asked = asked_text(options.measured.name, "J-ring", rest_told(scene));
   outcome.moving_at_end = !raw.results.stopped_at;
   if (raw.results.spread < scene.ring->diameter && !outcome.moving_at_end)
     outcome.remarks.push_back(
@@ -188,11 +174,8 @@ SizeEstimate estimate(const cone::Scene& scene) {
 }  // namespace
 
 Apparatus apparatus() {
-  return make_apparatus<cone::Scene>({.keys = keys(),
-                                      .words = "J-ring",
-                                      .headlines = headlines_of(readings()),
-                                      .glossary = described(readings())},
-                                     read_scene, uses, run, estimate);
+  return make_apparatus<cone::Scene>(apparatus_of(keys(), "J-ring", readings()), read_scene, uses, run,
+                                     estimate);
 }
 
 }  // namespace tremie::j_ring

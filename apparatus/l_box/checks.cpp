@@ -11,6 +11,8 @@
 namespace tremie::l_box {
 namespace {
 
+using View = scene::RunView<Scene, Outcome>;
+
 /// The last line of the series that is at least standing_lasts old; the end of the series where there is none.
 std::vector<Sample>::const_iterator line_before(const std::vector<Sample>& series) {
   const auto old = std::find_if(series.rbegin(), series.rend(), [&](const Sample& s) {
@@ -19,13 +21,13 @@ std::vector<Sample>::const_iterator line_before(const std::vector<Sample>& serie
   return old == series.rend() ? series.end() : std::prev(old.base());
 }
 
-std::string inertia_at_the_bars(const Judged& j) {
+std::string inertia_at_the_bars(const View& j) {
   if (j.scene.bars == 0) return {};
-  return parts::bars_with_inertia(j.scene.mix, j.scene.model.law, fastest_front(j.run.series), bar_diameter);
+  return parts::bars_with_inertia(j.scene.mix, j.scene.model.law, fastest_front(j.series), bar_diameter);
 }
 
 /// The drag of a bar between cells that resolve it and those for which it was measured; and a gap wants two cells.
-std::string wide_cells_at_the_bars(const Judged& j) {
+std::string wide_cells_at_the_bars(const View& j) {
   return j.scene.bars > 0 ? parts::cells_between_bars(j.scene.model.cell[0], bar_diameter) : std::string{};
 }
 
@@ -33,9 +35,9 @@ std::string wide_cells_at_the_bars(const Judged& j) {
 /// up to 40 % off (lbox_cells.md).
 constexpr double least_behind_the_gate = 3.5, least_at_the_end = 1.0, least_along = 3.0;  // [cells]
 
-std::string few_cells(const Judged& j) {
+std::string few_cells(const View& j) {
   const auto [across, up] = j.scene.model.cell;
-  const Results& r = j.run.results;
+  const Results& r = j.r;
   const char* mend = ": a smaller model.cell";
   if (r.h1 < least_behind_the_gate * up)
     return fmt::format("the concrete behind the gate is {:.2g} cells deep, less than {:.2g}{}", r.h1 / up,
@@ -52,10 +54,10 @@ std::string few_cells(const Judged& j) {
 /// In space a thin bed of a fluid mix may level beyond what its yield stress lets it, on cells with few points, or stop
 /// before cells that fast flow left half full have been mended (lbox_bars.md): at 50 Pa the drop is 1.16 times what the
 /// yield stress holds, with bars and without, at 20 Pa 1.37 and 1.63 times, and the ratio 0.07 and 0.15 too small.
-std::string wrong_level(const Judged& j) {
+std::string wrong_level(const View& j) {
   constexpr double least = 0.6, most = 1.3;
-  const Results& r = j.run.results;
-  if (j.run.status != Status::completed || !r.h2 || !in_space(j.scene)) return {};
+  const Results& r = j.r;
+  if (j.status != Status::completed || !r.h2 || !in_space(j.scene)) return {};
   const Stretch gate = behind_the_gate(j.scene.box), end = at_the_end(j.scene.box);
   const double length = 0.5 * (end.low + end.high - gate.low - gate.high);
   const double right = drop_at_rest(j.scene, 0.5 * (r.h1 + *r.h2), length);
@@ -105,8 +107,8 @@ std::optional<double> ratio_change(const std::vector<Sample>& series) {
 }
 
 void add_reasons(const Scene& scene, Outcome& outcome) {
-  scene::add_reasons<Judged>({inertia_at_the_bars, wide_cells_at_the_bars, few_cells, wrong_level},
-                             {scene, outcome}, outcome.checks.reasons);
+  scene::add_reasons<View>({inertia_at_the_bars, wide_cells_at_the_bars, few_cells, wrong_level},
+                           {scene, outcome}, outcome.checks.reasons);
 }
 
 }  // namespace tremie::l_box

@@ -26,12 +26,6 @@ double drop_at_rest(const Scene& scene, double h, double length);
 /// The fastest that the front was [m/s].
 double fastest_front(const std::vector<Sample>& series);
 
-/// A run and its scene, as the checks look at them.
-struct Judged {
-  const Scene& scene;
-  const Outcome& run;
-};
-
 /// Adds the reasons of all checks.
 void add_reasons(const Scene& scene, Outcome& outcome);
 

@@ -11,8 +11,6 @@ using namespace scene;
 
 namespace {
 
-constexpr double most_points = 1e8;
-
 Section box_section() {
   return {
       .name = "box",
@@ -27,22 +25,9 @@ Section box_section() {
 Section test_section() {
   return {.name = "test",
           .help = "The schedule.",
-          .keys = {{.name = "rest",
-                    .dimension = Dimension::time,
-                    .range = not_negative,
-                    .fallback = "60 s",
-                    .help = "in the column, before the gate is lifted"},
-                   {.name = "duration",
-                    .dimension = Dimension::time,
-                    .range = positive,
-                    .fallback = "180 s",
-                    .help = "at most; a flow that has come to rest ends earlier"},
-                   {.name = "gate_speed",
-                    .dimension = Dimension::speed,
-                    .range = positive,
-                    .words = {"instant"},
-                    .fallback = "30 cm/s",
-                    .help = "of the lift"},
+          .keys = {rest_key("60 s", "in the column, before the gate is lifted"),
+                   duration_key("180 s"),
+                   lift_key("gate_speed", "30 cm/s", "of the lift"),
                    {.name = "bars",
                     .kind = Kind::integer,
                     .range = between(0, 3),
@@ -94,32 +79,22 @@ void check_cells(const Values& values, const Scene& scene) {
   const auto [n_across, n_up] = scene.model.points_per_cell;
   const double section = box.column_length / across * n_across * box.column_height / up * n_up;
   const double points = in_the_plane(values) ? section : section * box.width / across * n_up;
-  if (points > most_points) {
-    values.fail("model.cell",
-                fmt::format("makes about {:.0e} points; allowed: at most {:.0e}, by larger cells or fewer "
-                            "points_per_cell",
-                            points, most_points));
-  }
+  check_points(values, points);
 }
 
 }  // namespace
 
 ApparatusKeys keys() {
-  ApparatusKeys keys{.name = "l_box",
-                     .help = "The L-box test of EN 12350-10.",
-                     .schema = mix_sections("5 MPa"),
-                     .presets = {},
-                     .settle = settle};
-  keys.schema.push_back(box_section());
-  keys.schema.push_back(test_section());
-  keys.schema.push_back(model_section({"plane", "plane_with_side_walls", "half", "full"},
+  const Section model = model_section({"plane", "plane_with_side_walls", "half", "full"},
                                       {.cell = "10 mm",
                                        .points_per_cell = "[16, 4]",
                                        .cell_help = "[across, up], or one length; 15 mm in three dimensions",
                                        .points_help = "[across, up], or one number for each direction; "
-                                                      "[8, 4] in three dimensions"}));
-  keys.schema.push_back(output_section());
-  return keys;
+                                                      "[8, 4] in three dimensions"});
+  return {.name = "l_box",
+          .help = "The L-box test of EN 12350-10.",
+          .schema = joined({mix_sections("5 MPa"), {box_section(), test_section(), model, output_section()}}),
+          .settle = settle};
 }
 
 Scene read_scene(const Values& values) {

@@ -2,7 +2,6 @@
 
 #include <omp.h>
 
-#include "apparatus/l_box/runs.hpp"
 #include "apparatus/l_box/set_up.hpp"
 
 namespace tremie::l_box {

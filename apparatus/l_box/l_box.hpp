@@ -83,16 +83,8 @@ scene::SizeEstimate estimate(const Scene& scene);
 scene::ApparatusKeys keys();
 Scene read_scene(const scene::Values& values);
 
-/// Runs the test and reads it.
-scene::Outcome run_and_read(const Scene& scene, const scene::RunOptions& options,
-                            const scene::Observer& observer);
-
-/// What error bars are for, and what the names of readings mean.
-std::vector<scene::Headline> headlines();
-std::vector<scene::Described> glossary();
-
-/// What the scene carries and what it leaves out, a line each.
-std::vector<std::string> uses(const Scene& scene);
+/// The apparatus for the registry.
+scene::Apparatus apparatus();
 
 /// Whether the box is computed in three dimensions.
 bool in_space(const Scene& scene);

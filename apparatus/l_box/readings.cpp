@@ -18,41 +18,28 @@ std::string class_of(const Scene& scene, const Results& r) {
   return r.passing_ratio ? passing_class(*r.passing_ratio, scene.bars) : "";
 }
 
-/// A run as the rows of the table see it.
-struct View {
-  using Sample = l_box::Sample;
-  const Scene& scene;
-  const Outcome& run;
-  Status status = run.status;
-  const Results& r = run.results;
-  const std::vector<Sample>& series = run.series;
-};
+using View = RunView<Scene, Outcome>;
 
 std::vector<Chart> charts_of(bool thixotropic) {
-  std::vector<Chart> charts{
-      {"front.svg", "Front", time_label, "distance from the gate (mm)", {"front_mm"}, {}},
-      {"depths.svg",
-       "Depths",
-       time_label,
-       "depth (mm)",
-       {"h1_mm", "h2_mm"},
-       {},
-       {"H1, behind the gate", "H2, at the channel's end"}},
-      {"profile.svg",
-       "Profile at the end",
-       "distance from the gate (mm)",
-       "depth (mm)",
-       {"depth_mm"},
-       {},
-       {},
-       "profile.csv"}};
+  std::vector<Chart> charts{{"front.svg", "Front", time_label, "distance from the gate (mm)", {"front_mm"}},
+                            {"depths.svg",
+                             "Depths",
+                             time_label,
+                             "depth (mm)",
+                             {"h1_mm", "h2_mm"},
+                             {},
+                             {"H1, behind the gate", "H2, at the channel's end"}},
+                            {"profile.svg",
+                             "Profile at the end",
+                             "distance from the gate (mm)",
+                             "depth (mm)",
+                             {"depth_mm"},
+                             {},
+                             {},
+                             "profile.csv"}};
   if (thixotropic)
-    charts.push_back({"flocculation.svg",
-                      "Flocculation",
-                      time_label,
-                      "mean flocculation state λ",
-                      {"flocculation_mean"},
-                      {}});
+    charts.push_back(
+        {"flocculation.svg", "Flocculation", time_label, "mean flocculation state λ", {"flocculation_mean"}});
   return charts;
 }
 
@@ -196,16 +183,9 @@ std::string judged(const Scene& scene, const Results& r) {
              : "No class: the passing ratio is below 0.80.";
 }
 
-}  // namespace
-
-std::vector<Headline> headlines() { return headlines_of(readings()); }
-std::vector<Described> glossary() { return described(readings(), profile_columns); }
-
 scene::Outcome run_and_read(const Scene& scene, const RunOptions& options, const Observer& observer) {
   const Outcome raw = run(scene, observer);
-  scene::Outcome outcome = outcome_of(raw);
-  read_into(readings(), View{scene, raw}, outcome);
-  outcome.asked = asked_text(options.measured.name, "L-box", rest_told(scene));
+  scene::Outcome outcome = outcome_of(readings(), View{scene, raw}, options.measured.name, "L-box");
   outcome.moving_at_end = !raw.results.stopped_at;
   outcome.judged = judged(scene, raw.results);
   if (!raw.results.passing_ratio && !ended_early(raw.status))
@@ -237,6 +217,13 @@ std::vector<std::string> uses(const Scene& scene) {
   lines.push_back(plane ? "third dimension: left out (model.space)" : "third dimension: computed");
   add_model_uses(scene.model, lines);
   return lines;
+}
+
+}  // namespace
+
+Apparatus apparatus() {
+  return make_apparatus<Scene>(apparatus_of(keys(), "L-box", readings(), profile_columns), read_scene, uses,
+                               run_and_read, estimate);
 }
 
 }  // namespace tremie::l_box

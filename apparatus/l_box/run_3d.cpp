@@ -1,5 +1,4 @@
 #include "apparatus/l_box/implicit_run.hpp"
-#include "apparatus/l_box/runs.hpp"
 
 namespace tremie::l_box {
 

@@ -113,4 +113,8 @@ std::vector<BoundaryPoint<Geometry::dim>> walls_inside(const Scene& scene,
   return points;
 }
 
+/// The runs in the box's two geometries, compiled apart.
+Outcome run_plane(const Scene& scene, const scene::Observer& observer);
+Outcome run_3d(const Scene& scene, const scene::Observer& observer);
+
 }  // namespace tremie::l_box

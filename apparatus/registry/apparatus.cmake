@@ -1,13 +1,13 @@
 # The registry: the apparatus that the program has. Each is a folder of apparatus/ with a library tremie_<name> and a
-# function tremie::<name>::apparatus() in its apparatus.hpp.
+# function tremie::<name>::apparatus().
 set(TREMIE_APPARATUS slump_flow l_box j_ring icar_vane cell)
 
 # tremie_registry(FILE NAME...): writes the source of scene::all_apparatus() for these apparatus.
 function(tremie_registry file)
-  set(includes "")
+  set(declared "")
   set(calls "")
   foreach(name ${ARGN})
-    string(APPEND includes "#include \"apparatus/${name}/apparatus.hpp\"\n")
+    string(APPEND declared "namespace tremie::${name} {\nscene::Apparatus apparatus();\n}\n")
     list(APPEND calls "${name}::apparatus()")
   endforeach()
   list(JOIN calls ", " calls)

@@ -16,12 +16,6 @@ const Apparatus& apparatus_named(const std::string& name) {
   return *std::find_if(all.begin(), all.end(), [&](const Apparatus& a) { return a.keys.name == name; });
 }
 
-std::vector<ApparatusKeys> all_keys() {
-  std::vector<ApparatusKeys> keys;
-  for (const Apparatus& apparatus : all_apparatus()) keys.push_back(apparatus.keys);
-  return keys;
-}
-
 Scene build(Loaded loaded) {
   Scene scene;
   scene.name = loaded.name;
@@ -52,6 +46,12 @@ auto as_input_error(const Scene& scene, Call call) {
 }
 
 }  // namespace
+
+std::vector<ApparatusKeys> all_keys() {
+  std::vector<ApparatusKeys> keys;
+  for (const Apparatus& apparatus : all_apparatus()) keys.push_back(apparatus.keys);
+  return keys;
+}
 
 Scene read(const std::filesystem::path& path, const std::vector<std::string>& overrides,
            const std::string& command) {

@@ -37,6 +37,9 @@ struct Scene {
 /// Every apparatus.
 const std::vector<Apparatus>& all_apparatus();
 
+/// The keys of each.
+std::vector<ApparatusKeys> all_keys();
+
 /// Reads and checks a scene that this command of tremie runs; empty: any. `overrides` are --set arguments,
 /// "mix.yield_stress=61 Pa". Throws InputError.
 Scene read(const std::filesystem::path& path, const std::vector<std::string>& overrides = {},

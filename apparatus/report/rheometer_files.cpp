@@ -6,16 +6,9 @@
 
 namespace tremie::cli {
 
-nlohmann::ordered_json summary_of(const scene::Outcome& outcome) {
-  auto json = report::run_summary(outcome);
-  auto& checks = json["checks"];
-  for (const char* key : {"volume_change", "mass_error", "unconverged_steps", "points_lost",
-                          "max_speed_end_m_per_s", "stability_limit_exceeded"})
-    checks[key] = nullptr;
-  for (const char* key : {"cells_active", "bytes_per_point"}) json["cost"][key] = nullptr;
-  if (outcome.cost.points == 0)
-    for (const char* key : {"steps", "points", "simulated_s"}) json["cost"][key] = nullptr;
-  return json;
+nlohmann::ordered_json summary_of(scene::Outcome outcome) {
+  outcome.has_points = false;
+  return report::run_summary(outcome);
 }
 
 HeldInterrupts::HeldInterrupts() {

@@ -12,7 +12,7 @@ namespace tremie::cli {
 
 /// The blocks of summary.json that every apparatus has, null where a rheometer has no such thing (points
 /// lost, cells).
-nlohmann::ordered_json summary_of(const scene::Outcome& outcome);
+nlohmann::ordered_json summary_of(scene::Outcome outcome);
 
 /// While it lives, an interrupt waits: files are written to their end, or their folder taken away, in less
 /// than a second or two. It ends the program where the hold ends.

@@ -51,6 +51,16 @@ Json cost_json(const Cost& cost) {
           {"simulated_s", cost.simulated}};
 }
 
+/// Null where there are no points: what is told of points, cells and steps.
+void leave_out_points(bool steps_too, Json& summary) {
+  for (const char* key : {"volume_change", "mass_error", "unconverged_steps", "points_lost",
+                          "max_speed_end_m_per_s", "stability_limit_exceeded"})
+    summary["checks"][key] = nullptr;
+  for (const char* key : {"cells_active", "bytes_per_point"}) summary["cost"][key] = nullptr;
+  if (steps_too)
+    for (const char* key : {"steps", "points", "simulated_s"}) summary["cost"][key] = nullptr;
+}
+
 Json error_json(const scene::ErrorEstimate& error) {
   Json json = Json::object();
   for (const auto& bar : error.bars) json[bar.name] = bar.error;
@@ -62,15 +72,7 @@ Json error_json(const scene::ErrorEstimate& error) {
 }  // namespace
 
 const char* status_name(Status status) {
-  switch (status) {
-    case Status::completed:
-      return "completed";
-    case Status::interrupted:
-      return "interrupted";
-    case Status::failed:
-      return "failed";
-  }
-  return "failed";
+  return status == Status::completed ? "completed" : status == Status::interrupted ? "interrupted" : "failed";
 }
 
 Json run_summary(const scene::Outcome& outcome) {
@@ -82,6 +84,7 @@ Json run_summary(const scene::Outcome& outcome) {
   json["results"] = to_json(outcome.results);
   json["checks"] = checks_json(outcome.checks);
   json["cost"] = cost_json(outcome.cost);
+  if (!outcome.has_points) leave_out_points(outcome.cost.points == 0, json);
   if (outcome.error) json["error"] = error_json(*outcome.error);
   return json;
 }

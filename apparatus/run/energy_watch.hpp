@@ -3,9 +3,10 @@
 // Whether steps make energy: what passes a stability limit that nobody has written down does so long before
 // its points run away, and so do thin films of water, whose cells hold a point or two.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "apparatus/run/body_readings.hpp"
 #include "apparatus/run/step_settings.hpp"
@@ -50,12 +51,9 @@ class EnergyWatch {
   /// Two per cent of what the cone stands for are more than the readings' own error.
   void tell(Checks& checks) const {
     if (!(gained_ > 0.02)) return;
-    char text[160];
-    std::snprintf(
-        text, sizeof text,
-        "the concrete gained %.3g %% of the energy that it started with: the steps are not stable%s",
-        100.0 * gained_, ran_away() ? "; the run ends there" : "");
-    checks.reasons.push_back(text);
+    checks.reasons.push_back(fmt::format(
+        "the concrete gained {:.3g} % of the energy that it started with: the steps are not stable{}",
+        100.0 * gained_, ran_away() ? "; the run ends there" : ""));
   }
 
  private:

@@ -9,6 +9,7 @@ namespace tremie::experiment {
 /// What an apparatus' own run hands back, in SI units. SampleOfRun: a line of the series, with its `time` and `time_step` [s].
 template <class ResultsOfRun, class SampleOfRun>
 struct Record {
+  using Results = ResultsOfRun;
   using Sample = SampleOfRun;
   Status status = Status::completed;
   ResultsOfRun results = {};

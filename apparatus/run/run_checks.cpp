@@ -29,22 +29,22 @@ std::int64_t points_lost(const std::array<Axis, D>& axes, const Points<D>& point
 /// Why what was counted is not to be trusted.
 void tell_reasons(std::int64_t steps, const std::vector<double>& lambda, Checks& checks) {
   if (checks.unconverged_steps > 0)
-    checks.reasons.push_back(std::to_string(checks.unconverged_steps) + " of " + std::to_string(steps) +
-                             " steps did not converge to the tolerance");
+    checks.reasons.push_back(
+        fmt::format("{} of {} steps did not converge to the tolerance", checks.unconverged_steps, steps));
   const auto infinite =
       std::count_if(lambda.begin(), lambda.end(), [](double l) { return !std::isfinite(l * l); });
   if (infinite > 0)
     checks.reasons.push_back(
-        "the flocculation state is infinite in " + std::to_string(infinite) +
-        " points: a smaller mix.thixotropy.structuration_rate over mix.yield_stress, or a shorter test.rest");
+        fmt::format("the flocculation state is infinite in {} points: a smaller "
+                    "mix.thixotropy.structuration_rate over mix.yield_stress, or a shorter test.rest",
+                    infinite));
   if (checks.points_lost > 0)
-    checks.reasons.push_back(std::to_string(checks.points_lost) +
-                             " points left the domain or are not finite");
+    checks.reasons.push_back(fmt::format("{} points left the domain or are not finite", checks.points_lost));
   if (checks.cells_in_a_step > 1.0) {
     checks.stability_limit_exceeded = true;
-    checks.reasons.push_back("model.time_step is too long: a point crossed " +
-                             std::to_string(std::lround(std::ceil(checks.cells_in_a_step))) +
-                             " cells in a step; up to one is trusted");
+    checks.reasons.push_back(
+        fmt::format("model.time_step is too long: a point crossed {} cells in a step; up to one is trusted",
+                    std::lround(std::ceil(checks.cells_in_a_step))));
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <stdexcept>
 
@@ -42,30 +43,13 @@ std::string allowed_text(const Key& key) {
 /// The sizes that a quantity other than 0 may have, in SI: some orders of magnitude beyond all concretes and tests, and
 /// well within what can be computed with.
 Range sizes_of(Dimension dimension) {
-  switch (dimension) {
-    case Dimension::length:
-      return between(1e-9, 1e2);
-    case Dimension::time:
-      return between(1e-9, 1e9);
-    case Dimension::speed:
-      return between(1e-9, 1e3);
-    case Dimension::pressure:
-      return between(1e-9, 1e13);
-    case Dimension::density:
-      return between(1e-3, 1e6);
-    case Dimension::rate:
-    case Dimension::rotation:
-      return between(1e-12, 1e6);
-    case Dimension::angle:
-      return between(0.0, 1e6);
-    case Dimension::viscosity:
-    case Dimension::structuration:
-    case Dimension::consistency:
-    case Dimension::torque:
-    case Dimension::acceleration:
-      break;
-  }
-  return between(1e-12, 1e9);
+  static const std::map<Dimension, Range> sizes{
+      {Dimension::length, between(1e-9, 1e2)},    {Dimension::time, between(1e-9, 1e9)},
+      {Dimension::speed, between(1e-9, 1e3)},     {Dimension::pressure, between(1e-9, 1e13)},
+      {Dimension::density, between(1e-3, 1e6)},   {Dimension::rate, between(1e-12, 1e6)},
+      {Dimension::rotation, between(1e-12, 1e6)}, {Dimension::angle, between(0.0, 1e6)}};
+  const auto found = sizes.find(dimension);
+  return found == sizes.end() ? between(1e-12, 1e9) : found->second;
 }
 
 void check_size(const Key& key, double value, const std::string& written) {
@@ -102,8 +86,7 @@ std::string range_hint(const Key& key, const std::string& text) {
     if (text.find(mark) != std::string::npos)
       return fmt::format(
           "; a scene has one value, tremie study runs it over a range: [[factor]] with key = \"….{}\" and "
-          "range = "
-          "[\"…\", \"…\"]",
+          "range = [\"…\", \"…\"]",
           key.name);
   return {};
 }

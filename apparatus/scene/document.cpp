@@ -145,6 +145,10 @@ std::string describe(const Origin& origin) {
   return prefix + origin.file;
 }
 
+void complain(const Node& node, const std::string& key, const std::string& what) {
+  throw InputError(fmt::format("{}: {}: {}", describe(node.origin), key, what));
+}
+
 Node parse_text(std::string_view text, const std::string& name, Layer layer) {
   refuse_deep_keys(text, name);
   try {

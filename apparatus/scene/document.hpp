@@ -50,6 +50,9 @@ Node parse_text(std::string_view text, const std::string& name, Layer layer);
 Node* find(Node& node, std::string_view key);
 const Node* find(const Node& node, std::string_view key);
 
+/// Throws InputError "lab.toml:3: KEY: WHAT", with the place of the node.
+[[noreturn]] void complain(const Node& node, const std::string& key, const std::string& what);
+
 /// One --set argument, "mix.yield_stress=61 Pa".
 struct Override {
   std::vector<std::string> path;  ///< {"mix", "yield_stress"}

@@ -29,6 +29,12 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
+Schema joined(std::initializer_list<Schema> parts) {
+  Schema schema;
+  for (const Schema& part : parts) schema.insert(schema.end(), part.begin(), part.end());
+  return schema;
+}
+
 bool contains(const Range& range, double value) {
   const bool above = range.low_open ? value > range.low : value >= range.low;
   const bool below = range.high_open ? value < range.high : value <= range.high;

@@ -20,6 +20,7 @@
 // registry of apparatus.
 
 #include <functional>
+#include <initializer_list>
 #include <limits>
 #include <optional>
 #include <string>
@@ -94,6 +95,9 @@ struct Section {
 
 using Schema = std::vector<Section>;
 
+/// The sections of several schemas, in their order.
+Schema joined(std::initializer_list<Schema> parts);
+
 /// A named set of values under the scene's own.
 struct Preset {
   std::string name;
@@ -105,7 +109,7 @@ struct ApparatusKeys {
   std::string name;  ///< the scene's `apparatus = `
   std::string help;
   Schema schema;  ///< its sections; a first one without a name adds keys to the top of the file
-  std::vector<Preset> presets;
+  std::vector<Preset> presets = {};
   /// Rules over several keys: derive, drop, or fail. May be empty.
   std::function<void(Values&)> settle;
   std::string command = "run";  ///< the command of tremie that runs it

@@ -51,19 +51,11 @@ std::string with_comment(std::string line, const std::string& comment) {
 }
 
 std::string origin_comment(const Value& value) {
-  const auto layer = [&]() -> std::string {
-    switch (value.origin.layer) {
-      case Layer::fallback:
-        return "default";
-      case Layer::preset:
-        return "preset";
-      case Layer::scene:
-        return "";
-      case Layer::command_line:
-        return "--set";
-    }
-    return "";
-  }();
+  const Layer from = value.origin.layer;
+  const std::string layer = from == Layer::fallback       ? "default"
+                            : from == Layer::preset       ? "preset"
+                            : from == Layer::command_line ? "--set"
+                                                          : "";
   if (value.note.empty()) return layer;
   return layer.empty() ? value.note : layer + ": " + value.note;
 }
@@ -134,11 +126,9 @@ std::string write_resolved(const Schema& schema, const Values& values) {
 std::string write_template(const ApparatusKeys& apparatus) {
   std::string text = fmt::format(
       "# {}\n# Every line shows its default and may be left out, but for those marked \"needed\"; lines that "
-      "begin with "
-      "# are\n# off. tremie check FILE validates it and tells what it will cost; tremie {} FILE runs it.\n# "
-      "In place "
-      "of the table [mix] one line may name a mix: mix = \"mix_a\" (mix_b, mix_c, or a path to a .toml "
-      "file).\n\n",
+      "begin with # are\n# off. tremie check FILE validates it and tells what it will cost; tremie {} FILE "
+      "runs it.\n# In place of the table [mix] one line may name a mix: mix = \"mix_a\" (mix_b, mix_c, or a "
+      "path to a .toml file).\n\n",
       apparatus.help, apparatus.name == "cell" ? "cell" : "run");
   text += fmt::format("apparatus = \"{}\"\n", apparatus.name);
   for (const Preset& preset : apparatus.presets)

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
@@ -15,24 +16,6 @@
 
 namespace tremie::scene {
 namespace {
-
-constexpr std::array length_units{Unit{"m"}, Unit{"cm", 1, 100}, Unit{"mm", 1, 1000}};
-constexpr std::array time_units{Unit{"s"}, Unit{"ms", 1, 1000}, Unit{"min", 60}, Unit{"h", 3600}};
-constexpr std::array speed_units{Unit{"m/s"}, Unit{"cm/s", 1, 100}, Unit{"mm/s", 1, 1000}};
-constexpr std::array pressure_units{Unit{"Pa"}, Unit{"kPa", 1e3}, Unit{"MPa", 1e6}, Unit{"GPa", 1e9}};
-constexpr std::array viscosity_units{Unit{"Pa.s"}, Unit{"Pa·s"}, Unit{"Pa s"}, Unit{"mPa.s", 1, 1000},
-                                     Unit{"mPa·s", 1, 1000}};
-constexpr std::array density_units{Unit{"kg/m3"}, Unit{"kg/m³"}, Unit{"kg/m^3"}, Unit{"g/cm3", 1000},
-                                   Unit{"t/m3", 1000}};
-constexpr std::array rate_units{Unit{"1/s"}, Unit{"/s"}, Unit{"s^-1"}, Unit{"1/min", 1, 60}};
-constexpr std::array structuration_units{Unit{"Pa/s"}, Unit{"Pa/min", 1, 60}, Unit{"kPa/s", 1000}};
-constexpr std::array rotation_units{Unit{"rad/s"}, Unit{"rev/s", two_pi}, Unit{"rpm", two_pi, 60}};
-constexpr std::array angle_units{Unit{"rad"}, Unit{"deg", std::numbers::pi, 180},
-                                 Unit{"°", std::numbers::pi, 180}};
-constexpr std::array torque_units{Unit{"N.m"}, Unit{"N·m"}, Unit{"N m"}, Unit{"mN.m", 1, 1000},
-                                  Unit{"mN·m", 1, 1000}};
-constexpr std::array consistency_units{Unit{"Pa.s^n"}, Unit{"Pa·s^n"}, Unit{"Pa s^n"}};
-constexpr std::array acceleration_units{Unit{"m/s2"}, Unit{"m/s²"}, Unit{"m/s^2"}};
 
 std::string_view trimmed(std::string_view text) {
   const auto first = text.find_first_not_of(" \t");
@@ -86,35 +69,23 @@ std::optional<Split> split(std::string_view text) {
 }  // namespace
 
 std::span<const Unit> units(Dimension dimension) {
-  switch (dimension) {
-    case Dimension::length:
-      return length_units;
-    case Dimension::time:
-      return time_units;
-    case Dimension::speed:
-      return speed_units;
-    case Dimension::pressure:
-      return pressure_units;
-    case Dimension::viscosity:
-      return viscosity_units;
-    case Dimension::density:
-      return density_units;
-    case Dimension::rate:
-      return rate_units;
-    case Dimension::structuration:
-      return structuration_units;
-    case Dimension::rotation:
-      return rotation_units;
-    case Dimension::angle:
-      return angle_units;
-    case Dimension::torque:
-      return torque_units;
-    case Dimension::acceleration:
-      return acceleration_units;
-    case Dimension::consistency:
-      return consistency_units;
-  }
-  throw std::logic_error("a dimension without units");
+  static const std::map<Dimension, std::vector<Unit>> all{
+      {Dimension::length, {{"m"}, {"cm", 1, 100}, {"mm", 1, 1000}}},
+      {Dimension::time, {{"s"}, {"ms", 1, 1000}, {"min", 60}, {"h", 3600}}},
+      {Dimension::speed, {{"m/s"}, {"cm/s", 1, 100}, {"mm/s", 1, 1000}}},
+      {Dimension::pressure, {{"Pa"}, {"kPa", 1e3}, {"MPa", 1e6}, {"GPa", 1e9}}},
+      {Dimension::viscosity, {{"Pa.s"}, {"Pa·s"}, {"Pa s"}, {"mPa.s", 1, 1000}, {"mPa·s", 1, 1000}}},
+      {Dimension::density, {{"kg/m3"}, {"kg/m³"}, {"kg/m^3"}, {"g/cm3", 1000}, {"t/m3", 1000}}},
+      {Dimension::rate, {{"1/s"}, {"/s"}, {"s^-1"}, {"1/min", 1, 60}}},
+      {Dimension::structuration, {{"Pa/s"}, {"Pa/min", 1, 60}, {"kPa/s", 1000}}},
+      {Dimension::rotation, {{"rad/s"}, {"rev/s", two_pi}, {"rpm", two_pi, 60}}},
+      {Dimension::angle, {{"rad"}, {"deg", std::numbers::pi, 180}, {"°", std::numbers::pi, 180}}},
+      {Dimension::torque, {{"N.m"}, {"N·m"}, {"N m"}, {"mN.m", 1, 1000}, {"mN·m", 1, 1000}}},
+      {Dimension::consistency, {{"Pa.s^n"}, {"Pa·s^n"}, {"Pa s^n"}}},
+      {Dimension::acceleration, {{"m/s2"}, {"m/s²"}, {"m/s^2"}}}};
+  const auto found = all.find(dimension);
+  if (found == all.end()) throw std::logic_error("a dimension without units");
+  return found->second;
 }
 
 Dimension dimension_of(std::string_view si_unit) {

@@ -83,12 +83,10 @@ std::string judged(const Results& r, const cone::Cone& cone) {
 /// Why a spread may differ from the measured one although the computation is right.
 constexpr const char* why_it_may_differ =
     "A difference from a measured spread beyond the error of the computation lies in what went in: yield "
-    "stress and viscosity "
-    "come from a rheometer, and instruments differ by factors; the destructuration α says how much of what "
-    "built up at rest "
-    "survives the lift, and one value for all concretes is a guess; the plate may hold the concrete or let "
-    "it slip "
-    "(floor.contact). tremie calibrate looks for the values that meet the measurements.";
+    "stress and viscosity come from a rheometer, and instruments differ by factors; the destructuration α "
+    "says how much of what built up at rest survives the lift, and one value for all concretes is a guess; "
+    "the plate may hold the concrete or let it slip (floor.contact). tremie calibrate looks for the values "
+    "that meet the measurements.";
 
 /// Whether t500, or that there is none, hangs on the last millimetres: below 514 mm estimates from a t500 end too.
 bool near_500(const Results& r) { return stopped(r) && std::abs(r.spread - 0.5) < 0.014; }
@@ -106,10 +104,10 @@ std::vector<std::string> remarks_on(const cone::Scene& scene, const std::optiona
         "spread leave that difference out.");
   const auto alpha = scene.mix.thixotropy ? destructuration(scene.mix.thixotropy->kinetics) : std::nullopt;
   if (scene.rest > 0.0 && alpha && !(measured && measured->on.empty()))
-    remarks.push_back(fmt::format(
-        "The destructuration α (here {:.3g}) decides how much of what built up at rest is left after the "
-        "lift. It is seldom measured: see what 0.01 and 1 give.",
-        *alpha));
+    remarks.push_back(
+        fmt::format("The destructuration α (here {:.3g}) decides how much of what built up at rest is left "
+                    "after the lift. It is seldom measured: see what 0.01 and 1 give.",
+                    *alpha));
   if (near_500(r))
     remarks.push_back(
         "The spread ends so near to 500 mm that t500, or whether there is one, hangs on its last "
@@ -133,15 +131,29 @@ std::vector<std::string> range_lines(const View& v) {
                       in_tremie_range(v.r.spread) ? "within" : "outside of")};
 }
 
+using V = const View&;
+
+/// What was measured on the concrete, and how far off the run is.
+Rows<View> measured_rows() {
+  return table_of<View>(
+      only_where<View>(
+          [](V v) { return v.measurement.has_value(); },
+          {{"measured.spread_mm", "measured slump flow", [](V v) { return number(v.measurement->value); }},
+           {"measured.tolerance_mm", "its tolerance", [](V v) { return number(v.measurement->tolerance); }},
+           {"measured.difference_mm", "computed minus measured",
+            [](V v) { return number(v.measurement->difference); }}}),
+      only_where<View>([](V v) { return v.measured.t500.has_value(); },
+                       {{"measured.t500_s", "measured t500", [](V v) { return number(v.measured.t500); }},
+                        {"measured.t500_difference_s", "", [](V v) {
+                           return v.r.t500 ? number(*v.r.t500 - *v.measured.t500) : ResultValue{};
+                         }}}));
+}
+
 const std::vector<Reading<View>>& readings() {
-  using V = const View&;
   using S = const cone::Sample&;
   static const auto table = [] {
-    Reading<View> spread = cone::spread_row<View>();
+    Reading<View> spread = cone::spread_row<View>(), t500 = cone::t500_row<View>();
     spread.remark = [](V v) { return "   " + class_text(v.r, v.status); };
-    Reading<View> t500 = cone::time_row<View>("t500_s", "t500, time to a diameter of 500 mm", "t500",
-                                              [](V v) { return number(v.r.t500); });
-    t500.headline = 3;
     t500.remark = [](V v) {
       return std::string(near_500(v.r) ? "   not to be relied on: the spread ends too near to 500 mm" : "");
     };
@@ -166,37 +178,18 @@ const std::vector<Reading<View>>& readings() {
                     .value = [](V v) { return word_or_null(class_of(v.r)); },
                     .none = [](V v) { return no_class(v.r, v.status); }}},
         flocculation_rows<View>(),
-        Rows<View>{
-            {"shear_rate_mean_peak_per_s", "largest mean shear rate",
-             [](V v) { return number(v.r.shear_rate_mean_peak); }},
-            {"mean_velocity_mm_per_s", "(SF − 200 mm)/(2 t_stop): high for a mix that stops early",
-             [](V v) { return number(v.r.mean_velocity, mm); }},
-            {.name = "within_tremie_range",
-             .words = "within 450 to 650 mm (tremie concrete)",
-             .value = [](V v) { return range_of(v.r); },
-             .none = [](V) { return std::string("not yet known: it still moved"); },
-             .lines = range_lines},
-            {.name = "measured.spread_mm",
-             .words = "measured slump flow",
-             .value = [](V v) { return number(v.measurement->value); },
-             .applies = [](V v) { return v.measurement.has_value(); }},
-            {.name = "measured.tolerance_mm",
-             .words = "its tolerance",
-             .value = [](V v) { return number(v.measurement->tolerance); },
-             .applies = [](V v) { return v.measurement.has_value(); }},
-            {.name = "measured.difference_mm",
-             .words = "computed minus measured",
-             .value = [](V v) { return number(v.measurement->difference); },
-             .applies = [](V v) { return v.measurement.has_value(); }},
-            {.name = "measured.t500_s",
-             .words = "measured t500",
-             .value = [](V v) { return number(v.measured.t500); },
-             .applies = [](V v) { return v.measured.t500.has_value(); }},
-            {.name = "measured.t500_difference_s",
-             .value = [](V v) { return v.r.t500 ? number(*v.r.t500 - *v.measured.t500) : ResultValue{}; },
-             .applies = [](V v) { return v.measured.t500.has_value(); }},
-            cone::time_row<View>("t400_s", "t400, time to a diameter of 400 mm", "t400",
-                                 [](V v) { return number(cone::time_to_spread(v.series, 0.4)); })},
+        Rows<View>{{"shear_rate_mean_peak_per_s", "largest mean shear rate",
+                    [](V v) { return number(v.r.shear_rate_mean_peak); }},
+                   {"mean_velocity_mm_per_s", "(SF − 200 mm)/(2 t_stop): high for a mix that stops early",
+                    [](V v) { return number(v.r.mean_velocity, mm); }},
+                   {.name = "within_tremie_range",
+                    .words = "within 450 to 650 mm (tremie concrete)",
+                    .value = [](V v) { return range_of(v.r); },
+                    .none = [](V) { return std::string("not yet known: it still moved"); },
+                    .lines = range_lines}},
+        measured_rows(),
+        Rows<View>{cone::time_row<View>("t400_s", "t400, time to a diameter of 400 mm", "t400",
+                                        [](V v) { return number(cone::time_to_spread(v.series, 0.4)); })},
         motion_columns<View>(),
         Rows<View>{{"kinetic_energy_J", "", {}, [](V, S s) { return s.kinetic_energy; }}},
         step_columns<View>(),
@@ -210,18 +203,11 @@ const std::vector<Reading<View>>& readings() {
   return table;
 }
 
-}  // namespace
-
-std::vector<Headline> headlines() { return headlines_of(readings()); }
-std::vector<Described> glossary() { return described(readings()); }
-
 Outcome run(const cone::Scene& scene, const RunOptions& options, const Observer& observer) {
   const cone::Outcome raw = cone::run(scene, observer);
   const View view{{scene, raw}, options.measured};
-  Outcome outcome = outcome_of(raw);
-  read_into(readings(), view, outcome);
+  Outcome outcome = outcome_of(readings(), view, options.measured.name, "slump flow");
   outcome.measured = view.measurement;
-  outcome.asked = asked_text(options.measured.name, "slump flow", rest_told(scene));
   outcome.moving_at_end = !raw.results.stopped_at;
   outcome.judged = judged(raw.results, scene.cone);
   outcome.remarks = remarks_on(scene, outcome.measured, raw.results);
@@ -231,6 +217,13 @@ Outcome run(const cone::Scene& scene, const RunOptions& options, const Observer&
   if (!std::isfinite(raw.results.spread))
     outcome.checks.reasons.push_back("the spread is not a finite number");
   return outcome;
+}
+
+}  // namespace
+
+Apparatus apparatus() {
+  return make_apparatus<cone::Scene>(apparatus_of(keys(), "slump flow", readings()), cone::read_scene,
+                                     cone::uses, run, cone::estimate);
 }
 
 }  // namespace tremie::slump_flow

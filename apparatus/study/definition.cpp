@@ -10,12 +10,8 @@
 namespace tremie::study {
 namespace {
 
-using scene::InputError;
+using scene::complain;
 using scene::Node;
-
-[[noreturn]] void complain(const Node& node, const std::string& key, const std::string& what) {
-  throw InputError(fmt::format("{}: {}: {}", scene::describe(node.origin), key, what));
-}
 
 void allow_only(const Node& table, const std::string& where, const std::vector<std::string>& known) {
   const auto* members = std::get_if<scene::Table>(&table.value);
@@ -127,9 +123,7 @@ Definition read_definition(const std::filesystem::path& file) {
   study.file = file;
   study.base = text_at(document, "base", "");
   if (study.base.is_relative()) study.base = file.parent_path() / study.base;
-  std::vector<scene::ApparatusKeys> keys;
-  for (const auto& apparatus : scene::all_apparatus()) keys.push_back(apparatus.keys);
-  const auto loaded = scene::load({study.base}, keys);
+  const auto loaded = scene::load({study.base}, scene::all_keys());
   read_factors(document, loaded.schema, study);
   read_design(document, study);
   const auto base = scene::read(study.base);

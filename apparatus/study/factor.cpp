@@ -11,13 +11,9 @@
 namespace tremie::study {
 namespace {
 
-using scene::InputError;
+using scene::complain;
 using scene::Key;
 using scene::Kind;
-
-[[noreturn]] void complain(const scene::Node& node, const std::string& key, const std::string& what) {
-  throw InputError(fmt::format("{}: {}: {}", scene::describe(node.origin), key, what));
-}
 
 std::vector<std::string> all_names(const scene::Schema& schema) {
   std::vector<std::string> names;

@@ -44,8 +44,7 @@ std::string lab_text(const PaperMix& mix) {
       "s\"\n"
       "spread = \"{} mm\"\nspread_error = \"{} mm\"\n[unknown]\n\"floor.coefficient\" = [0.1, "
       "0.8]\n\"mix.thixotropy.destructuration\" = [0.01, 20.0]\n[known]\n\"mix\" = \"{}\"\n\"floor.contact\" "
-      "= "
-      "\"friction\"\n",
+      "= \"friction\"\n",
       mix.name, mix.fresh, 0.5 * paper_tolerance, mix.rested, 0.5 * paper_tolerance, mix.file);
 }
 
@@ -54,8 +53,8 @@ Emulated emulate(const std::vector<calibration::Trial>& trials, std::size_t test
   std::vector<Point> points;
   std::vector<double> values;
   for (const auto& trial : trials) {
-    const auto* number = std::get_if<double>(&trial.rows[test].readings[0]);
-    if (!number || trial.rows[test].exit_code != 0) continue;
+    const auto number = study::trusted_number(trial.rows[test], 0);
+    if (!number) continue;
     points.push_back(trial.point);
     values.push_back(*number);
   }
@@ -68,8 +67,7 @@ Emulated emulate(const std::vector<calibration::Trial>& trials, std::size_t test
 }
 
 double log_likelihood(const calibration::Measurement& m, const Prediction& p, double cells) {
-  const double variance = m.error * m.error + p.variance + cells * cells;
-  return -0.5 * ((m.value - p.mean) * (m.value - p.mean) / variance + std::log(variance));
+  return calibration::log_likelihood(m.value, m.error, p, cells);
 }
 
 Pair emulated_pair(const PaperMix& mix, const Settings& settings, const std::vector<Point>& at) {
@@ -166,12 +164,9 @@ bool has_calibration() { return true; }
 
 Section alpha_of_pairs(const Settings& settings) {
   Section section{
-      "alpha",
-      "α from a fresh and a rested slump flow, and a forecast of the third mix",
+      "alpha", "α from a fresh and a rested slump flow, and a forecast of the third mix",
       "One α (0.01 to 20, even on a log scale), a floor's coefficient for each mix (0.1 to 0.8), the rest as "
-      "printed. Two mixes' pairs give α; the third's rested spread follows from it and its fresh one.",
-      {},
-      {}};
+      "printed. Two mixes' pairs give α; the third's rested spread follows from it and its fresh one."};
   const auto at = calibration::quadrature_points(2);
   const auto side = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(at.size()))));
   std::vector<Pair> pairs;
@@ -196,13 +191,12 @@ Section alpha_of_pairs(const Settings& settings) {
                           in_words(told_of(pairs[third].lab, likelihood[third])));
   }
   const auto all = told_of(pairs[0].lab, product(product(likelihood[0], likelihood[1]), likelihood[2]));
-  section.findings.push_back(fmt::format(
-      "α by all three: **above {:.2g}** (95 %, for an α even on a log scale over the range); median and "
-      "interval, {}, hang on the range's upper "
-      "end. By one alone: {}. \"Rest changes nothing\" would forecast all three as well. A_thix is taken "
-      "as exact, the critical shear rate as 0.1 1/s. Coefficients of the floor: {}; the paper calibrated "
-      "0.35, 0.45, 0.43.",
-      all.low, in_words(all), alphas, floors));
+  section.findings.push_back(
+      fmt::format("α by all three: **above {:.2g}** (95 %, for an α even on a log scale over the range); "
+                  "median and interval, {}, hang on the range's upper end. By one alone: {}. \"Rest changes "
+                  "nothing\" would forecast all three as well. A_thix is taken as exact, the critical shear "
+                  "rate as 0.1 1/s. Coefficients of the floor: {}; the paper calibrated 0.35, 0.45, 0.43.",
+                  all.low, in_words(all), alphas, floors));
   std::string errors;
   for (const Pair& pair : pairs)
     errors +=

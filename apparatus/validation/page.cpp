@@ -49,13 +49,10 @@ std::string head(const std::vector<Section>& sections, double wall_seconds) {
     }
   return fmt::format(
       "# Validation\n\nWhat was measured, and in the last table two published correlations, beside what "
-      "Tremie predicts. `tremie verify --validation` remakes "
-      "this page "
-      "({:.0f} s here), `validation.csv` and the input of its calibrations.\n\n**{} of {} met, {} missed, {} "
-      "without a "
-      "verdict.** ± is half of a 95 % interval; met: the unrounded difference is within both (root of the "
-      "sum of "
-      "squares). A wide interval is met easily, and shows no more than that.\n\n",
+      "Tremie predicts. `tremie verify --validation` remakes this page ({:.0f} s here), `validation.csv` and "
+      "the input of its calibrations.\n\n**{} of {} met, {} missed, {} without a verdict.** ± is half of a "
+      "95 % interval; met: the unrounded difference is within both (root of the sum of squares). A wide "
+      "interval is met easily, and shows no more than that.\n\n",
       wall_seconds, met, met + missed + open, missed, open);
 }
 

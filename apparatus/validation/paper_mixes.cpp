@@ -35,23 +35,17 @@ std::string findings_of(const Section& section) {
   }
   return fmt::format(
       "± of a prediction is of cells and steps alone; the paper prints no error of its yield stresses (10 % "
-      "of one "
-      "moves a spread by 2 %). Without slip the fresh spreads are {:.0f} to {:.0f} mm short. By α = 0.01 "
-      "rest takes "
-      "{:.0f} to {:.0f} mm; the laboratory lost 15 to 20.",
+      "of one moves a spread by 2 %). Without slip the fresh spreads are {:.0f} to {:.0f} mm short. By α = "
+      "0.01 rest takes {:.0f} to {:.0f} mm; the laboratory lost 15 to 20.",
       least_short, most_short, least_lost, most_lost);
 }
 
 }  // namespace
 
 Section paper_mixes(const Settings& settings) {
-  Section section{
-      "mixes",
-      "Mixes A to C, fresh and after 240 s",
-      "Everything as the paper prints it, α = 0.01 and its friction coefficients as well; cone at 15 cm/s. "
-      "Nothing is fitted.",
-      {},
-      {}};
+  Section section{"mixes", "Mixes A to C, fresh and after 240 s",
+                  "Everything as the paper prints it, α = 0.01 and its friction coefficients as well; cone "
+                  "at 15 cm/s. Nothing is fitted."};
   std::vector<Ask> asked;
   for (const Floor& floor : {Floor{"no slip", false}, Floor{"friction", true}})
     for (const PaperMix& mix : paper_mix)

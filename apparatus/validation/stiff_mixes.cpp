@@ -47,22 +47,18 @@ double uniaxial_slump(double tau_0) {
 
 std::string scene_of(double tau_0) {
   return fmt::format(
-      "apparatus = \"slump_flow\"\n[mix]\nyield_stress = \"{} Pa\"\nplastic_viscosity = \"50 "
-      "Pa.s\"\ndensity = \"{} kg/m3\"\n[test]\nlift_speed = \"10 cm/s\"\n",
+      "apparatus = \"slump_flow\"\n[mix]\nyield_stress = \"{} Pa\"\nplastic_viscosity = \"50 Pa.s\"\ndensity "
+      "= \"{} kg/m3\"\n[test]\nlift_speed = \"10 cm/s\"\n",
       tau_0, density);
 }
 
 }  // namespace
 
 Section stiff_mixes(const Settings& settings) {
-  Section section{
-      "slump",
-      "Slump of stiff mixes",
-      "Slump over yield stress, 2400 kg/m3, 50 Pa.s, cone at 10 cm/s. Measured: correlations with yield "
-      "stresses by BTRHEOM (NISTIR 6094), τ0 = ρ(300 − s)/270 (Hu) and ρ(300 − s)/347 + 212 (Ferraris, de "
-      "Larrard), scatter by their mean deviations, 195 and 162 Pa.",
-      {},
-      {}};
+  Section section{"slump", "Slump of stiff mixes",
+                  "Slump over yield stress, 2400 kg/m3, 50 Pa.s, cone at 10 cm/s. Measured: correlations "
+                  "with yield stresses by BTRHEOM (NISTIR 6094), τ0 = ρ(300 − s)/270 (Hu) and ρ(300 − s)/347 "
+                  "+ 212 (Ferraris, de Larrard), scatter by their mean deviations, 195 and 162 Pa."};
   const double yield_stresses[] = {600.0, 1200.0, 1800.0};
   std::vector<Ask> asked;
   for (const double tau_0 : yield_stresses) asked.push_back({scene_of(tau_0), "height_mm"});
@@ -75,12 +71,11 @@ Section stiff_mixes(const Settings& settings) {
   std::string closed;
   for (const double tau_0 : yield_stresses)
     closed += fmt::format("{}{:.0f}", closed.empty() ? "" : ", ", uniaxial_slump(tau_0));
-  section.findings.push_back(
-      fmt::format("Tremie is near the closed form of a yielding cone (Schowalter and Christensen's balance "
-                  "of weight and uniaxial "
-                  "stress, √3 τ0 by von Mises): {} mm. Either stiff concrete is no Bingham material, or the "
-                  "rheometer, known to read higher than others, reports too high a yield stress.",
-                  closed));
+  section.findings.push_back(fmt::format(
+      "Tremie is near the closed form of a yielding cone (Schowalter and Christensen's balance of weight and "
+      "uniaxial stress, √3 τ0 by von Mises): {} mm. Either stiff concrete is no Bingham material, or the "
+      "rheometer, known to read higher than others, reports too high a yield stress.",
+      closed));
   return section;
 }
 

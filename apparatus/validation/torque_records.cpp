@@ -71,8 +71,8 @@ void compare_paste(Section& section) {
   }
   if (reading.structuration.early && reading.structuration.late)
     section.findings.push_back(
-        fmt::format("The paste gains {:.1f} Pa/s between its first two rests, {:.1f} between its "
-                    "last: every line overshoots the next rest.",
+        fmt::format("The paste gains {:.1f} Pa/s between its first two rests, {:.1f} between its last: every "
+                    "line overshoots the next rest.",
                     *reading.structuration.early, *reading.structuration.late));
 }
 
@@ -81,15 +81,11 @@ void compare_paste(Section& section) {
 Section torque_records(const Settings& settings) {
   if (settings.stop && *settings.stop) throw Interrupted{};
   Section section{
-      "torque",
-      "Torque records",
+      "torque", "Torque records",
       "The paper's site test (2 to 1.25 N m in 10 s) beside the Couette flow of Mix A after 240 s at 0.25 "
-      "rev/s, "
-      "which stands in for a mix that is not described. The rheocem paste (w/c 0.55): static yield stress "
-      "after 30 to 480 s, each rest forecast by the line through the shorter ones, since Roussel's A_thix "
-      "is constant. One record; ± 21 % is twice the scatter of its source's averaged ones.",
-      {},
-      {}};
+      "rev/s, which stands in for a mix that is not described. The rheocem paste (w/c 0.55): static yield "
+      "stress after 30 to 480 s, each rest forecast by the line through the shorter ones, since Roussel's "
+      "A_thix is constant. One record; ± 21 % is twice the scatter of its source's averaged ones."};
   compare_site(section);
   compare_paste(section);
   section.findings.push_back(

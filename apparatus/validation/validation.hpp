@@ -25,8 +25,8 @@ struct Section {
   std::string name;   ///< "mixes", in the CSV
   std::string title;  ///< of the page
   std::string text;   ///< above the table: what is compared, in Markdown
-  std::vector<Comparison> comparisons;
-  std::vector<std::string> findings;  ///< below the table
+  std::vector<Comparison> comparisons = {};
+  std::vector<std::string> findings = {};  ///< below the table
 };
 
 struct Settings {

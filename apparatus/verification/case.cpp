@@ -1,6 +1,7 @@
 #include "apparatus/verification/case.hpp"
 
-#include <algorithm>
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
 
@@ -17,14 +18,14 @@ double observed_order(const Series& series) {
   return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
-bool all_kept(const std::vector<Case>& cases) {
-  const auto kept = [](const auto& part) {
-    return std::all_of(part.bounds.begin(), part.bounds.end(), [](const Bound& b) { return b.kept(); });
-  };
-  return std::all_of(cases.begin(), cases.end(), [&](const Case& one) {
-    return std::all_of(one.problems.begin(), one.problems.end(), kept) &&
-           std::all_of(one.tables.begin(), one.tables.end(), kept);
-  });
+void bound_errors(Problem& problem, const std::string& where, double limit, std::optional<std::size_t> run) {
+  for (const Series& s : problem.series)
+    problem.bounds.push_back(
+        {.what = s.scheme + where, .value = s.runs[run.value_or(s.runs.size() - 1)].error, .limit = limit});
+}
+
+std::string unconverged(std::int64_t steps) {
+  return steps ? fmt::format("{} unconverged steps", steps) : "";
 }
 
 }  // namespace tremie::verification

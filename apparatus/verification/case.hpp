@@ -23,7 +23,7 @@ struct Run {
 /// One scheme over resolutions, coarse to fine.
 struct Series {
   std::string scheme;
-  std::vector<Run> runs;
+  std::vector<Run> runs = {};
 };
 
 /// What a case must keep. `value` and `limit` are in the words of `what`.
@@ -41,8 +41,8 @@ struct Problem {
   std::string equation;
   std::string reference;  ///< the exact or reference solution, and its source
   std::string norm;       ///< of the error
-  std::vector<Series> series;
-  std::vector<Bound> bounds;
+  std::vector<Series> series = {};
+  std::vector<Bound> bounds = {};
   std::vector<std::string> notes = {};
 };
 
@@ -51,14 +51,14 @@ struct Table {
   std::string name;  ///< also of its file
   std::string text;  ///< above it
   std::vector<std::string> columns;
-  std::vector<std::vector<std::string>> rows;
+  std::vector<std::vector<std::string>> rows = {};
   std::vector<Bound> bounds = {};
 };
 
 struct Case {
   int number = 0;
   std::string title;
-  std::vector<Problem> problems;
+  std::vector<Problem> problems = {};
   std::vector<Table> tables = {};
 };
 
@@ -67,7 +67,11 @@ enum class Depth { quick, full };
 /// Least-squares slope of log error over log h; not-a-number below two errors that are not zero.
 double observed_order(const Series& series);
 
-/// Whether every bound of every case is kept.
-bool all_kept(const std::vector<Case>& cases);
+/// Bounds the error of every scheme: of its run number `run`, or at its finest cells. "ADMM" + `where` names the bound.
+void bound_errors(Problem& problem, const std::string& where, double limit,
+                  std::optional<std::size_t> run = {});
+
+/// "3 unconverged steps", the note of a run; empty for none.
+std::string unconverged(std::int64_t steps);
 
 }  // namespace tremie::verification

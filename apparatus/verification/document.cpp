@@ -75,14 +75,10 @@ std::vector<report::LineChart> charts_of(const Case& c) {
   for (const Problem& one : c.problems) {
     if (std::none_of(one.series.begin(), one.series.end(), [](const Series& s) { return s.runs.size() > 1; }))
       continue;
-    report::LineChart chart{.title = one.title,
-                            .x_label = "CPU time (s)",
-                            .y_label = "error",
-                            .curves = {},
-                            .log_x = true,
-                            .log_y = true};
+    report::LineChart chart{
+        .title = one.title, .x_label = "CPU time (s)", .y_label = "error", .log_x = true, .log_y = true};
     for (const Series& s : one.series) {
-      report::Curve curve{.label = s.scheme, .x = {}, .y = {}, .mark = report::Mark::line_and_points};
+      report::Curve curve{.label = s.scheme, .mark = report::Mark::line_and_points};
       for (const Run& run : s.runs)
         if (run.error > 0.0) curve.x.push_back(std::max(run.cpu, 1e-9)), curve.y.push_back(run.error);
       if (!curve.x.empty()) chart.curves.push_back(std::move(curve));
@@ -95,13 +91,9 @@ std::vector<report::LineChart> charts_of(const Case& c) {
 std::string head(const std::vector<Case>& cases, const std::string& command) {
   std::string text = fmt::format(
       "# Verification: error against run time\n\ntremie {} ({}), {}, {}.\nMade by `{}`. CPU seconds are of "
-      "one "
-      "thread; "
-      "other work on the machine may double them, so compare them within this file alone.\nThe order is the "
-      "least-squares slope of log error "
-      "over "
-      "log "
-      "cell size over all resolutions of the scheme.\n\n",
+      "one thread; other work on the machine may double them, so compare them within this file alone.\nThe "
+      "order is the least-squares slope of log error over log cell size over all resolutions of the "
+      "scheme.\n\n",
       version, commit, compiler, study::processor(), command);
   const auto broken = broken_bounds(cases);
   text += broken.empty() ? "Every bound is kept.\n" : "Bounds that are **not kept**:\n\n";

@@ -18,4 +18,7 @@ void write_document(const std::vector<Case>& cases, const std::string& command,
 /// The bounds that were not kept, a line each.
 std::vector<std::string> broken_bounds(const std::vector<Case>& cases);
 
+/// Whether every bound of every case is kept.
+inline bool all_kept(const std::vector<Case>& cases) { return broken_bounds(cases).empty(); }
+
 }  // namespace tremie::verification

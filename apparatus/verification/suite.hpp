@@ -8,18 +8,10 @@
 
 namespace tremie::verification {
 
-Case law_case(Depth depth);           ///< 1: stress against closed forms, in rotated frames
-Case flocculation_case(Depth depth);  ///< 2: lambda against closed forms and CVODE
-Case rest_case(Depth depth);          ///< 3: bodies at rest and in rigid motion
-Case film_case(Depth depth);          ///< 4: film and plane Poiseuille flow
-Case couette_case(Depth depth);       ///< 5: Couette flow, thixotropic as well
-Case spreading_case(Depth depth);     ///< 6: spreading on a floor
-Case l_box_case(Depth depth);         ///< 7: the L-box at rest
-Case paper_case(Depth depth);         ///< 8: what the paper prints; no bounds
-Case closed_loop_case(Depth depth);   ///< 9: parameters -> vane -> torque -> fit -> parameters
-Case extremes_case(Depth depth);      ///< 10: stiff and extreme scenes
-Case error_bars_case(Depth depth);    ///< 11: whether the error bars hold
-Case pareto_case(Depth depth);        ///< 12: which scheme for which CPU budget
+Case law_case(Depth depth), flocculation_case(Depth depth), rest_case(Depth depth), film_case(Depth depth),
+    couette_case(Depth depth), spreading_case(Depth depth), l_box_case(Depth depth), paper_case(Depth depth),
+    closed_loop_case(Depth depth), extremes_case(Depth depth), error_bars_case(Depth depth),
+    pareto_case(Depth depth);
 
 struct Entry {
   int number;

@@ -23,6 +23,13 @@ ImplicitBody<PlaneStrain> falling_block(const Mix& mix) {
   return body;
 }
 
+template <int D>
+bool all_finite(const Points<D>& points) {
+  for (std::size_t p = 0; p < points.size(); ++p)
+    if (!points.x[p].allFinite() || !points.v[p].allFinite() || !std::isfinite(points.ln_J[p])) return false;
+  return true;
+}
+
 /// Kinetic energy and height above the floor.
 double energy(const ImplicitBody<PlaneStrain>& body) {
   double sum = kinetic_energy(body.points);

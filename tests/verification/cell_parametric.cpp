@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apparatus/cell/cell.hpp"
+#include "apparatus/registry/registry.hpp"
 #include "apparatus/verification/references/study_output.hpp"
 
 namespace tremie::study {
@@ -37,8 +38,8 @@ void run(const std::string& scene, const std::string& directory) {
     report::LineChart lambda = stress;
     lambda.y_label = "λ";
     for (const char* value : s.values) {
-      const cell::Scene varied = cell::read(scene, {std::string(s.key) + "=" + value});
-      const CellResult result = cell::run(varied);
+      const auto varied = scene::read(scene, {std::string(s.key) + "=" + value}, "cell");
+      const CellResult result = cell::run(*std::any_cast<cell::Scene>(&varied.test));
       report::Curve stresses = curve(value), lambdas = curve(value);
       for (std::size_t i = 0; i < result.samples.size(); i += 10) {
         const CellSample& p = result.samples[i];

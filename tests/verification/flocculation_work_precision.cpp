@@ -28,6 +28,13 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
+/// The whole step on the side of the gate that its mean rate is on.
+double one_step_without_split(const Thixotropy& t, double lambda, const Step& s) {
+  const double mean = 0.5 * (s.g0 + s.g1);
+  const auto& k = std::get<GatedKinetics>(t.kinetics);
+  return mean < k.gamma_c ? lambda + t.A_thix / tau_0 * s.dt : lambda * std::exp(-k.alpha * mean * s.dt);
+}
+
 std::vector<double> even_times(double end, int n) {
   std::vector<double> t;
   for (int i = 1; i <= n; ++i) t.push_back(end * i / n);

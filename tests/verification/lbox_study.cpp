@@ -34,6 +34,21 @@ struct Case {
   std::array<int, 2> points = {16, 4};
 };
 
+/// Volume a metre of width of a Bingham film that drains down a wall from its top to `length` below [m^2],
+/// long after it was left there: the kinematic wave z / t = (rho g / mu) s (s + tau_0 / rho g), s the depth
+/// of its sheared part, on which the plug of tau_0 / rho g rides.
+double film_volume(double tau_0, double mu, double length, double time) {
+  constexpr int n = 1000;
+  const double plug = tau_0 / rho_g;
+  double volume = 0.0;
+  for (int i = 0; i < n; ++i) {
+    const double z = (i + 0.5) / n * length;
+    const double s = 0.5 * (std::sqrt(plug * plug + 4.0 * mu * z / (rho_g * time)) - plug);
+    volume += (s + plug) * length / n;
+  }
+  return volume;
+}
+
 double hanging_share(const Frame& frame) {
   double all = 0.0, hanging = 0.0;
   for (std::size_t p = 0; p < frame.position.size(); ++p) {

@@ -72,6 +72,11 @@ Command& Command::each(const char* name, std::vector<std::string>& values, const
   return *this;
 }
 
+Command& Command::overrides(std::vector<std::string>& values) {
+  return each("--set", values, "KEY=VALUE",
+              "KEY=VALUE over the scene, KEY dotted, VALUE as TOML: --set mix.yield_stress=\"61 Pa\"");
+}
+
 Command& Command::anything() {
   app_->allow_extras();
   return *this;

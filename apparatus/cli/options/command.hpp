@@ -40,6 +40,8 @@ class Command {
   /// May be given several times, each with one value that is taken as it stands, brackets and all.
   Command& each(const char* name, std::vector<std::string>& values, const char* form,
                 const std::string& meaning);
+  /// --set KEY=VALUE, as often as wanted.
+  Command& overrides(std::vector<std::string>& values);
   /// Takes whatever else is given, and does nothing with it.
   Command& anything();
   /// Stands below the help, and beside the message of what is missing.

@@ -1,4 +1,4 @@
-// tremie run S.toml: runs a scene and fills a folder with its result.
+// tremie run S.toml and tremie cell S.toml: run a scene and fill a folder with its result.
 
 #include <fmt/format.h>
 
@@ -12,10 +12,10 @@
 #include "apparatus/cli/process/brief_spin.hpp"
 #include "apparatus/cli/process/stop_signals.hpp"
 #include "apparatus/cli/run/run_and_write.hpp"
-#include "apparatus/cli/set_option.hpp"
 #include "apparatus/registry/cost_estimate.hpp"
 #include "apparatus/registry/error_estimate.hpp"
 #include "apparatus/registry/registry.hpp"
+#include "apparatus/report/rheometer_files.hpp"
 #include "apparatus/report/run_folder.hpp"
 
 namespace tremie::cli {
@@ -67,12 +67,25 @@ int threads_for(const scene::Scene& scene, const Options& options) {
   return options.threads > 0 ? options.threads : scene::default_threads(scene);
 }
 
+report::RunFolder folder_of(const Options& options, const scene::Scene& scene) {
+  return {options.out.empty() ? "runs/" + scene.name : options.out, options.force};
+}
+
+int run_cell(const Options& options) {
+  const auto scene = scene::read(options.scene, options.overrides, "cell");
+  const HeldInterrupts held;  // outlives the folder
+  report::RunFolder folder = folder_of(options, scene);
+  return run_and_publish(
+      scene, {.name = scene.name, .resolved = scene.resolved, .command = "tremie cell " + options.scene},
+      screen_of(options.quiet, options.json), folder);
+}
+
 int run(const Options& options) {
   auto scene = scene::read(options.scene, options.overrides);
   if (!options.accuracy.empty()) accuracy_of(options.accuracy);
   const int threads = threads_for(scene, options);
   spin_briefly(threads);
-  report::RunFolder folder(options.out.empty() ? "runs/" + scene.name : options.out, options.force);
+  report::RunFolder folder = folder_of(options, scene);
   stop_on_interrupt();
   if (!options.accuracy.empty()) scene = with_cells_for(scene, options);
   if (!options.force) scene::check_cost(scene, threads);
@@ -94,7 +107,7 @@ void add_command_run(CLI::App& app, int& exit_code) {
   Command command(app, "run", "Run a scene and write its result");
   command.required("scene", options->scene, "Scene file (TOML)");
   command.option("--out", options->out, "Folder for the result (default: runs/<scene name>)");
-  add_set_option(command, options->overrides);
+  command.overrides(options->overrides);
   command.number("--threads", options->threads, 1, 1024,
                  "Threads (default: as many as pay for the scene's size)");
   command.flag("--with-error", options->with_error,
@@ -109,6 +122,21 @@ void add_command_run(CLI::App& app, int& exit_code) {
       "with --set test.rest=\"240 s\" after four minutes of rest. Bundled mixes: mix = \"mix_a\", mix_b, "
       "mix_c.");
   command.run([options, &exit_code] { exit_code = run(*options); });
+}
+
+void add_command_cell(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  Command command(app, "cell", "Run the law alone, in one material cell at a prescribed shear rate");
+  command.required("scene", options->scene, "Scene file (TOML) with apparatus = \"cell\"");
+  command.option("--out", options->out, "Folder for the result (default: runs/<scene name>)");
+  command.overrides(options->overrides);
+  command.number("--threads", options->threads, 1, 1024, "Threads; a cell needs one");
+  add_json_option(command, options->json);
+  command.flag("--quiet", options->quiet, "Print nothing but errors");
+  command.flag("--force", options->force, "Replace an earlier result in the folder");
+  command.example(
+      "tremie new cell > cell.toml writes a history to start from; tremie cell cell.toml runs it.");
+  command.run([options, &exit_code] { exit_code = run_cell(*options); });
 }
 
 }  // namespace tremie::cli

@@ -27,6 +27,7 @@ void print_outcome(const scene::Scene& scene, const scene::Outcome& outcome) {
   if (const std::string line = report::measured_line(outcome); !line.empty())
     fmt::print("measured        {}\n", line);
   for (const auto& line : scene::error_lines(scene, outcome)) fmt::print("error           {}\n", line);
+  if (!outcome.has_points) return;
   const Checks& c = outcome.checks;
   fmt::print("checks          volume {:+.3g} %, mass {:.1e}, {} unconverged steps, {} points lost\n",
              100.0 * c.volume_change, c.mass_error, c.unconverged_steps, c.points_lost);
@@ -119,8 +120,9 @@ int run_and_publish(const scene::Scene& scene, const report::RunRequest& request
   if (screen == Screen::one_json_object) print_result_as_json(folder.target(), notes);
   if (screen == Screen::everything) {
     print_outcome(scene, outcome);
-    for (const auto& note : notes) fmt::print("note            {}\n", note);
-    fmt::print("written to      {}\n", folder.target().string());
+    const int width = outcome.has_points ? 15 : 20;  // as wide as the words before its lines
+    for (const auto& note : notes) fmt::print("{:<{}} {}\n", "note", width, note);
+    fmt::print("{:<{}} {}\n", "written to", width, folder.target().string());
     if (outcome.status == Status::interrupted && scene.output.checkpoint_interval)
       fmt::print("to go on        tremie resume {}\n", folder.target().string());
   }

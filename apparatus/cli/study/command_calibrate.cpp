@@ -1,7 +1,5 @@
 // tremie calibrate LAB.toml: from measurements to the mix, with intervals.
 
-#include "apparatus/cli/study/command_calibrate.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -111,10 +109,7 @@ std::string mix_toml(const Lab& lab, const Calibration& c) {
   std::vector<double> shares;
   for (std::size_t i = 0; i < lab.unknowns.size(); ++i)
     shares.push_back(study::share_of(lab.unknowns[i], c.parameters[i].value));
-  const auto& test = lab.tests.front();
-  return scene::read_text(fmt::format("apparatus = \"{}\"\n", test.apparatus), lab.file.string(),
-                          calibration::overrides_at(lab, test, shares))
-      .resolved;
+  return calibration::scene_at(lab, lab.tests.front(), shares).resolved;
 }
 
 Json advice_json(const Lab& lab, const std::vector<calibration::Advice>& advice) {

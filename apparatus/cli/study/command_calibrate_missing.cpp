@@ -5,7 +5,6 @@
 #include "apparatus/cli/commands.hpp"
 #include "apparatus/cli/options/command.hpp"
 #include "apparatus/cli/program.hpp"
-#include "apparatus/cli/study/command_calibrate.hpp"
 
 namespace tremie::cli {
 

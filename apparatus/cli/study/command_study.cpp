@@ -1,7 +1,5 @@
 // tremie study STUDY.toml: many runs of a scene, its keys changed by a design.
 
-#include "apparatus/cli/study/command_study.hpp"
-
 #include <fmt/format.h>
 #include <unistd.h>
 

@@ -2,9 +2,7 @@
 
 #include "apparatus/cli/commands.hpp"
 #include "apparatus/cli/program.hpp"
-#include "apparatus/cli/study/command_calibrate.hpp"
 #include "apparatus/cli/study/command_fit.hpp"
-#include "apparatus/cli/study/command_study.hpp"
 
 int main(int argc, char** argv) {
   return tremie::cli::run_program(argc, argv, [](CLI::App& app, int& exit_code) {

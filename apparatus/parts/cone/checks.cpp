@@ -27,8 +27,8 @@ bool is_implicit(const Scene& scene) { return scene.model.scheme == SchemeKind::
 /// up to 20 % off (explicit.md), of one without a yield stress, which nothing else holds, still at its last cell but one.
 /// From 1.2 cells on a mix with a yield stress is within 5.3 %, by implicit steps in three dimensions from 1.5 on (6.3 % at
 /// 1.2, three_d.md). One that slides need not shear: 6 % from half a cell on.
-std::string too_thin(const Judged& j) {
-  const double R = 0.5 * j.run.results.spread, depth = volume(j.scene.cone) / (std::numbers::pi * R * R);
+std::string too_thin(const View& j) {
+  const double R = 0.5 * j.r.spread, depth = volume(j.scene.cone) / (std::numbers::pi * R * R);
   const bool in_space = !in_a_section(j.scene) && is_implicit(j.scene);
   const double rows = slides(j.scene, depth) ? 0.5 : j.scene.mix.tau_0 == 0.0 ? 2.0 : in_space ? 1.5 : 1.2;
   if (depth >= rows * j.scene.model.cell[1]) return {};
@@ -38,7 +38,7 @@ std::string too_thin(const Judged& j) {
 }
 
 /// A section of two cells has no inside, and its few points no outline that could be read.
-std::string few_cells(const Judged& j) {
+std::string few_cells(const View& j) {
   constexpr double least = 3.0;
   const double across = j.scene.cone.bottom_radius / j.scene.model.cell[0],
                up = j.scene.cone.height / j.scene.model.cell[1];
@@ -51,49 +51,46 @@ std::string few_cells(const Judged& j) {
 
 /// In three dimensions the points draw apart in both directions across. With fewer than about one a cell the
 /// stresses miss a part of the body, and the spread is 4 to 7 % too far (three_d.md).
-std::string few_points_across(const Judged& j) {
+std::string few_points_across(const View& j) {
   if (in_a_section(j.scene) || !is_implicit(j.scene)) return {};
   constexpr double least = 1.1;
-  const double stretch = 0.5 * j.run.results.spread / j.scene.cone.bottom_radius;
+  const double stretch = 0.5 * j.r.spread / j.scene.cone.bottom_radius;
   const double across = j.scene.model.points_per_cell[0] / std::max(1.0, stretch);
   if (across >= least) return {};
   return fmt::format(
       "the body has stretched until a cell holds {:.2g} points across, and then it spreads too far: {} or "
-      "more "
-      "model.points_per_cell across",
+      "more model.points_per_cell across",
       across, static_cast<int>(std::ceil(1.5 * least * stretch)));
 }
 
 /// Slow lifts are verified down to 5 mm/s (lift.md). At 1 mm/s the section has holes and the spread jumps by 50 mm.
-std::string slow_lift_unverified(const Judged& j) {
+std::string slow_lift_unverified(const View& j) {
   constexpr double least = 5e-3;
   if (!j.scene.lift_speed || *j.scene.lift_speed >= least) return {};
   return fmt::format(
       "the cone was lifted at {:.2g} mm/s; slower than {:g} mm/s nothing is verified, and the section may "
-      "have "
-      "holes: a faster test.lift_speed",
+      "have holes: a faster test.lift_speed",
       1e3 * *j.scene.lift_speed, 1e3 * least);
 }
 
 /// The opening under a rim that has risen by less than some cells is narrow to the grid, and lets too little through: at
 /// two cells a fluid mix has spread 11 % too little, at one 41 %. In the time of a free fall from the cone's height nothing
 /// has flowed yet.
-std::string narrow_opening(const Judged& j) {
+std::string narrow_opening(const View& j) {
   constexpr double least = 2.5;
-  const double time = j.run.series.back().time, free_fall = std::sqrt(2.0 * j.scene.cone.height / gravity);
+  const double time = j.series.back().time, free_fall = std::sqrt(2.0 * j.scene.cone.height / gravity);
   const double risen = j.scene.lift_speed ? rim_height(j.scene, time) / j.scene.model.cell[1] : least;
-  if (risen >= least || time <= free_fall || j.run.status == Status::interrupted) return {};
+  if (risen >= least || time <= free_fall || j.status == Status::interrupted) return {};
   return fmt::format(
       "the cone's rim has risen by {:.2g} cells, less than {:g}: a longer test.duration, or a smaller "
-      "model.cell "
-      "upwards",
+      "model.cell upwards",
       risen, least);
 }
 
 /// Nothing lifts the concrete but a cone that it sticks to, in cells that are as large as the gap under its rim.
-std::string lifted_by_the_cone(const Judged& j) {
+std::string lifted_by_the_cone(const View& j) {
   double highest = 0.0;
-  for (const Sample& s : j.run.series) highest = std::max(highest, s.height);
+  for (const Sample& s : j.series) highest = std::max(highest, s.height);
   if (highest <= 1.05 * j.scene.cone.height + 0.5 * j.scene.model.cell[1]) return {};
   return fmt::format(
       "the concrete stood {:.3g} mm high, higher than the cone that it came from, which lifted it: a smaller "
@@ -106,9 +103,9 @@ std::string lifted_by_the_cone(const Judged& j) {
 /// Concrete that presses on the cone for long goes through its wall, and the opening under a rim that has not
 /// risen by a cell is none to the grid. Where a twentieth has by then, t500 is 6 % early; a fiftieth moves it by
 /// less than 2 % (lift.md).
-std::string went_through_the_cone(const Judged& j) {
+std::string went_through_the_cone(const View& j) {
   constexpr double most = 0.02;
-  const auto& through = j.run.results.through_the_cone;
+  const auto& through = j.r.through_the_cone;
   if (!through || *through <= most) return {};
   return fmt::format(
       "{:.2g} % of the concrete went through the cone's wall before its rim had risen by a cell: a faster "
@@ -117,9 +114,9 @@ std::string went_through_the_cone(const Judged& j) {
 }
 
 void add_reasons(const Scene& scene, Outcome& outcome) {
-  scene::add_reasons<Judged>({too_thin, few_cells, few_points_across, went_through_the_cone,
-                              slow_lift_unverified, narrow_opening, lifted_by_the_cone},
-                             {scene, outcome}, outcome.checks.reasons);
+  scene::add_reasons<View>({too_thin, few_cells, few_points_across, went_through_the_cone,
+                            slow_lift_unverified, narrow_opening, lifted_by_the_cone},
+                           {scene, outcome}, outcome.checks.reasons);
 }
 
 }  // namespace tremie::cone

@@ -2,6 +2,8 @@
 
 // The slump-flow test by explicit steps: many short ones between two readings.
 
+#include <fmt/format.h>
+
 #include "apparatus/parts/cone/checks.hpp"
 #include "apparatus/parts/cone/series.hpp"
 #include "apparatus/parts/cone/set_up.hpp"
@@ -92,25 +94,19 @@ struct LimitWatch {
   void tell(std::int64_t steps, Checks& checks) const {
     if (beyond == 0) return;
     checks.stability_limit_exceeded = true;
-    char text[200];
-    std::snprintf(
-        text, sizeof text,
-        "%lld of %lld steps were longer than the explicit scheme is stable for: up to %.2f times the "
-        "%s limit of %.3g s (model.time_step)",
-        static_cast<long long>(beyond), static_cast<long long>(steps), worst,
-        viscous ? "viscous" : "acoustic", limit);
-    checks.reasons.push_back(text);
+    checks.reasons.push_back(
+        fmt::format("{} of {} steps were longer than the explicit scheme is stable for: up to {:.2f} times "
+                    "the {} limit of {:.3g} s (model.time_step)",
+                    beyond, steps, worst, viscous ? "viscous" : "acoustic", limit));
   }
 };
 
 /// Steps of a fixed length end up to half a step beside the test's end.
 inline void tell_end(const Scene& scene, double time, Checks& checks) {
   if (std::abs(time - scene.duration) <= 5e-3 * scene.duration) return;
-  char text[160];
-  std::snprintf(text, sizeof text,
-                "the run ended at %.4g s, test.duration is %.4g s: a model.time_step that divides it", time,
-                scene.duration);
-  checks.reasons.push_back(text);
+  checks.reasons.push_back(
+      fmt::format("the run ended at {:.4g} s, test.duration is {:.4g} s: a model.time_step that divides it",
+                  time, scene.duration));
 }
 
 /// A reading comes after so many steps at the latest: between two of them nobody can interrupt a run, nor see it.

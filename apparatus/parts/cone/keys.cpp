@@ -9,8 +9,6 @@ using namespace scene;
 
 namespace {
 
-constexpr double most_points = 1e8;
-
 Section cone_section() {
   return {.name = "cone",
           .help = "Inner dimensions; the defaults are the Abrams cone's.",
@@ -22,22 +20,8 @@ Section cone_section() {
 Section test_section() {
   return {.name = "test",
           .help = "The schedule.",
-          .keys = {{.name = "rest",
-                    .dimension = Dimension::time,
-                    .range = not_negative,
-                    .fallback = "0 s",
-                    .help = "before the lift"},
-                   {.name = "duration",
-                    .dimension = Dimension::time,
-                    .range = positive,
-                    .fallback = "30 s",
-                    .help = "at most; a flow that has come to rest ends earlier"},
-                   {.name = "lift_speed",
-                    .dimension = Dimension::speed,
-                    .range = positive,
-                    .words = {"instant"},
-                    .fallback = "15 cm/s",
-                    .help = "of the cone"}}};
+          .keys = {rest_key("0 s", "before the lift"), duration_key("30 s"),
+                   lift_key("lift_speed", "15 cm/s", "of the cone")}};
 }
 
 /// Three dimensions start from cells and points that a desk computer carries; a scene that gives one of the
@@ -76,12 +60,7 @@ void check_cells(const Values& values, const Scene& scene) {
   const double share = scene.model.space == SpaceKind::quarter ? 0.25 : 1.0;
   const double points =
       (axisymmetric ? columns : share * 3.1416 * columns * columns) * scene.cone.height / up * n_up;
-  if (points > most_points) {
-    values.fail("model.cell",
-                fmt::format("makes about {:.0e} points; allowed: at most {:.0e}, by larger cells or fewer "
-                            "points_per_cell",
-                            points, most_points));
-  }
+  check_points(values, points);
 }
 
 }  // namespace

@@ -7,19 +7,11 @@ namespace tremie::cone {
 std::vector<scene::Chart> charts_of(const Scene& scene, std::vector<scene::Reference> measured_spread) {
   std::vector<scene::Chart> charts{
       {"spread.svg", "Spread", time_label, "spread (mm)", {"spread_mm"}, std::move(measured_spread)}};
-  charts.push_back({"shear_rate.svg",
-                    "Mean shear rate",
-                    time_label,
-                    "mean shear rate (1/s)",
-                    {"shear_rate_mean_per_s"},
-                    {}});
+  charts.push_back(
+      {"shear_rate.svg", "Mean shear rate", time_label, "mean shear rate (1/s)", {"shear_rate_mean_per_s"}});
   if (scene.mix.thixotropy) {
-    charts.push_back({"flocculation.svg",
-                      "Flocculation",
-                      time_label,
-                      "mean flocculation state λ",
-                      {"flocculation_mean"},
-                      {}});
+    charts.push_back(
+        {"flocculation.svg", "Flocculation", time_label, "mean flocculation state λ", {"flocculation_mean"}});
   }
   return charts;
 }

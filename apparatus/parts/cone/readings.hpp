@@ -13,15 +13,7 @@ namespace tremie::cone {
 
 inline constexpr const char* time_label = "time since the start of the lift (s)";
 
-/// A run as the rows of a table see it.
-struct View {
-  using Sample = cone::Sample;
-  const Scene& scene;
-  const Outcome& run;
-  Status status = run.status;
-  const Results& r = run.results;
-  const std::vector<Sample>& series = run.series;
-};
+using View = scene::RunView<Scene, Outcome>;
 
 /// Spread and height over time and at the end.
 template <class V>
@@ -48,6 +40,14 @@ scene::Reading<V> time_row(const char* name, const char* words, const char* labe
           .none = scene::not_reached<V>,
           .headline_digits = 2,
           .measurable = true};
+}
+
+template <class V>
+scene::Reading<V> t500_row() {
+  scene::Reading<V> row = time_row<V>("t500_s", "t500, time to a diameter of 500 mm", "t500",
+                                      [](const V& v) { return scene::number(v.r.t500); });
+  row.headline = 3;
+  return row;
 }
 
 /// The charts over time: spread with what was measured, shear rate, flocculation.

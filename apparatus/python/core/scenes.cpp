@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "apparatus/cell/cell.hpp"
 #include "apparatus/python/core/arrays.hpp"
 #include "apparatus/python/core/parts.hpp"
 #include "apparatus/python/core/watch.hpp"
@@ -25,6 +24,12 @@ struct Source {
   std::optional<std::string> text;
   std::vector<std::string> overrides;
 };
+
+/// For this command of tremie.
+scene::Scene read(const Source& source, const std::string& command) {
+  return source.text ? scene::read_text(*source.text, source.name, source.overrides, command)
+                     : scene::read(source.name, source.overrides, command);
+}
 
 struct RunSettings {
   int threads = 0;      ///< 0: as many as pay
@@ -95,8 +100,7 @@ py::dict run(const Source& source, const RunSettings& settings, const py::object
   scene::Scene scene;
   {
     const py::gil_scoped_release unlocked;
-    scene = source.text ? scene::read_text(*source.text, source.name, source.overrides)
-                        : scene::read(source.name, source.overrides);
+    scene = read(source, "run");
     scene::set_threads(scene, settings.threads > 0 ? settings.threads : scene::default_threads(scene));
     scene::Observer observer = watch.observer();
     if (settings.out.empty()) {
@@ -115,12 +119,11 @@ py::dict run(const Source& source, const RunSettings& settings, const py::object
 
 py::dict run_cell(const Source& source) {
   scene::Outcome outcome;
-  cell::Scene scene;
+  scene::Scene scene;
   {
     const py::gil_scoped_release unlocked;
-    scene = source.text ? cell::read_text(*source.text, source.name, source.overrides)
-                        : cell::read(source.name, source.overrides);
-    outcome = cell::outcome(scene, cell::run(scene));
+    scene = read(source, "cell");
+    outcome = scene::run(scene);
   }
   std::vector<Frame> none;
   return dict_of(scene.resolved, {}, outcome, none);

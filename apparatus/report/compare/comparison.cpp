@@ -63,7 +63,7 @@ void set_difference(const std::vector<RunResult>& runs, ComparedRow& row) {
 
 ComparedRow row_of(const std::vector<RunResult>& runs, std::vector<Entry> RunResult::*part,
                    const std::string& key) {
-  ComparedRow row{key, {}, {}, false, {}, {}, {}};
+  ComparedRow row{.key = key};
   for (const auto& run : runs) {
     const Entry* entry = find_entry(run.*part, key);
     row.texts.push_back(entry ? entry->text : "–");

@@ -16,12 +16,12 @@ inline constexpr std::size_t most_compared = 8;  ///< more curves than that nobo
 /// One key over all runs. "–" stands where a run has no such value.
 struct ComparedRow {
   std::string key;
-  std::vector<std::string> texts;
-  std::vector<std::optional<double>> numbers;
+  std::vector<std::string> texts = {};
+  std::vector<std::optional<double>> numbers = {};
   bool differs = false;
-  std::optional<double> difference;           ///< largest less smallest, where all are numbers
-  std::optional<double> error;                ///< of that by cells and steps, where the two runs state one
-  std::vector<std::optional<double>> errors;  ///< of each run's number, where it states one
+  std::optional<double> difference = {};  ///< largest less smallest, where all are numbers
+  std::optional<double> error = {};       ///< of that by cells and steps, where the two runs state one
+  std::vector<std::optional<double>> errors = {};  ///< of each run's number, where it states one
 };
 
 struct Comparison {

@@ -21,11 +21,6 @@ constexpr std::array<std::string_view, 9> about_the_method{
     "spread_max_point_mm", "time_step_s",     "iterations",        "volume_change",   "kinetic_energy_J",
     "max_speed_m_per_s",   "torque_wall_N_m", "momentum_rate_N_m", "torque_power_N_m"};
 
-std::string with_unit(const std::string& name, const std::string& apparatus) {
-  const std::string unit = unit_for_people(name);
-  return words_of(name, apparatus) + (unit.empty() ? "" : " (" + unit + ")");
-}
-
 const scene::Column* find_column(const std::vector<scene::Column>& columns, const std::string& name) {
   const auto found =
       std::find_if(columns.begin(), columns.end(), [&](const auto& c) { return c.name == name; });
@@ -44,11 +39,10 @@ void add_overlay(const Comparison& comparison, const std::string& file, const st
                  const std::string& y, Page& page) {
   const std::string& apparatus = comparison.runs.front().apparatus;
   LineChart chart{.title = words_of(y, apparatus),
-                  .x_label = with_unit(x, apparatus),
-                  .y_label = with_unit(y, apparatus),
-                  .curves = {}};
+                  .x_label = with_unit(words_of(x, apparatus), unit_for_people(x)),
+                  .y_label = with_unit(words_of(y, apparatus), unit_for_people(y))};
   for (const auto& run : comparison.runs) {
-    Curve curve{.label = run.name, .x = {}, .y = {}};
+    Curve curve{.label = run.name};
     if (const auto* table = find_table(run, file))
       if (const auto* a = find_column(table->columns, x), *b = find_column(table->columns, y); a && b)
         curve.x = a->values, curve.y = b->values;
@@ -104,7 +98,7 @@ std::string heading(const std::string& key, const std::string& apparatus) {
 }
 
 GridTable scene_table(const Comparison& comparison) {
-  GridTable table{"What differs in the scenes", {"key"}, {}};
+  GridTable table{"What differs in the scenes", {"key"}};
   for (const auto& run : comparison.runs) table.columns.push_back(run.name);
   for (const auto& row : comparison.scene) {
     if (!row.differs) continue;
@@ -115,7 +109,7 @@ GridTable scene_table(const Comparison& comparison) {
 }
 
 GridTable result_table(const Comparison& comparison) {
-  GridTable table{"Results", {""}, {}};
+  GridTable table{"Results", {""}};
   for (const auto& run : comparison.runs) table.columns.push_back(run.name);
   table.columns.push_back(comparison.runs.size() == 2 ? "difference" : "largest difference");
   for (const auto& row : comparison.results) {

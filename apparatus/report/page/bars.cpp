@@ -50,10 +50,7 @@ std::string bars_svg(const BarChart& chart) {
     y += group_gap;
   }
   text += text_at(left, y + 10, chart.x_label, " font-size=\"13\" class=\"soft\"");
-  return fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {:.0f}\" role=\"img\" aria-label=\"{}\" "
-      "font-family=\"sans-serif\" font-size=\"15\" fill=\"#1c2126\">{}</svg>\n",
-      width, y + 20, escaped(chart.title), text);
+  return svg_element(chart.title, width, std::nearbyint(y + 20), "", text);
 }
 
 }  // namespace tremie::report

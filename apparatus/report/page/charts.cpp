@@ -179,8 +179,7 @@ std::string level_svg(const Level& level, const Axis& x, const Axis& y) {
         y.at(level.value - level.tolerance) - y.at(level.value + level.tolerance));
   return text + fmt::format(
                     "<line class=\"level\" stroke=\"#1c2126\" stroke-width=\"1.4\" stroke-dasharray=\"2 4\" "
-                    "x1=\"{0:.1f}\" "
-                    "x2=\"{1:.1f}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\"/>",
+                    "x1=\"{0:.1f}\" x2=\"{1:.1f}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\"/>",
                     x.from, x.to, y.at(level.value));
 }
 
@@ -323,6 +322,8 @@ std::string panel(const LineChart& chart, const std::vector<Entry>& entries, dou
   return text;
 }
 
+}  // namespace
+
 std::string svg_element(const std::string& title, double width, double height, const std::string& size,
                         const std::string& content) {
   return fmt::format(
@@ -330,8 +331,6 @@ std::string svg_element(const std::string& title, double width, double height, c
       "font-family=\"sans-serif\" font-size=\"15\" fill=\"#1c2126\">{}</svg>\n",
       width, height, size, escaped(title), content);
 }
-
-}  // namespace
 
 std::vector<double> round_ticks(double low, double high, int n) {
   const double raw = (high - low) / n, power = std::pow(10.0, std::floor(std::log10(raw))),

@@ -12,7 +12,7 @@ enum class Mark { line, dashed, points, line_and_points };
 
 struct Curve {
   std::string label;  ///< at the curve's side of the legend; empty: none
-  std::vector<double> x, y;
+  std::vector<double> x = {}, y = {};
   Mark mark = Mark::line;
   std::vector<double> low = {}, high = {};  ///< ends of the error bars of y; empty: none
   int colour = -1;                          ///< of the palette of four; -1: by its place among the curves
@@ -21,7 +21,7 @@ struct Curve {
 /// Between two curves over the same x: a 95 % band.
 struct Band {
   std::string label;
-  std::vector<double> x, low, high;
+  std::vector<double> x, low = {}, high = {};
 };
 
 /// A level that was measured, with its tolerance (0: a line alone).
@@ -55,7 +55,7 @@ struct Patch {
 
 struct LineChart {
   std::string title, x_label, y_label;  ///< with units as people write them: "time (s)"
-  std::vector<Curve> curves;
+  std::vector<Curve> curves = {};
   std::vector<Level> levels = {};
   std::vector<Band> bands = {};
   std::vector<EndBar> bars = {};
@@ -79,9 +79,9 @@ std::string svg_file(const std::vector<LineChart>& charts, std::size_t columns =
 /// Bars of several series over names, 0 to 1, each with half of its error: shares of a variance.
 struct BarChart {
   std::string title, x_label;
-  std::vector<std::string> names;                   ///< a group each
-  std::vector<std::string> series;                  ///< a colour each
-  std::vector<std::vector<double>> values, errors;  ///< by name, then series
+  std::vector<std::string> names = {};                        ///< a group each
+  std::vector<std::string> series;                            ///< a colour each
+  std::vector<std::vector<double>> values = {}, errors = {};  ///< by name, then series
 };
 std::string bars_svg(const BarChart& chart);
 

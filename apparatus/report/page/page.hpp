@@ -20,14 +20,14 @@ struct NumberRow {
 /// Numbers below each other.
 struct ValueTable {
   std::string caption;
-  std::vector<NumberRow> rows;
+  std::vector<NumberRow> rows = {};
 };
 
 /// A table with a heading a column; every row has as many cells as `columns`.
 struct GridTable {
   std::string caption;
   std::vector<std::string> columns;
-  std::vector<std::vector<std::string>> rows;
+  std::vector<std::vector<std::string>> rows = {};
 };
 
 /// A picture that prints. An empty `caption` is left out. `svg` is one <svg> element, made by charts.hpp or shapes.hpp: markup, not escaped.
@@ -76,6 +76,10 @@ std::string to_html(const Page& page);
 
 /// &, <, >, " and ' as HTML entities: for text and for attributes.
 std::string escaped(const std::string& text);
+
+/// One <svg> element of a page from (0, 0) to (width, height); `size`: further attributes, with a space before each.
+std::string svg_element(const std::string& title, double width, double height, const std::string& size,
+                        const std::string& content);
 
 /// Date, version, commit, machine: the facts that every report ends with. `command` repeats the result.
 std::vector<Fact> facts_of_this_run(const std::string& command);

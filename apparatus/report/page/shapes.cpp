@@ -129,8 +129,7 @@ std::string plan_svg(const Shape& shape, double middle, double scale, double top
   if (shape.ring_diameter > 0.0)
     text += fmt::format(
         "<circle class=\"level\" fill=\"none\" stroke=\"#1c2126\" stroke-width=\"1.6\" stroke-dasharray=\"6 "
-        "4\" "
-        "cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\"/>",
+        "4\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\"/>",
         middle, top + R, 0.5 * shape.ring_diameter * scale);
   const std::string ring = shape.ring_diameter > 0.0
                                ? fmt::format("; dashed: the {:.0f} mm circle", 1e3 * shape.ring_diameter)
@@ -172,10 +171,7 @@ std::string shape_svg(const Shape& shape) {
     text += plan_svg(shape, 0.5 * width, scale, end);
     end += std::max(shape.plan_diameter, shape.ring_diameter) * scale + 30;
   }
-  return fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {:.0f}\" role=\"img\" aria-label=\"{}\" "
-      "font-family=\"sans-serif\" font-size=\"15\" fill=\"#1c2126\">{}</svg>\n",
-      width, end, escaped(shape.title), text);
+  return svg_element(shape.title, width, std::nearbyint(end), "", text);
 }
 
 }  // namespace tremie::report

@@ -90,16 +90,31 @@ vtkSmartPointer<vtkActor> body_actor(const Loaded& loaded, vtkLookupTable* table
   return actor;
 }
 
+/// Surfaces or lines of one colour, without light and shade.
+vtkSmartPointer<vtkActor> flat_actor(vtkPolyDataMapper* mapper, double red, double green, double blue,
+                                     float line_width = 1) {
+  auto actor = vtkSmartPointer<vtkActor>::New();
+  actor->SetMapper(mapper);
+  actor->GetProperty()->SetColor(red, green, blue);
+  actor->GetProperty()->SetLineWidth(line_width);
+  actor->GetProperty()->LightingOff();
+  return actor;
+}
+
+/// The same of what a source makes.
+void add_flat(vtkRenderer& renderer, vtkAlgorithm* source, double red, double green, double blue,
+              float line_width = 1) {
+  vtkNew<vtkPolyDataMapper> mapper;
+  mapper->SetInputConnection(source->GetOutputPort());
+  renderer.AddActor(flat_actor(mapper, red, green, blue, line_width));
+}
+
 /// A thin line around the cut, which the colours alone do not show.
 vtkSmartPointer<vtkActor> edge_actor(const Cloud& cloud) {
   vtkNew<vtkPolyDataMapper> mapper;
   mapper->SetInputData(section_edge(cloud));
   mapper->ScalarVisibilityOff();
-  auto actor = vtkSmartPointer<vtkActor>::New();
-  actor->SetMapper(mapper);
-  actor->GetProperty()->SetColor(1, 1, 1);
-  actor->GetProperty()->SetLineWidth(1.5);
-  actor->GetProperty()->LightingOff();
+  auto actor = flat_actor(mapper, 1, 1, 1, 1.5F);
   actor->RotateZ(open_towards_camera);
   return actor;
 }
@@ -109,13 +124,7 @@ void add_plate(vtkRenderer& renderer, double side) {
   plate->SetOrigin(-side / 2, -side / 2, -0.001);
   plate->SetPoint1(side / 2, -side / 2, -0.001);
   plate->SetPoint2(-side / 2, side / 2, -0.001);
-  vtkNew<vtkPolyDataMapper> mapper;
-  mapper->SetInputConnection(plate->GetOutputPort());
-  vtkNew<vtkActor> actor;
-  actor->SetMapper(mapper);
-  actor->GetProperty()->SetColor(0.90, 0.91, 0.92);
-  actor->GetProperty()->LightingOff();
-  renderer.AddActor(actor);
+  add_flat(renderer, plate, 0.90, 0.91, 0.92);
 }
 
 /// The circles of 200 and 500 mm that the standard's plate carries.
@@ -125,28 +134,14 @@ void add_circle(vtkRenderer& renderer, double r) {
   circle->SetRadius(r);
   circle->GeneratePolygonOff();
   circle->SetCenter(0, 0, 0.0002);
-  vtkNew<vtkPolyDataMapper> mapper;
-  mapper->SetInputConnection(circle->GetOutputPort());
-  vtkNew<vtkActor> actor;
-  actor->SetMapper(mapper);
-  actor->GetProperty()->SetColor(0.55, 0.57, 0.6);
-  actor->GetProperty()->SetLineWidth(2);
-  actor->GetProperty()->LightingOff();
-  renderer.AddActor(actor);
+  add_flat(renderer, circle, 0.55, 0.57, 0.6, 2);
 }
 
 void add_line(vtkRenderer& renderer, std::array<double, 3> a, std::array<double, 3> b) {
   vtkNew<vtkLineSource> line;
   line->SetPoint1(a.data());
   line->SetPoint2(b.data());
-  vtkNew<vtkPolyDataMapper> mapper;
-  mapper->SetInputConnection(line->GetOutputPort());
-  vtkNew<vtkActor> actor;
-  actor->SetMapper(mapper);
-  actor->GetProperty()->SetColor(0.15, 0.15, 0.15);
-  actor->GetProperty()->SetLineWidth(2.5);
-  actor->GetProperty()->LightingOff();
-  renderer.AddActor(actor);
+  add_flat(renderer, line, 0.15, 0.15, 0.15, 2.5F);
 }
 
 /// Text in front of everything, its top centre at a place of the scene.

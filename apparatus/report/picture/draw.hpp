@@ -11,7 +11,7 @@
 namespace tremie::picture {
 
 struct View {
-  std::string frame, out;                               ///< .vtp in, .png out
+  std::string frame = {}, out = {};                     ///< .vtp in, .png out
   bool axisymmetric = false;                            ///< points lie in the plane (r, 0, z)
   double spread_mm = 0.0;                               ///< as a dimension line; 0: none
   std::string caption = {};                             ///< below the body; empty: none

@@ -65,7 +65,7 @@ struct Scratch {
 
 /// Draws all frames on one plate and one scale of colours; returns ffmpeg's list of them with their durations.
 fs::path draw_all(const std::vector<TimedFrame>& frames, bool section, const fs::path& folder) {
-  View view{.frame = {}, .out = {}, .axisymmetric = section};
+  View view{.axisymmetric = section};
   double low = 1e300, high = -1e300;
   for (const TimedFrame& f : frames) {
     const Loaded loaded = load(f.file.string());

@@ -21,7 +21,7 @@ namespace tremie::report {
 /// What a run was asked, and what it took before it was stopped.
 struct RunRequest {
   std::string name, resolved, command;  ///< of the scene; the scene in SI; what repeats the run
-  std::string accuracy;                 ///< --accuracy; empty: none
+  std::string accuracy = {};            ///< --accuracy; empty: none
   bool with_error = false;
   int threads = 1;
   double wall = 0.0, cpu = 0.0;  ///< so far [s]

@@ -43,6 +43,10 @@ std::string words_of(const std::string& name, const std::string& apparatus) {
   return scene::words_from_name(name);
 }
 
+std::string with_unit(const std::string& words, const std::string& unit) {
+  return unit.empty() ? words : fmt::format("{} ({})", words, unit);
+}
+
 std::string person_number(double value, const std::string& name) {
   if (!std::isfinite(value)) return "–";
   if (unit_of(name) == "m3") value *= 1e3;  // litres, as unit_for_people() says

@@ -17,4 +17,7 @@ using scene::unit_of;
 /// A number in that unit with as many digits as it has: millimetres whole, else three.
 std::string person_number(double value, const std::string& name);
 
+/// "spread (mm)", or the words alone where there is no unit.
+std::string with_unit(const std::string& words, const std::string& unit);
+
 }  // namespace tremie::report

@@ -60,13 +60,12 @@ std::string basis_in_words(const scene::ErrorEstimate& error, const std::string&
 Trust trust_of(const scene::Outcome& o) {
   const Checks& c = o.checks;
   Trust trust{c.reasons.empty() && o.status == Status::completed, {}, c.reasons};
-  const bool has_cells = std::isfinite(c.volume_change);  // a material cell has none
   if (o.error && !o.error->bars.empty())
     trust.text = fmt::format("The error of cells and steps is the ± above ({}). ",
                              basis_in_words(*o.error, o.apparatus));
-  else if (has_cells)
+  else if (o.has_points)
     trust.text = "The error of cells and steps was not estimated; --with-error does. ";
-  if (has_cells)
+  if (o.has_points)
     trust.text += fmt::format("The concrete's volume changed by {:+.2g} %; {}; {}.", 100.0 * c.volume_change,
                               c.unconverged_steps == 0 ? fmt::format("all {} steps converged", o.cost.steps)
                                                        : fmt::format("{} of {} steps did not converge",
@@ -126,7 +125,6 @@ ValueTable cost_table(const Cost& c) {
 void add_shape(const scene::Outcome& o, const MovingPicture& moving, Page& page) {
   if (!o.stage || o.stage->full || moving.frames.empty()) return;
   Shape shape{.title = "Shape at the end",
-              .places = {},
               .point_size = o.stage->point_size,
               .walls = moving.fixed,
               .mirrored = moving.mirrored,
@@ -156,8 +154,7 @@ void add_disc(const scene::Outcome& o, const MovingPicture& moving, Page& page) 
     if (table.columns.empty() || table.columns.front().name != "radius_mm") continue;
     for (const auto& column : table.columns) {
       if (column.name != "shear_rate_per_s") continue;
-      Disc disc{
-          .title = "Section at the end", .words = "shear rate (1/s)", .radius = {}, .values = column.values};
+      Disc disc{.title = "Section at the end", .words = "shear rate (1/s)", .values = column.values};
       for (const double r : table.columns.front().values) disc.radius.push_back(1e-3 * r);
       disc.solids = turned_at_the_end(moving);
       if (std::string svg = disc_svg(disc); !svg.empty())
@@ -216,13 +213,12 @@ std::string report_html(const scene::Outcome& o, const std::string& resolved, co
     if (const LineChart drawn = line_chart(chart, o); can_be_drawn(drawn))
       page.figures.push_back({chart.file.substr(0, chart.file.find('.')), "", chart_svg(drawn)});
   if (moving.frames.size() > 1) page.moving = thinned(moving, 40, 2500);
-  ValueTable results{"Results", {}};
+  ValueTable results{"Results"};
   add_rows(o, o.results, "", results);
   page.numbers = {results, cost_table(o.cost)};
   page.words = {
       "λ, the flocculation state: 0 in concrete just sheared, growing at rest; the yield stress is (1 + λ) "
-      "times the "
-      "dynamic one.",
+      "times the dynamic one.",
       "–: does not apply to this run."};
   page.made = facts_of_this_run(command);
   page.scene = resolved;

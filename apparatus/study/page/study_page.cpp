@@ -13,13 +13,10 @@ namespace tremie::study {
 namespace {
 
 using report::unit_for_people;
+using report::with_unit;
 using report::words_of;
 
 constexpr std::size_t most_figures = 24;
-
-std::string with_unit(const std::string& words, const std::string& unit) {
-  return unit.empty() ? words : fmt::format("{} ({})", words, unit);
-}
 
 std::string percent(double share, double error) {
   return fmt::format("{:.0f} ± {:.0f} %", 100.0 * share, 100.0 * error);
@@ -43,10 +40,7 @@ report::Figure bars(const Definition& study, const ResultIndices& one) {
   report::BarChart chart{
       .title = "What matters: " + words_of(one.result),
       .x_label = "share of the variance; line: 95 % interval",
-      .names = {},
-      .series = {"by the factor alone (first order)", "with all that it interacts in (total)"},
-      .values = {},
-      .errors = {}};
+      .series = {"by the factor alone (first order)", "with all that it interacts in (total)"}};
   for (std::size_t i = 0; i < one.indices.size(); ++i) {
     const SobolIndex& index = one.indices[i];
     chart.names.push_back(study.factors[i].key);
@@ -62,10 +56,10 @@ report::Figure bars(const Definition& study, const ResultIndices& one) {
 /// The trusted rows' result over a factor, as points.
 report::Curve scatter(const Design& design, const Collected& collected, std::size_t factor,
                       std::size_t result) {
-  report::Curve curve{.label = "runs", .x = {}, .y = {}, .mark = report::Mark::points};
+  report::Curve curve{.label = "runs", .mark = report::Mark::points};
   for (const Row& row : collected.rows) {
-    const auto* number = std::get_if<double>(&row.readings[result]);
-    if (row.exit_code != 0 || !number || row.row >= design.size()) continue;
+    const auto number = trusted_number(row, result);
+    if (!number || row.row >= design.size()) continue;
     curve.x.push_back(design[row.row][factor].number), curve.y.push_back(*number);
   }
   return curve;
@@ -101,7 +95,7 @@ void add_figures(const Definition& study, const Design& design, const Collected&
 }
 
 report::GridTable index_table(const Definition& study, const ResultIndices& one) {
-  report::GridTable table{"Sobol indices of " + words_of(one.result), {"factor", "first order", "total"}, {}};
+  report::GridTable table{"Sobol indices of " + words_of(one.result), {"factor", "first order", "total"}};
   for (std::size_t i = 0; i < one.indices.size(); ++i)
     table.rows.push_back({study.factors[i].key, percent(one.indices[i].first, one.indices[i].first_error),
                           percent(one.indices[i].total, one.indices[i].total_error)});
@@ -110,7 +104,7 @@ report::GridTable index_table(const Definition& study, const ResultIndices& one)
 
 /// Smallest, mean and largest of each result over the trusted rows.
 report::GridTable range_table(const Definition& study, const Design& design, const Collected& collected) {
-  report::GridTable table{"Results over the runs", {"", "rows", "smallest", "mean", "largest"}, {}};
+  report::GridTable table{"Results over the runs", {"", "rows", "smallest", "mean", "largest"}};
   for (std::size_t r = 0; r < study.results.size(); ++r) {
     const auto values = scatter(design, collected, 0, r).y;
     if (values.empty()) continue;
@@ -138,9 +132,7 @@ std::string rows_sentence(const Design& design, const Collected& collected) {
                         moving);
   return fmt::format(
              "{} of {} runs can be trusted; {} are not to be trusted, {} failed, {} are missing (study.csv "
-             "names "
-             "them and "
-             "says why). The error of cells and steps of a run is in none of the numbers.",
+             "names them and says why). The error of cells and steps of a run is in none of the numbers.",
              good, design.size(), doubtful, collected.rows.size() - good - doubtful,
              collected.missing.size()) +
          unfinished;
@@ -163,10 +155,9 @@ std::string study_html(const Definition& study, const Design& design, const Coll
   add_figures(study, design, collected, indices, page);
   for (const ResultIndices& one : indices) page.grids.push_back(index_table(study, one));
   if (auto ranges = range_table(study, design, collected); !ranges.rows.empty()) page.grids.push_back(ranges);
-  page.words = {
-      "First order: the share of a result's variance that goes away once the factor is known.",
-      "Total: the share that is left while the factor alone is not known; more than first order where it "
-      "interacts with others."};
+  page.words = {"First order: the share of a result's variance that goes away once the factor is known.",
+                "Total: the share that is left while the factor alone is not known; more than first order "
+                "where it interacts with others."};
   page.made = report::facts_of_this_run(command);
   page.scene = study.resolved_base, page.scene_words = "The base scene, every value in SI";
   return to_html(page);

@@ -37,8 +37,8 @@ double share(const Factor& factor, const Level& level) {
 Rows rows_of(const Definition& study, const Design& design, const Collected& collected, std::size_t result) {
   Rows rows{OT::Sample(0, study.factors.size()), OT::Sample(0, 1)};
   for (const Row& row : collected.rows) {
-    const auto* number = std::get_if<double>(&row.readings[result]);
-    if (row.exit_code != 0 || !number) continue;
+    const auto number = trusted_number(row, result);
+    if (!number) continue;
     OT::Point x(study.factors.size());
     for (std::size_t i = 0; i < x.getSize(); ++i) x[i] = share(study.factors[i], design[row.row][i]);
     rows.x.add(x);

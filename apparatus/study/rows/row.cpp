@@ -62,6 +62,11 @@ Row empty_row(std::size_t results, std::size_t row) {
 
 }  // namespace
 
+std::optional<double> trusted_number(const Row& row, std::size_t reading) {
+  const auto* number = std::get_if<double>(&row.readings[reading]);
+  return row.exit_code == 0 && number ? std::optional(*number) : std::nullopt;
+}
+
 bool same_result(const Row& a, const Row& b) {
   return a.row == b.row && a.readings == b.readings && a.status == b.status && a.exit_code == b.exit_code &&
          a.reasons == b.reasons && a.moving == b.moving;

@@ -27,6 +27,9 @@ struct Row {
   bool moving = false;  ///< its concrete still moved when its time was over: the results are of then
 };
 
+/// A reading's number where the run is to be trusted and has one.
+std::optional<double> trusted_number(const Row& row, std::size_t reading);
+
 /// The same in all but the time that it took.
 bool same_result(const Row& a, const Row& b);
 

@@ -39,16 +39,14 @@ Case closed_loop_case(Depth depth) {
               .equation = "(τ0, μ) → torque at seven speeds → (τ0, μ)",
               .reference = "the parameters that went in, 54 Pa and 35.8 Pa·s",
               .norm = "relative error of the parameter",
-              .series = {{"yield stress", {}}, {"plastic viscosity", {}}},
-              .bounds = {}};
+              .series = {{"yield stress", {}}, {"plastic viscosity", {}}}};
   for (double cell : {8.0, 4.0, 2.0, 1.0}) {
     if (cell == 1.0 && depth == Depth::quick) break;
     const Loop loop = flow_curve_and_back({54.0, 35.8}, cell);
     one.series[0].runs.push_back(loop.yield_stress);
     one.series[1].runs.push_back(loop.plastic_viscosity);
   }
-  for (const Series& s : one.series)
-    one.bounds.push_back({.what = s.scheme + ": error at 2 mm", .value = s.runs[2].error, .limit = 0.02});
+  bound_errors(one, ": error at 2 mm", 0.02, 2);
   return {9, "Closed loop", {one}};
 }
 

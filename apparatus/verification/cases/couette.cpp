@@ -39,9 +39,7 @@ Problem steady(Depth depth) {
               .title = "Steady torque",
               .equation = "(1/r²) d(r² τ)/dr = 0 between r = 63.5 and 143 mm, exact Bingham",
               .reference = "Reiner-Riwlin, the plug's radius solved for",
-              .norm = "relative error of the torque",
-              .series = {},
-              .bounds = {}};
+              .norm = "relative error of the torque"};
   struct Flow {
     const char* name;
     Bingham bingham;
@@ -57,10 +55,9 @@ Problem steady(Depth depth) {
       if (cell == 1.0 && depth == Depth::quick) break;
       series.runs.push_back(torque_error(flow.bingham, flow.speed, cell));
     }
-    one.bounds.push_back(
-        {.what = series.scheme + ": error at 2 mm", .value = series.runs[2].error, .limit = 5e-3});
     one.series.push_back(std::move(series));
   }
+  bound_errors(one, ": error at 2 mm", 5e-3, 2);
   return one;
 }
 
@@ -93,8 +90,7 @@ Problem decay(Depth depth) {
                   "the radial equations by SUNDIALS IDA, 800 intervals, tolerance 1e-8; the vane reaches its "
                   "speed within 0.1 s, as the instrument's motor does, or at once",
               .norm = "largest relative error of the torque from 0.5 to 20 s",
-              .series = {{"speed reached in 0.1 s", {}}, {"reference at full speed from the start", {}}},
-              .bounds = {}};
+              .series = {{"speed reached in 0.1 s", {}}, {"reference at full speed from the start", {}}}};
   std::vector<double> times;
   for (int i = 0; i <= 40; ++i) times.push_back(0.5 * i);
   CouetteOptions options;
@@ -114,10 +110,7 @@ Problem decay(Depth depth) {
     one.series[0].runs.push_back({label, cell, decay_error(outcome.series, started), cpu});
     one.series[1].runs.push_back({label, cell, decay_error(outcome.series, at_once), cpu});
   }
-  for (const Series& series : one.series)
-    one.bounds.push_back({.what = series.scheme + ": error at the finest cells",
-                          .value = series.runs.back().error,
-                          .limit = 0.01});
+  bound_errors(one, ": error at the finest cells", 0.01);
   return one;
 }
 
@@ -131,16 +124,13 @@ Run blade_error(icar_vane::Scene scene, double cell_mm, double reference) {
 }
 
 Problem blades(Depth depth) {
-  Problem one{
-      .name = "blades",
-      .title = "Steady torque on four blades, plane section, 0.25 rev/s",
-      .equation = "div σ = 0 around blades of 3 mm in a container of 143 mm",
-      .reference =
-          "finite elements in polar coordinates, quadratic velocities, the regularisation taken to its "
-          "limit (vane_finite_elements.hpp)",
-      .norm = "relative error of the torque",
-      .series = {},
-      .bounds = {}};
+  Problem one{.name = "blades",
+              .title = "Steady torque on four blades, plane section, 0.25 rev/s",
+              .equation = "div σ = 0 around blades of 3 mm in a container of 143 mm",
+              .reference =
+                  "finite elements in polar coordinates, quadratic velocities, the regularisation taken to "
+                  "its limit (vane_finite_elements.hpp)",
+              .norm = "relative error of the torque"};
   struct Fluid {
     const char* name;
     double tau_0;
@@ -160,10 +150,9 @@ Problem blades(Depth depth) {
       if (cell == 2.5 && depth == Depth::quick) break;
       series.runs.push_back(blade_error(scene, cell, reference));
     }
-    one.bounds.push_back(
-        {.what = series.scheme + ": error at 5 mm", .value = series.runs[1].error, .limit = 0.01});
     one.series.push_back(std::move(series));
   }
+  bound_errors(one, ": error at 5 mm", 0.01, 1);
   return one;
 }
 

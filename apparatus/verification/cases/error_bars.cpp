@@ -47,8 +47,7 @@ double reading_of(const scene::Outcome& outcome, const std::string& name) {
 Case error_bars_case(Depth depth) {
   Table table{.name = "Error bars against the answer on cells of half the size",
               .text = "",
-              .columns = {"scene", "value", "bar", "finer", "inside", "extra CPU", "basis"},
-              .rows = {}};
+              .columns = {"scene", "value", "bar", "finer", "inside", "extra CPU", "basis"}};
   int inside = 0, n = 0;
   for (const Trial& trial : trials(depth)) {
     const auto scene = scene::read_text(trial.scene, trial.name);

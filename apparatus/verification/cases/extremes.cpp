@@ -13,19 +13,11 @@ namespace tremie::verification {
 namespace {
 
 const char* word_of(Ending ending) {
-  switch (ending) {
-    case Ending::right:
-      return "right";
-    case Ending::flagged:
-      return "exit 3";
-    case Ending::no_meaning:
-      return "exit 2";
-    case Ending::too_slow:
-      return "stopped";
-    case Ending::silent_wrong:
-      break;
-  }
-  return "**silent**";
+  return ending == Ending::right        ? "right"
+         : ending == Ending::flagged    ? "exit 3"
+         : ending == Ending::no_meaning ? "exit 2"
+         : ending == Ending::too_slow   ? "stopped"
+                                        : "**silent**";
 }
 
 /// One line without what a table cannot hold.
@@ -50,8 +42,7 @@ Case extremes_case(Depth depth) {
   judge_monotony(cases, verdicts);
   Table table{.name = "Stiff and extreme scenes",
               .text = "",
-              .columns = {"family", "case", "ends", "reading", "CPU s", "why"},
-              .rows = {}};
+              .columns = {"family", "case", "ends", "reading", "CPU s", "why"}};
   std::map<Ending, int> count;
   double cpu = 0.0;
   for (std::size_t i = 0; i < cases.size(); ++i) {
@@ -64,9 +55,8 @@ Case extremes_case(Depth depth) {
   }
   table.text = fmt::format(
       "{} scenes in {:.0f} s of CPU: {} right, {} marked as not to be trusted (exit 3), {} refused (exit 2), "
-      "{} "
-      "stopped after {:g} s, {} wrong without saying so. The reading is the spread in mm or the torque in N "
-      "m.",
+      "{} stopped after {:g} s, {} wrong without saying so. The reading is the spread in mm or the torque in "
+      "N m.",
       cases.size(), cpu, count[Ending::right], count[Ending::flagged], count[Ending::no_meaning],
       count[Ending::too_slow], limit, count[Ending::silent_wrong]);
   table.bounds = {{.what = "scenes wrong without saying so",

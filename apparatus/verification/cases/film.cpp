@@ -31,8 +31,7 @@ Problem flow_problem(const std::string& name, const std::string& title, const Fl
                                     : "a channel 100 mm wide, τ = ρ g_x (H/2 − y)",
               .reference = "",
               .norm = "relative L2 error of the velocity profile",
-              .series = {{"ADMM", {}}, {"primal-dual Newton", {}}},
-              .bounds = {}};
+              .series = {{"ADMM", {}}, {"primal-dual Newton", {}}}};
   for (int cells : {8, 16, 32, 64}) {
     if (cells == 64 && depth == Depth::quick) break;
     one.series[0].runs.push_back(profile_error(flow, law, YieldMethod::admm, cells, profile));
@@ -90,9 +89,7 @@ Problem schemes(const Flow& flow, Depth depth) {
               .equation = flow.film ? "a film 100 mm deep on a no-slip plane, τ = ρ g_x (H − y)"
                                     : "a channel 100 mm wide, τ = ρ g_x (H/2 − y)",
               .reference = "τ(γ̇) = ρ g_x (…) solved for γ̇ and summed by Gauss' rule on 4000 intervals",
-              .norm = "relative L2 error of the velocity profile",
-              .series = {},
-              .bounds = {}};
+              .norm = "relative L2 error of the velocity profile"};
   struct Scheme {
     const char* name;
     ShapeFunctions shape;

@@ -45,8 +45,7 @@ Problem history_problem(const std::string& name, const std::string& title, const
                          {"forward Euler (for comparison)", {}},
                          {"CVODE", {}},
                          {"update along the history", {}},
-                         {"ARKODE", {}}},
-              .bounds = {}};
+                         {"ARKODE", {}}}};
   const auto reference = flocculation_ode(c.history, c.thixotropy, study::tau_0, c.lambda_0, c.times).lambda;
   for (double dt : {0.2, 0.1, 0.05, 0.02, 0.01, 1e-3, 1e-4}) {
     if (dt > c.largest_dt || (dt < 1e-3 && depth == Depth::quick)) continue;

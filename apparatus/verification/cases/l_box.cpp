@@ -13,27 +13,22 @@ Run at_rest(double cell, bool side_walls) {
   const double start = cpu_seconds();
   const l_box::Outcome outcome = l_box::run(scene);
   return {fmt::format("{:g} mm", 1e3 * cell), cell, lbox_reference::compare(scene, outcome).error.worst,
-          cpu_seconds() - start,
-          outcome.checks.unconverged_steps
-              ? fmt::format("{} unconverged steps", outcome.checks.unconverged_steps)
-              : ""};
+          cpu_seconds() - start, unconverged(outcome.checks.unconverged_steps)};
 }
 
 }  // namespace
 
 Case l_box_case(Depth depth) {
-  Problem one{
-      .name = "l_box_at_rest",
-      .title = "The profile of the L-box at rest",
-      .equation = "50 Pa, 30 Pa·s, gate at 30 cm/s, 180 s",
-      .reference =
-          "F(h) − F(h2) = (τ0/ρg)(L − x) from 100 mm behind the gate on, at the volume there; F = h²/2, or "
-          "with side walls (W/2)[h − (W/2) ln(1 + 2h/W)]",
-      .norm = "largest mean of h / h_exact − 1 over 100 mm",
-      .series = {{"plane", {}}, {"plane with side walls", {}}},
-      .bounds = {},
-      .notes = {"Within a depth of the gate concrete falls from the column's walls, and a bed at its yield "
-                "stress bears it: lbox_study.md has how high."}};
+  Problem one{.name = "l_box_at_rest",
+              .title = "The profile of the L-box at rest",
+              .equation = "50 Pa, 30 Pa·s, gate at 30 cm/s, 180 s",
+              .reference =
+                  "F(h) − F(h2) = (τ0/ρg)(L − x) from 100 mm behind the gate on, at the volume there; F = "
+                  "h²/2, or with side walls (W/2)[h − (W/2) ln(1 + 2h/W)]",
+              .norm = "largest mean of h / h_exact − 1 over 100 mm",
+              .series = {{"plane", {}}, {"plane with side walls", {}}},
+              .notes = {"Within a depth of the gate concrete falls from the column's walls, and a bed at its "
+                        "yield stress bears it: lbox_study.md has how high."}};
   for (Series& series : one.series) {
     const bool side_walls = &series != &one.series.front();
     for (double cell : {0.02, 0.01, 0.005})

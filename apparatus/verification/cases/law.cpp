@@ -69,15 +69,12 @@ Case law_case(Depth depth) {
               .title = "Simple shear in rotated frames",
               .equation = "τ = 2 [μ + s(γ̇)] D', equations (27), (32), (33)",
               .reference = "the laws' definitions in extended precision",
-              .norm = "largest |Qᵀ τ Q − τ_exact| / |τ_exact| over rates and frames",
-              .series = {},
-              .bounds = {}};
+              .norm = "largest |Qᵀ τ Q − τ_exact| / |τ_exact| over rates and frames"};
   one.series = {worst_over_frames("exact Bingham", ExactBingham{0.0}, frames),
                 worst_over_frames("Papanastasiou, m = 5 s", Papanastasiou{5.0}, frames),
                 worst_over_frames("Papanastasiou, m = 1e6 s", Papanastasiou{1e6}, frames),
                 worst_over_frames("bi-viscous, 0.1 1/s", BiViscous{0.1}, frames)};
-  for (const Series& s : one.series)
-    one.bounds.push_back({.what = s.scheme + ": worst error", .value = s.runs[0].error, .limit = 1e-12});
+  bound_errors(one, ": worst error", 1e-12);
   return {1, "The law", {one}};
 }
 

@@ -42,8 +42,7 @@ Case paper_case(Depth) {
           "Axisymmetric, exact yield, no slip, α = 0.01, 20 s, mm. The paper: physical tests (± 30 mm), and "
           "the loss of its own model.",
       .columns = {"mix", "computed", "physical", "after rest", "physical after rest", "loss", "physical loss",
-                  "the paper's model", "mean λ at the end", "peak of the mean γ̇, 1/s"},
-      .rows = {}};
+                  "the paper's model", "mean λ at the end", "peak of the mean γ̇, 1/s"}};
   for (const Mixture& mixture : mixtures) {
     const auto fresh = flow(mixture, 0.0, 20.0), rested = flow(mixture, 240.0, 20.0);
     table.rows.push_back({mixture.name, mm(fresh.results.spread), fmt::format("{:.0f}", mixture.physical_0),

@@ -72,9 +72,7 @@ Problem measured(const Test& test, Depth depth) {
               .equation = fmt::format("Bingham, {:g} Pa and {:g} Pa·s, no slip, with inertia, {:g} s of flow",
                                       test.tau_0, test.mu, test.duration),
               .reference = "body-fitted Lagrangian finite elements, exact yield",
-              .norm = "largest relative error of the spread at the reference's times from 1 s on",
-              .series = {},
-              .bounds = {}};
+              .norm = "largest relative error of the spread at the reference's times from 1 s on"};
   for (const Scheme& scheme : schemes(depth == Depth::quick ? 20.0 : test.finest_explicit)) {
     Series series{scheme.name, {}};
     for (const double across : sizes(depth))
@@ -109,8 +107,7 @@ Table budgets(const Problem& one) {
               .text = fmt::format(
                   "Errors below {:.1f} % are within the reference's own, and none is better than another.",
                   100.0 * of_the_reference),
-              .columns = {"CPU s", "best", "its error", "the default's best"},
-              .rows = {}};
+              .columns = {"CPU s", "best", "its error", "the default's best"}};
   double behind = 0.0;
   for (const double budget : {0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0}) {
     const Best best = best_within(budget, one.series), usual = best_within(budget, {&one.series[0], 1});

@@ -28,28 +28,26 @@ Run column_at_rest(int levels, double tau_0) {
   bodies::fill_box<Geometry>(body, low, high, 2, [&](const auto& x) { return rho * g * (height - x[up]); });
   StepSettings settings;
   settings.dt_max = 0.05;
-  int unconverged = 0;
-  while (body.time < 1.0) unconverged += !implicit_step(body, ExactBingham{}, settings).converged;
+  int unconverged_steps = 0;
+  while (body.time < 1.0) unconverged_steps += !implicit_step(body, ExactBingham{}, settings).converged;
   double worst = 0.0;
   for (std::size_t p = 0; p < body.points.size(); ++p) {
     const double head = pressure(body.points.ln_J[p], body.mix.K) / (rho * g);
     worst = std::max(worst, std::abs(head - (height - body.points.x[p][up])) / height);
   }
   return {fmt::format("{} cells over the height", levels), h, worst, cpu_seconds() - start,
-          unconverged ? fmt::format("{} unconverged steps", unconverged) : ""};
+          unconverged(unconverged_steps)};
 }
 
 Problem hydrostatic(Depth depth) {
-  Problem one{
-      .name = "hydrostatic",
-      .title = "Hydrostatic pressure",
-      .equation = "∇p = ρg, a column between free-slip walls, 54 Pa; 1 s",
-      .reference = "p = ρg(H − z)",
-      .norm = "largest |p − p_exact| / ρgH over the points",
-      .series = {{"plane strain", {}}, {"axisymmetric", {}}, {"3D", {}}, {"plane, Newtonian", {}}},
-      .bounds = {},
-      .notes = {"One pressure a cell balances a weight up to a pressure of alternating sign, ρgh/6, below "
-                "a free surface: first order, and 1 % needs 40 cells over the height."}};
+  Problem one{.name = "hydrostatic",
+              .title = "Hydrostatic pressure",
+              .equation = "∇p = ρg, a column between free-slip walls, 54 Pa; 1 s",
+              .reference = "p = ρg(H − z)",
+              .norm = "largest |p − p_exact| / ρgH over the points",
+              .series = {{"plane strain", {}}, {"axisymmetric", {}}, {"3D", {}}, {"plane, Newtonian", {}}},
+              .notes = {"One pressure a cell balances a weight up to a pressure of alternating sign, ρgh/6, "
+                        "below a free surface: first order, and 1 % needs 40 cells over the height."}};
   for (int levels : {10, 20, 40, 80}) {
     if (levels == 80 && depth == Depth::quick) break;
     one.series[0].runs.push_back(column_at_rest<PlaneStrain>(levels, 54.0));
@@ -57,8 +55,7 @@ Problem hydrostatic(Depth depth) {
     if (levels <= 40) one.series[2].runs.push_back(column_at_rest<ThreeD>(levels, 54.0));
     one.series[3].runs.push_back(column_at_rest<PlaneStrain>(levels, 0.0));
   }
-  for (const Series& s : one.series)
-    one.bounds.push_back({.what = s.scheme + ": error at 40 cells", .value = s.runs[2].error, .limit = 0.01});
+  bound_errors(one, ": error at 40 cells", 0.01, 2);
   return one;
 }
 
@@ -92,8 +89,7 @@ Case rest_case(Depth depth) {
                    .equation = "d/dt Σ m (x × v + spin) = 0",
                    .reference = "its start",
                    .norm = "relative drift of the angular momentum",
-                   .series = {{"APIC, implicit", {free_rotation(1000)}}},
-                   .bounds = {}};
+                   .series = {{"APIC, implicit", {free_rotation(1000)}}}};
   rotation.bounds = {
       {.what = "drift over 1000 steps", .value = rotation.series[0].runs[0].error, .limit = 1e-10}};
   return {3, "Bodies at rest and in rigid motion", {hydrostatic(depth), rotation}};

@@ -19,7 +19,6 @@ constexpr std::array<Cell, 4> cells{{{10, 10}, {10, 5}, {5, 5}, {5, 2.5}}};
 
 std::string label_of(const Cell& cell) { return fmt::format("{:g} x {:g} mm", cell[0], cell[1]); }
 double size_of(const Cell& cell) { return std::sqrt(cell[0] * cell[1]); }
-std::string unconverged(std::int64_t n) { return n ? fmt::format("{} unconverged steps", n) : ""; }
 
 Problem newtonian(Depth depth) {
   Problem one{.name = "huppert",
@@ -27,8 +26,7 @@ Problem newtonian(Depth depth) {
               .equation = "ρ h² ≪ μ t: ∂h/∂t = (ρg/3μ) ∇·(h³∇h)",
               .reference = "Huppert (1982): R = 0.894 (gV³/3ν)^(1/8) t^(1/8)",
               .norm = "largest relative error of the radius at any step",
-              .series = {{"implicit", {}}},
-              .bounds = {}};
+              .series = {{"implicit", {}}}};
   HuppertFit fit{};
   for (const Cell& cell : {Cell{10, 5}, Cell{7.5, 3.75}, Cell{5, 2.5}}) {
     if (cell[0] == 7.5 && depth == Depth::quick) continue;
@@ -52,8 +50,7 @@ Problem slender(Depth depth) {
       .equation = "lubrication with a plug: Q = ρg S Y² (3h − Y)/(6μ), Y = h − τ0/(ρg S)",
       .reference = "finite volumes from the body's shape at 2 s; and published diameters from 3 to 120 s",
       .norm = "largest relative error of the spread from 3 to 120 s",
-      .series = {{"against the equation", {}}, {"against the published diameters", {}}},
-      .bounds = {}};
+      .series = {{"against the equation", {}}, {"against the published diameters", {}}}};
   for (const Cell& cell : {Cell{15, 7.5}, Cell{10, 5}, Cell{7.5, 3.75}}) {
     if (cell[0] == 7.5 && depth == Depth::quick) break;
     const double start = cpu_seconds();
@@ -68,8 +65,7 @@ Problem slender(Depth depth) {
         {label_of(cell), size_of(cell), equation, cpu, unconverged(flow.unconverged)});
     one.series[1].runs.push_back({label_of(cell), size_of(cell), published, cpu});
   }
-  for (const Series& s : one.series)
-    one.bounds.push_back({.what = s.scheme + ": finest cells", .value = s.runs.back().error, .limit = 0.03});
+  bound_errors(one, ": finest cells", 0.03);
   return one;
 }
 
@@ -111,7 +107,6 @@ Problem slump(Depth depth) {
       .reference = "body-fitted Lagrangian finite elements, ± 2 mm of 445 (± 0.4 %)",
       .norm = "largest relative error of the spread at 1, 2, 3, 5, 10 and 20 s",
       .series = {{"exact yield, ADMM", {}}, {"exact yield, Newton", {}}, {"Papanastasiou, m = 100 s", {}}},
-      .bounds = {},
       .notes = {"Errors below 0.4 % are within the reference's own."}};
   Model admm, newton, regularised;
   newton.method = MethodKind::newton;
@@ -138,8 +133,7 @@ Problem rest_balance() {
       .reference =
           "a = √3π/4 (with the plug's normal stress) as the lower, a = 0 (the law) as the upper bound",
       .norm = "relative difference of the spread to the lower bound",
-      .series = {{"implicit", {}}},
-      .bounds = {}};
+      .series = {{"implicit", {}}}};
   const double start = cpu_seconds();
   const auto outcome = cone::run(instant_release(130.0, 30.2, cone::Scene{}.duration));
   const Fluid fluid{2400.0, gravity, 130.0, 30.2};

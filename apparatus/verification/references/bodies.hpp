@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <limits>
 
+#include "apparatus/run/body_readings.hpp"
 #include "libmpm/constitutive/yield_law.hpp"
 #include "libmpm/implicit/step.hpp"
 #include "libmpm/particles/seeding.hpp"
@@ -18,31 +19,12 @@ inline Mix concrete(double tau_0, double mu, double K = 1e6) {
   return mix;
 }
 
-template <int D>
-double total_mass(const Points<D>& points) {
-  double sum = 0.0;
-  for (double m : points.mass) sum += m;
-  return sum;
-}
-
-template <int D>
-double total_volume(const Points<D>& points) {
-  double sum = 0.0;
-  for (std::size_t p = 0; p < points.size(); ++p) sum += points.volume(p);
-  return sum;
-}
+using experiment::kinetic_energy, experiment::total_mass, experiment::total_volume;
 
 template <int D>
 Vec<D> momentum(const Points<D>& points) {
   Vec<D> sum = Vec<D>::Zero();
   for (std::size_t p = 0; p < points.size(); ++p) sum += points.mass[p] * points.v[p];
-  return sum;
-}
-
-template <int D>
-double kinetic_energy(const Points<D>& points) {
-  double sum = 0.0;
-  for (std::size_t p = 0; p < points.size(); ++p) sum += 0.5 * points.mass[p] * points.v[p].squaredNorm();
   return sum;
 }
 
@@ -65,13 +47,6 @@ Eigen::Vector3d angular_momentum(const Body<std::conditional_t<D == 2, PlaneStra
            (x.cross(v) + Eigen::Vector3d(B(2, 1) - B(1, 2), B(0, 2) - B(2, 0), B(1, 0) - B(0, 1)));
   }
   return sum;
-}
-
-template <int D>
-bool all_finite(const Points<D>& points) {
-  for (std::size_t p = 0; p < points.size(); ++p)
-    if (!points.x[p].allFinite() || !points.v[p].allFinite() || !std::isfinite(points.ln_J[p])) return false;
-  return true;
 }
 
 /// A box of points, n across each cell in each direction, without pressure unless `pressure_at` says

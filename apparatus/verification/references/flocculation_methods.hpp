@@ -1,7 +1,6 @@
 #pragma once
 
-// The ways to integrate lambda that the work-precision study compares. Forward Euler and the gate without a
-// split are here for comparison alone; no program uses them.
+// The ways to integrate lambda that are compared. Forward Euler is here for comparison alone; no program uses it.
 
 #include <cmath>
 #include <span>
@@ -39,13 +38,6 @@ inline double one_step(const Thixotropy& t, double lambda, const Step& s) {
 /// The update of a history whose rate is known inside the step.
 inline double one_step_along(const Thixotropy& t, double lambda, const Step& s) {
   return flocculation_step_along(lambda, t, tau_0, s.piece.rate, s.start, s.g0, s.g1, s.dt);
-}
-
-/// The whole step on the side of the gate that its mean rate is on.
-inline double one_step_without_split(const Thixotropy& t, double lambda, const Step& s) {
-  const double mean = 0.5 * (s.g0 + s.g1);
-  const auto& k = std::get<GatedKinetics>(t.kinetics);
-  return mean < k.gamma_c ? lambda + t.A_thix / tau_0 * s.dt : lambda * std::exp(-k.alpha * mean * s.dt);
 }
 
 inline double one_step_of_euler(const Thixotropy& t, double lambda, const Step& s) {

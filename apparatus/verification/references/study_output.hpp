@@ -27,7 +27,7 @@ inline std::string made_by(const std::string& target) {
 
 /// A curve over the rows of a table, to be filled.
 inline report::Curve curve(const std::string& label, report::Mark mark = report::Mark::line) {
-  return {.label = label, .x = {}, .y = {}, .mark = mark};
+  return {.label = label, .mark = mark};
 }
 
 inline void add_point(report::Curve& curve, double x, double y) {

@@ -4,7 +4,7 @@
 
 #include "apparatus/parts/cone/set_up.hpp"
 #include "apparatus/registry/registry.hpp"
-#include "apparatus/slump_flow/apparatus.hpp"
+#include "apparatus/slump_flow/slump_flow.hpp"
 
 namespace tremie {
 
