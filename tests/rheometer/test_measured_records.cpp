@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libmpm/constitutive/yield_law.hpp"
+#include "libmpm/constitutive/laws/yield_law.hpp"
 #include "rheometer/fits/replicates.hpp"
 #include "rheometer/protocol/protocol.hpp"
 #include "rheometer/reference/couette_flow.hpp"

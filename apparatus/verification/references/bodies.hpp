@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <limits>
 
-#include "libmpm/constitutive/yield_law.hpp"
+#include "libmpm/constitutive/laws/yield_law.hpp"
 #include "libmpm/implicit/step.hpp"
 #include "libmpm/particles/seeding.hpp"
 

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <vector>
 
-#include "libmpm/constitutive/yield_law.hpp"
+#include "libmpm/constitutive/laws/yield_law.hpp"
 #include "libmpm/grid/active_grid.hpp"
 #include "libmpm/implicit/matrix_free/cell_simd.hpp"
 
