@@ -4,7 +4,7 @@
 
 #include "libmpm/boundary/rigid_wall.hpp"
 #include "libmpm/constitutive/laws/yield_law.hpp"
-#include "libmpm/explicit/parts.hpp"
+#include "libmpm/explicit/state.hpp"
 
 namespace tremie {
 
