@@ -1,6 +1,6 @@
 #pragma once
 
-// The scene keys of the yield laws, as the laws state them (libmpm/constitutive/law_interface.hpp): parameters of
+// The scene keys of the yield laws, as the laws state them (libmpm/constitutive/laws/law_interface.hpp): parameters of
 // [model] beside model.yield, and those of [mix] that take the place of plastic_viscosity. Those of the wall laws
 // (libmpm/boundary/wall_law_interface.hpp): parameters of [floor] beside floor.contact.
 
@@ -12,7 +12,7 @@
 #include "apparatus/scene/keys.hpp"
 #include "apparatus/scene/values.hpp"
 #include "libmpm/boundary/wall_law.hpp"
-#include "libmpm/constitutive/yield_law.hpp"
+#include "libmpm/constitutive/laws/yield_law.hpp"
 
 namespace tremie::scene {
 

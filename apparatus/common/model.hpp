@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "libmpm/boundary/wall_law.hpp"
-#include "libmpm/constitutive/yield_law.hpp"
+#include "libmpm/constitutive/laws/yield_law.hpp"
 
 namespace tremie {
 

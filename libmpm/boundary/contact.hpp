@@ -37,7 +37,7 @@ struct ContactPoint {
 };
 
 template <int D>
-double normal_velocity(const ContactPoint<D>& c, const std::vector<std::array<int, power(3, D)>>& cell_nodes,
+double normal_velocity(const ContactPoint<D>& c, const CellNodes<D>& cell_nodes,
                        const std::vector<Vec<D>>& v) {
   const auto N = c.shape();
   Vec<D> u = Vec<D>::Zero();
@@ -46,7 +46,7 @@ double normal_velocity(const ContactPoint<D>& c, const std::vector<std::array<in
 }
 
 /// The same in 3D, one direction at a time.
-inline double normal_velocity(const ContactPoint<3>& c, const std::vector<std::array<int, 27>>& cell_nodes,
+inline double normal_velocity(const ContactPoint<3>& c, const CellNodes<3>& cell_nodes,
                               const std::vector<Vec<3>>& v) {
   const std::array<int, 27>& nodes = cell_nodes[c.cell];
   Vec<3> u = Vec<3>::Zero();
@@ -64,8 +64,7 @@ inline double normal_velocity(const ContactPoint<3>& c, const std::vector<std::a
 
 /// Closes contacts that are violated and opens those that would pull; true if any changed.
 template <int D>
-bool update_active(std::vector<ContactPoint<D>>& contact,
-                   const std::vector<std::array<int, power(3, D)>>& cell_nodes,
+bool update_active(std::vector<ContactPoint<D>>& contact, const CellNodes<D>& cell_nodes,
                    const std::vector<Vec<D>>& v) {
   bool changed = false;
 #pragma omp parallel for schedule(static) reduction(|| : changed)
@@ -79,8 +78,7 @@ bool update_active(std::vector<ContactPoint<D>>& contact,
 }
 
 template <int D>
-void add_contact_forces(const std::vector<ContactPoint<D>>& contact,
-                        const std::vector<std::array<int, power(3, D)>>& cell_nodes,
+void add_contact_forces(const std::vector<ContactPoint<D>>& contact, const CellNodes<D>& cell_nodes,
                         const std::vector<Vec<D>>& v, Eigen::VectorXd& R) {
   for (const ContactPoint<D>& c : contact) {
     if (!c.active) continue;
@@ -105,8 +103,7 @@ void add_contact_stiffness(const std::vector<ContactPoint<D>>& contact, BlockSys
 
 /// Contact energy [W]: quadratic in the violation.
 template <int D>
-double contact_energy(const std::vector<ContactPoint<D>>& contact,
-                      const std::vector<std::array<int, power(3, D)>>& cell_nodes,
+double contact_energy(const std::vector<ContactPoint<D>>& contact, const CellNodes<D>& cell_nodes,
                       const std::vector<Vec<D>>& v) {
   double energy = 0.0;
   for (const ContactPoint<D>& c : contact) {

@@ -11,16 +11,14 @@ namespace tremie {
 
 /// Force of the penalty on the concrete at a point [N].
 template <int D>
-Vec<D> wall_force(const PointTerm<D>& t, const std::vector<std::array<int, power(3, D)>>& cell_nodes,
-                  const std::vector<Vec<D>>& v) {
+Vec<D> wall_force(const PointTerm<D>& t, const CellNodes<D>& cell_nodes, const std::vector<Vec<D>>& v) {
   Vec<D> u = Vec<D>::Zero();
   for (int i = 0; i < power(3, D); ++i) u += t.N[i] * v[cell_nodes[t.cell][i]];
   return t.penalty * (t.target - u);
 }
 
 template <int D>
-void add_penalty_forces(std::span<const PointTerm<D>> terms,
-                        const std::vector<std::array<int, power(3, D)>>& cell_nodes,
+void add_penalty_forces(std::span<const PointTerm<D>> terms, const CellNodes<D>& cell_nodes,
                         const std::vector<Vec<D>>& v, Eigen::VectorXd& R) {
   for (const PointTerm<D>& t : terms) {
     const Vec<D> force = wall_force<D>(t, cell_nodes, v);
@@ -40,8 +38,7 @@ void add_penalty_stiffness(std::span<const PointTerm<D>> terms, BlockSystem<D>& 
 }
 
 template <int D>
-double penalty_energy(std::span<const PointTerm<D>> terms,
-                      const std::vector<std::array<int, power(3, D)>>& cell_nodes,
+double penalty_energy(std::span<const PointTerm<D>> terms, const CellNodes<D>& cell_nodes,
                       const std::vector<Vec<D>>& v) {
   double energy = 0.0;
   for (const PointTerm<D>& t : terms) {

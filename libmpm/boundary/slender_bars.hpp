@@ -110,8 +110,7 @@ inline void add_bar(const std::array<Axis, 3>& axes, const Vec<3>& foot, int alo
 
 /// Force of the concrete on a bar at a point [N].
 template <int D>
-Vec<D> bar_force(const PointTerm<D>& bar, const std::vector<std::array<int, power(3, D)>>& cell_nodes,
-                 const std::vector<Vec<D>>& v) {
+Vec<D> bar_force(const PointTerm<D>& bar, const CellNodes<D>& cell_nodes, const std::vector<Vec<D>>& v) {
   return bar.scale * (bar.force + bar.viscous * slip_velocity(bar, cell_nodes, v));
 }
 

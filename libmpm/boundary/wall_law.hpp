@@ -3,7 +3,6 @@
 // The registry of wall laws: one line a law. What a law states is in wall_law_interface.hpp. Implicit and explicit steps
 // and the scene's keys go through this variant and name no law.
 
-#include <cstddef>
 #include <variant>
 
 #include "libmpm/boundary/coulomb.hpp"
@@ -15,12 +14,9 @@ namespace tremie {
 using WallLaw = std::variant<NoSlip, Coulomb, FreeSlip>;
 
 /// Calls visit(L{}) for every law L of the registry.
-template <std::size_t i = 0, class Visit>
+template <class Visit>
 void for_each_wall_law(Visit visit) {
-  if constexpr (i < std::variant_size_v<WallLaw>) {
-    visit(std::variant_alternative_t<i, WallLaw>{});
-    for_each_wall_law<i + 1>(visit);
-  }
+  for_each_of<WallLaw>(visit);
 }
 
 inline FaceKind face(const WallLaw& law) {

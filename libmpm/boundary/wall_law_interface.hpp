@@ -15,5 +15,5 @@
 //   use                what `tremie check` says of a floor that has it
 //   keys()             the keys beside `contact` that give its parameters, as yield laws have them
 
-#include "libmpm/constitutive/law_interface.hpp"
+#include "libmpm/constitutive/laws/law_interface.hpp"
 #include "libmpm/grid/axis.hpp"

@@ -69,15 +69,13 @@ Vec<D> slip_velocity(const NodeTerm<D>& term, const std::vector<Vec<D>>& v) {
   return w;
 }
 template <int D>
-Vec<D> slip_velocity(const NodeTerm<D>& term, const std::vector<std::array<int, power(3, D)>>&,
-                     const std::vector<Vec<D>>& v) {
+Vec<D> slip_velocity(const NodeTerm<D>& term, const CellNodes<D>&, const std::vector<Vec<D>>& v) {
   return slip_velocity(term, v);
 }
 
 /// w of a term at a point.
 template <int D>
-Vec<D> slip_velocity(const PointTerm<D>& term, const std::vector<std::array<int, power(3, D)>>& cell_nodes,
-                     const std::vector<Vec<D>>& v) {
+Vec<D> slip_velocity(const PointTerm<D>& term, const CellNodes<D>& cell_nodes, const std::vector<Vec<D>>& v) {
   Vec<D> u = -term.velocity;
   for (int i = 0; i < power(3, D); ++i) u += term.N[i] * v[cell_nodes[term.cell][i]];
   return term.scale * u;
@@ -96,8 +94,8 @@ double force_scale(const PointTerm<D>& term, const Vec<D>& w) {
 /// One ADMM update of the terms' forces and slip velocities; true when all slip velocities agree with the grid's within
 /// the tolerance.
 template <int D, class Term>
-bool update_admm(const std::vector<std::array<int, power(3, D)>>& cell_nodes, const std::vector<Vec<D>>& v,
-                 double over_relaxation, double tolerance, std::vector<Term>& terms) {
+bool update_admm(const CellNodes<D>& cell_nodes, const std::vector<Vec<D>>& v, double over_relaxation,
+                 double tolerance, std::vector<Term>& terms) {
   double residuals = 0.0, scale = 0.0;
   for (Term& t : terms) {
     if (t.stiffness == 0.0) continue;  // nothing yields

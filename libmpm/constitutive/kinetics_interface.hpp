@@ -31,7 +31,7 @@
 
 #include <string_view>
 
-#include "libmpm/constitutive/law_interface.hpp"
+#include "libmpm/constitutive/laws/law_interface.hpp"
 
 namespace tremie {
 

@@ -25,7 +25,7 @@ inline double shear_rate(const SymmetricTensor& rate_of_deformation) {
   return std::sqrt(2.0 * contract(d, d));
 }
 
-/// Deviatoric stress tau = 2 [mu + s(gamma_dot)] D' [Pa] of a yield law (libmpm/constitutive/yield_law.hpp).
+/// Deviatoric stress tau = 2 [mu + s(gamma_dot)] D' [Pa] of a yield law (libmpm/constitutive/laws/yield_law.hpp).
 template <class Law>
 SymmetricTensor deviatoric_stress(const Law& law, double mu, double tau_y,
                                   const SymmetricTensor& rate_of_deformation) {

@@ -3,7 +3,7 @@
 // What goes on from one explicit step to the next: a body that is read back steps to the same bits.
 
 #include "libmpm/body/archive.hpp"
-#include "libmpm/explicit/parts.hpp"
+#include "libmpm/explicit/state.hpp"
 
 namespace tremie {
 

@@ -80,14 +80,13 @@ class PressureCells {
   /// Of the cells of eight points.
   f64x8 divergence(const GroupCells& cells) const {
     f64x8 of;
-    for (std::size_t l = 0; l < cells.size(); ++l) of[l] = divergence_[static_cast<std::size_t>(cells[l])];
+    for (std::size_t l = 0; l < cells.size(); ++l) of[l] = divergence_[cells[l]];
     return of;
   }
 
   /// Adds the impulses of n points, pressure times volume times step.
   void push(const GroupCells& cells, int points, const f64x8& impulse) {
-    for (int l = 0; l < points; ++l)
-      impulse_[static_cast<std::size_t>(cells[static_cast<std::size_t>(l)])] += impulse[l];
+    for (int l = 0; l < points; ++l) impulse_[cells[l]] += impulse[l];
   }
 
   /// Gives the nodes the impulses of all cells, when all points have pushed.

@@ -98,7 +98,7 @@ void enter_controls(ExplicitState<Geometry>& state, const Tile<Geometry::dim>& t
     if (N == 0.0) continue;
     const auto b = static_cast<std::size_t>(tile.block[static_cast<std::size_t>(block)]);
     const auto k = static_cast<std::size_t>(p.n++);
-    f64x4& node = state.grid.v[b][static_cast<std::size_t>(within)];
+    f64x4& node = state.grid.v[b][within];
     const f64x4 push = N * node[D] * normal, gain = N * push * normal;
     p.node[k] = &node, p.N[k] = N, p.push[k] = push;
     for (int d = 0; d < D; ++d) inertia += gain[d];

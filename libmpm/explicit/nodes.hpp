@@ -51,7 +51,7 @@ void update_block(const Body<Geometry>& body, const WallLaw* law, const Buffers&
   constexpr int D = Geometry::dim;
   const NodeBlock<D>& block = state.grid.blocks[b];
   sum_tiles<D>(block, buffers, [&](int k, const f64x4& total) {
-    f64x4& v = state.grid.v[b][static_cast<std::size_t>(k)];
+    f64x4& v = state.grid.v[b][k];
     update(v, total, static_cast<std::size_t>(k));
     if (v[D] > 0.0)
       apply_walls<D>(state.grid.axes, state.shape, body.walls, law, control_of<D>(block.at, k), v);

@@ -83,8 +83,7 @@ f64x8 update_yield_stress(const Mix& mix, double dt, const f64x8& gamma_dot, Lan
 template <int D>
 f64x8 represented_volumes(const HeldCells<D>* held, const GroupCells& cell) {
   f64x8 of = all_lanes(1.0);
-  for (std::size_t l = 0; l < cell.size() && held; ++l)
-    of[l] = static_cast<double>((*held)[static_cast<std::size_t>(cell[l])].hold);
+  for (std::size_t l = 0; l < cell.size() && held; ++l) of[l] = static_cast<double>((*held)[cell[l]].hold);
   return of;
 }
 

@@ -30,8 +30,8 @@
 #include <cmath>
 #include <limits>
 
+#include "libmpm/constitutive/laws/yield_law.hpp"
 #include "libmpm/constitutive/mix.hpp"
-#include "libmpm/constitutive/yield_law.hpp"
 #include "libmpm/transfer/shape_functions.hpp"
 
 namespace tremie {

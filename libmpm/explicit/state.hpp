@@ -60,8 +60,8 @@ struct Holding {
   double drift = 1e300;  ///< of the points since they were found, in cells
 
   const HeldCells<D>* of(int tile) const {
-    const int at = of_tile[static_cast<std::size_t>(tile)];
-    return at < 0 ? nullptr : &cells[static_cast<std::size_t>(at)];
+    const int at = of_tile[tile];
+    return at < 0 ? nullptr : &cells[at];
   }
 };
 
@@ -83,4 +83,19 @@ struct ExplicitState {
   std::int64_t sorts = 0;
 };
 
+/// Brings the state of the points to body.points.
+template <class Geometry>
+void write_back(ExplicitState<Geometry>& state, Body<Geometry>& body) {
+  write_back<Geometry::dim>(state.points, state.grid.axes, body.points);
+}
+
+namespace detail {
+
+/// How far points may drift, in cells, before they are sorted anew: a step may add half a cell, and a tile sees one
+/// beyond its own. Rows that follow the points miss what has come into their cell from the next tile: sooner for them.
+inline double drift_allowed(const ExplicitSettings& settings) {
+  return settings.stress == StressUpdate::last && settings.cell_pressure ? 0.1 : 0.45;
+}
+
+}  // namespace detail
 }  // namespace tremie

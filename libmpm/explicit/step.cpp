@@ -11,6 +11,30 @@ namespace tremie {
 
 namespace detail {
 
+template <class Real, class Geometry>
+void sort_points(const ExplicitSettings& settings, ExplicitState<Geometry>& state) {
+  constexpr int D = Geometry::dim;
+  lay_tiles<Real, D>(state.grid,
+                     sort_into_tiles<D>(state.grid.axes, state.shape.stencil_shift(), state.points),
+                     settings.transfer.flip);
+  state.drift = 0.0;
+  state.wall_drift = state.holding.drift = 1e300;
+  ++state.sorts;
+}
+
+/// The limits of the step to come, and its length.
+template <class Geometry>
+void choose_next_step(const Body<Geometry>& body, const YieldLaw& law, const ExplicitSettings& settings,
+                      ExplicitState<Geometry>& state) {
+  double h = state.grid.axes[0].h;
+  for (const Axis& a : state.grid.axes) h = std::min(h, a.h);
+  const double tau_y = static_yield_stress(state.lambda_max, body.mix.tau_0);
+  state.limits = stability_limits(body.mix, law, tau_y, largest_eigenvalues(state.shape.kind), h);
+  state.next_dt = settings.fixed_dt.value_or(
+      std::min({settings.dt_max, settings.safety * state.limits.together,
+                state.max_speed > 0.0 ? settings.cfl * h / state.max_speed : settings.dt_max}));
+}
+
 /// use(Real{}) with the precision of shape functions, sums and the law.
 template <class Use>
 auto in_precision(const ExplicitSettings& settings, Use use) {

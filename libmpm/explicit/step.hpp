@@ -3,8 +3,8 @@
 // Explicit steps of the material point method. They are compiled in step.cpp, for Axisymmetric, PlaneStrain and ThreeD.
 
 #include "libmpm/boundary/rigid_wall.hpp"
-#include "libmpm/constitutive/yield_law.hpp"
-#include "libmpm/explicit/parts.hpp"
+#include "libmpm/constitutive/laws/yield_law.hpp"
+#include "libmpm/explicit/state.hpp"
 
 namespace tremie {
 

@@ -45,7 +45,7 @@ std::array<f64x8, D> places_of(const LanePoints<D>& points, std::size_t group) {
 template <int D>
 int filled(const LanePoints<D>& points, std::size_t group) {
   int n = f64x8_size;
-  while (n > 0 && points.id[group][static_cast<std::size_t>(n - 1)] < 0) --n;
+  while (n > 0 && points.id[group][n - 1] < 0) --n;
   return n;
 }
 
@@ -89,10 +89,10 @@ void write_back(LanePoints<D>& lanes, const std::array<Axis, D>& axes, Points<D>
     to.resize(lanes.n);
     for (std::size_t g = 0; g < lanes.groups(); ++g)
       for (int l = 0; l < f64x8_size; ++l) {
-        const std::int32_t id = lanes.id[g][static_cast<std::size_t>(l)];
+        const std::int32_t id = lanes.id[g][l];
         if (id < 0) break;  // the rest fills up the group
         for (std::size_t k = 0; k < from.size(); ++k)
-          detail::entry(to[static_cast<std::size_t>(id)], static_cast<int>(k)) = from[k][g][l];
+          detail::entry(to[id], static_cast<int>(k)) = from[k][g][l];
       }
   });
   for (int d = 0; d < D; ++d) {

@@ -77,17 +77,7 @@ class CellFills {
 
   /// Whether all cells around one hold concrete.
   bool inside(const Index<D>& cell) const {
-    for (int k = 0; k < power(3, D); ++k) {
-      Index<D> n = local_offset<D>(k);
-      bool beyond_wall = false;
-      for (int d = 0; d < D; ++d) {
-        n[d] += cell[d] - 1;
-        beyond_wall = beyond_wall || (axes_[d].wall_low() && n[d] < 0) ||
-                      (axes_[d].wall_high() && n[d] >= axes_[d].n_cells);
-      }
-      if (!beyond_wall && at(n) == 0.0) return false;
-    }
-    return true;
+    return is_surrounded<D>(axes_, cell, [&](const Index<D>& n) { return at(n) != 0.0; });
   }
 
  private:
@@ -164,13 +154,13 @@ void look_into_wall_cells(ExplicitState<Geometry>& state) {
       Index<D> cell;
       for (int d = D - 1, rest = k; d >= 0; --d, rest /= tile_pressure_cells)
         cell[d] = axes[d].cell(tile.at[d] * tile_cells + rest % tile_pressure_cells - 2);
-      HeldCell<D>& held_cell = held[static_cast<std::size_t>(k)];
+      HeldCell<D>& held_cell = held[k];
       held_cell.hold = 1.0F;
       held_cell.place.fill(0.5F);
       const detail::HeldAt wall = detail::held_at<D>(axes, cell);
       if (wall.into == 0) continue;
       held_cell.hold = static_cast<float>(represented_volume<Geometry>(fills, axes, cell));
-      held_cell.place[static_cast<std::size_t>(wall.axis)] = static_cast<float>(fills.height(cell));
+      held_cell.place[wall.axis] = static_cast<float>(fills.height(cell));
     }
   }
 }

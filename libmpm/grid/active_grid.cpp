@@ -15,7 +15,7 @@ void sort_points_by_cell(ActiveGrid<D>& grid, const std::vector<Index<D>>& cell)
   std::vector<int> count(slot.size(), 0);
   for (std::size_t p = 0; p < cell.size(); ++p) {
     cell_slot[p] = static_cast<int>(grid.cell_map.offset(cell[p]));
-    ++count[static_cast<std::size_t>(cell_slot[p])];
+    ++count[cell_slot[p]];
   }
   const auto active = static_cast<std::size_t>(count.size()) -
                       static_cast<std::size_t>(std::count(count.begin(), count.end(), 0));
@@ -30,8 +30,8 @@ void sort_points_by_cell(ActiveGrid<D>& grid, const std::vector<Index<D>>& cell)
   std::vector<int> next(grid.cell_begin.begin(), grid.cell_begin.end() - 1);
   resize_for_overwrite(grid.order, cell.size());
   for (std::size_t p = 0; p < cell.size(); ++p) {
-    const int c = slot[static_cast<std::size_t>(cell_slot[p])];
-    grid.order[static_cast<std::size_t>(next[static_cast<std::size_t>(c)]++)] = static_cast<int>(p);
+    const int c = slot[cell_slot[p]];
+    grid.order[next[c]++] = static_cast<int>(p);
   }
 }
 
@@ -102,22 +102,6 @@ void find_mirrors(ActiveGrid<D>& grid) {
 }  // namespace detail
 
 template <int D>
-void activate_cells(ActiveGrid<D>& grid, const std::vector<Vec<D>>& x) {
-  std::vector<Index<D>> cell(x.size());
-  Index<D> low, high;
-  for (int d = 0; d < D; ++d) low[d] = high[d] = 0;
-  for (std::size_t p = 0; p < x.size(); ++p) {
-    cell[p] = detail::cell_of<D>(grid.axes, x[p]);
-    for (int d = 0; d < D; ++d) {
-      low[d] = p == 0 ? cell[p][d] : std::min(low[d], cell[p][d]);
-      high[d] = p == 0 ? cell[p][d] : std::max(high[d], cell[p][d]);
-    }
-  }
-  grid.cell_map.reset(low, high);
-  detail::sort_points_by_cell<D>(grid, cell);
-}
-
-template <int D>
 std::int64_t count_active_cells(const std::array<Axis, D>& axes, const std::vector<Vec<D>>& positions) {
   if (positions.empty()) return 0;
   Index<D> low = detail::cell_of<D>(axes, positions.front()), high = low;
@@ -129,7 +113,7 @@ std::int64_t count_active_cells(const std::array<Axis, D>& axes, const std::vect
   seen.reset(low, high);
   std::int64_t cells = 0;
   for (const Vec<D>& x : positions) {
-    int& slot = seen.value[static_cast<std::size_t>(seen.offset(detail::cell_of<D>(axes, x)))];
+    int& slot = seen.value[seen.offset(detail::cell_of<D>(axes, x))];
     if (slot < 0) ++cells;
     slot = 0;
   }
@@ -138,14 +122,23 @@ std::int64_t count_active_cells(const std::array<Axis, D>& axes, const std::vect
 
 template <int D>
 void activate(ActiveGrid<D>& grid, const std::vector<Vec<D>>& x) {
-  activate_cells(grid, x);
+  std::vector<Index<D>> cell(x.size());
+  Index<D> low{}, high{};
+  for (std::size_t p = 0; p < x.size(); ++p) {
+    cell[p] = detail::cell_of<D>(grid.axes, x[p]);
+    for (int d = 0; d < D; ++d) {
+      low[d] = p == 0 ? cell[p][d] : std::min(low[d], cell[p][d]);
+      high[d] = p == 0 ? cell[p][d] : std::max(high[d], cell[p][d]);
+    }
+  }
+  grid.cell_map.reset(low, high);
+  detail::sort_points_by_cell<D>(grid, cell);
   detail::number_nodes(grid);
   detail::find_mirrors(grid);
 }
 
-#define TREMIE_ACTIVATE_IN(D)                                               \
-  template void activate_cells(ActiveGrid<D>&, const std::vector<Vec<D>>&); \
-  template void activate(ActiveGrid<D>&, const std::vector<Vec<D>>&);       \
+#define TREMIE_ACTIVATE_IN(D)                                         \
+  template void activate(ActiveGrid<D>&, const std::vector<Vec<D>>&); \
   template std::int64_t count_active_cells<D>(const std::array<Axis, D>&, const std::vector<Vec<D>>&);
 TREMIE_ACTIVATE_IN(1)
 TREMIE_ACTIVATE_IN(2)

@@ -64,6 +64,10 @@ struct MirrorNode {
   bool operator==(const MirrorNode&) const = default;
 };
 
+/// The active nodes of every cell, local node by local node.
+template <int D>
+using CellNodes = std::vector<std::array<int, power(3, D)>>;
+
 template <int D>
 struct ActiveGrid {
   static constexpr int n_local = power(3, D);  ///< nodes seen by a cell
@@ -71,8 +75,8 @@ struct ActiveGrid {
   std::array<Axis, D> axes;
   std::vector<Block<D>> blocks;
 
-  std::vector<Index<D>> cell_index;                  ///< of each active cell, in lexicographic order
-  std::vector<std::array<int, n_local>> cell_nodes;  ///< active node of each local node
+  std::vector<Index<D>> cell_index;  ///< of each active cell, in lexicographic order
+  CellNodes<D> cell_nodes;
   std::vector<int> cell_begin;       ///< points order[cell_begin[c] .. cell_begin[c+1]) lie in cell c
   std::vector<int> order;            ///< point numbers sorted by cell, ties in point order
   std::vector<Index<D>> node_index;  ///< node index of each active node
@@ -154,6 +158,17 @@ Index<D> cell_of(const std::array<Axis, D>& axes, const Vec<D>& x) {
   return c;
 }
 
+/// The first block that something lies in by every direction, in(block, d).
+template <int D, class In>
+const Block<D>* find_block(const ActiveGrid<D>& grid, In in) {
+  for (const Block<D>& b : grid.blocks) {
+    int d = 0;
+    while (d < D && in(b, d)) ++d;
+    if (d == D) return &b;
+  }
+  return nullptr;
+}
+
 template <int D, class Visit>
 void for_each_index(const IndexMap<D>& map, Visit visit) {
   Index<D> i = map.low;
@@ -164,11 +179,6 @@ void for_each_index(const IndexMap<D>& map, Visit visit) {
 }
 
 }  // namespace detail
-
-/// Finds the active cells alone, and sorts the points by cell: nodes are left as they are. Positions
-/// must be finite.
-template <int D>
-void activate_cells(ActiveGrid<D>& grid, const std::vector<Vec<D>>& x);
 
 /// Number of cells with points, without sorting them. Positions must be finite.
 template <int D>
@@ -212,42 +222,40 @@ void fold_mirrors(const ActiveGrid<D>& grid, std::vector<double>& share) {
 /// The block that fills a cell, if any.
 template <int D>
 const Block<D>* block_of_cell(const ActiveGrid<D>& grid, const Index<D>& cell) {
-  for (const Block<D>& b : grid.blocks) {
-    bool in = true;
-    for (int d = 0; d < D; ++d) in = in && cell[d] >= b.low[d] && cell[d] < b.high[d];
-    if (in) return &b;
-  }
-  return nullptr;
+  return detail::find_block(
+      grid, [&](const Block<D>& b, int d) { return cell[d] >= b.low[d] && cell[d] < b.high[d]; });
 }
 
 /// The block that a node lies in or on, if any.
 template <int D>
 const Block<D>* block_of_node(const ActiveGrid<D>& grid, const Index<D>& node) {
-  for (const Block<D>& b : grid.blocks) {
-    bool in = true;
-    for (int d = 0; d < D; ++d)
-      in =
-          in && node[d] >= grid.axes[d].first_node(b.low[d]) && node[d] <= grid.axes[d].first_node(b.high[d]);
-    if (in) return &b;
+  return detail::find_block(grid, [&](const Block<D>& b, int d) {
+    return node[d] >= grid.axes[d].first_node(b.low[d]) && node[d] <= grid.axes[d].first_node(b.high[d]);
+  });
+}
+
+/// Whether every cell around one is beyond a wall or holds concrete, as holds(neighbour) has it.
+template <int D, class Holds>
+bool is_surrounded(const std::array<Axis, D>& axes, const Index<D>& cell, Holds holds) {
+  for (int k = 0; k < power(3, D); ++k) {
+    Index<D> n = local_offset<D>(k);
+    bool beyond_wall = false;
+    for (int d = 0; d < D; ++d) {
+      const Axis& a = axes[d];
+      n[d] = a.cell(n[d] + cell[d] - 1);
+      beyond_wall = beyond_wall || (a.wall_low() && n[d] < 0) || (a.wall_high() && n[d] >= a.n_cells);
+    }
+    if (!beyond_wall && !holds(n)) return false;
   }
-  return nullptr;
+  return true;
 }
 
 /// Whether a cell lies inside the body: every neighbour holds concrete or is beyond a wall.
 template <int D>
 bool is_inside(const ActiveGrid<D>& grid, const Index<D>& cell) {
-  for (int k = 0; k < power(3, D); ++k) {
-    Index<D> n = local_offset<D>(k);
-    bool beyond_wall = false;
-    for (int d = 0; d < D; ++d) {
-      const Axis& a = grid.axes[d];
-      n[d] += cell[d] - 1;
-      n[d] = a.cell(n[d]);
-      beyond_wall = beyond_wall || (a.wall_low() && n[d] < 0) || (a.wall_high() && n[d] >= a.n_cells);
-    }
-    if (!beyond_wall && grid.cell_map.at(n) < 0 && !block_of_cell<D>(grid, n)) return false;
-  }
-  return true;
+  return is_surrounded<D>(grid.axes, cell, [&](const Index<D>& n) {
+    return grid.cell_map.at(n) >= 0 || block_of_cell<D>(grid, n) != nullptr;
+  });
 }
 
 }  // namespace tremie

@@ -105,15 +105,4 @@ inline SplineValues splines(const Axis& axis, int c, double s) {
   return v;
 }
 
-/// Integral of node j's spline over the cells that exist [m]: its share of the line. Without repeated knots.
-inline double spline_integral(const Axis& axis, int j) {
-  double share = 1.0;
-  if (axis.wall_low()) share = j == 0 ? 1.0 / 3.0 : j == 1 ? 2.0 / 3.0 : share;
-  if (axis.wall_high()) {
-    const int k = axis.n_cells + 1 - j;
-    share -= k == 0 ? 2.0 / 3.0 : k == 1 ? 1.0 / 3.0 : 0.0;
-  }
-  return share * axis.h;
-}
-
 }  // namespace tremie

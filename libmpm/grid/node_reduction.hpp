@@ -57,14 +57,14 @@ class NodeReduction {
   void lay_out(const ActiveGrid<3>& grid, int unit = 1);
 
   int size() const { return static_cast<int>(chunks_.size()); }
-  int first_cell(int chunk) const { return chunks_[static_cast<std::size_t>(chunk)].first_cell; }
-  int last_cell(int chunk) const { return chunks_[static_cast<std::size_t>(chunk)].last_cell; }
+  int first_cell(int chunk) const { return chunks_[chunk].first_cell; }
+  int last_cell(int chunk) const { return chunks_[chunk].last_cell; }
   void resize_for_overwrite(ReductionBuffer& buffer) const { buffer.resize_for_overwrite(buffer_nodes_); }
 
   /// Where a chunk's nodes are added to: node i at 4 i. Cleared before.
   template <class Scalar>
   Scalar* clear(int chunk, ReductionBuffer& buffer) const {
-    const Chunk& s = chunks_[static_cast<std::size_t>(chunk)];
+    const Chunk& s = chunks_[chunk];
     Scalar* to = buffer.values<Scalar>() + 4 * s.place;
     std::fill(to + 4 * std::ptrdiff_t{s.first_node}, to + 4 * std::ptrdiff_t{s.last_node}, Scalar(0));
     return to;
@@ -103,6 +103,22 @@ class NodeReduction {
   std::size_t buffer_nodes_ = 0;  ///< of all chunks
 };
 
+/// take(node, sum) for every node of a grid, with the sum of the four numbers that its cells give it: give(c, to) adds
+/// those of cell c to node i at to + 4 i.
+template <class Give, class Take>
+void sum_over_cells(const ActiveGrid<3>& grid, Give give, Take take) {
+  NodeReduction reduction;
+  reduction.lay_out(grid);
+  ReductionBuffer buffer;
+  reduction.resize_for_overwrite(buffer);
+  const auto give_chunk = [&](int chunk, double* to) {
+    for (int c = reduction.first_cell(chunk); c < reduction.last_cell(chunk); ++c) give(c, to);
+  };
+#pragma omp parallel
+  reduction.sweep_in_region<double>(buffer, give_chunk,
+                                    [&](int i) { take(i, reduction.sum_at<double, 4>(i, buffer)); });
+}
+
 /// A power of two chunks, so that two, four or eight threads share them evenly.
 inline void NodeReduction::lay_out(const ActiveGrid<3>& grid, int unit) {
   const int n_cells = grid.n_cells(), n_nodes = grid.n_nodes(), units = (n_cells + unit - 1) / unit;
@@ -110,7 +126,7 @@ inline void NodeReduction::lay_out(const ActiveGrid<3>& grid, int unit) {
   while (2 * n <= most_chunks && 2 * n * least_cells <= n_cells &&
          2 * n * least_planes <= grid.cell_map.extent[0])
     n *= 2;
-  chunks_.resize(static_cast<std::size_t>(n));
+  chunks_.resize(n);
 #pragma omp parallel for schedule(static)
   for (int s = 0; s < n; ++s) {
     const auto begin = [&](int k) {
@@ -118,11 +134,11 @@ inline void NodeReduction::lay_out(const ActiveGrid<3>& grid, int unit) {
     };
     Chunk chunk{begin(s), begin(s + 1), n_nodes, 0, 0};
     for (int c = chunk.first_cell; c < chunk.last_cell; ++c)
-      for (int i : grid.cell_nodes[static_cast<std::size_t>(c)]) {
+      for (int i : grid.cell_nodes[c]) {
         chunk.first_node = std::min(chunk.first_node, i);
         chunk.last_node = std::max(chunk.last_node, i + 1);
       }
-    chunks_[static_cast<std::size_t>(s)] = chunk;
+    chunks_[s] = chunk;
   }
   // Neither end lies behind an earlier chunk's, so that the chunks of a node follow each other.
   for (std::size_t s = chunks_.size() - 1; s > 0; --s)
@@ -133,10 +149,10 @@ inline void NodeReduction::lay_out(const ActiveGrid<3>& grid, int unit) {
   std::ptrdiff_t place = 0;
   int next = 0;
   for (int s = 0; s < n; ++s) {
-    Chunk& chunk = chunks_[static_cast<std::size_t>(s)];
+    Chunk& chunk = chunks_[s];
     chunk.place = place - chunk.first_node;
     place += chunk.last_node - chunk.first_node;
-    for (; next < chunk.last_node; ++next) first_chunk_[static_cast<std::size_t>(next)] = s;
+    for (; next < chunk.last_node; ++next) first_chunk_[next] = s;
   }
   buffer_nodes_ = static_cast<std::size_t>(place);
 }

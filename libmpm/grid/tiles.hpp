@@ -126,7 +126,7 @@ int row_in_cube(int k, int row) {
 template <class Real, int D>
 void read_blocks(const Tile<D>& tile, const std::vector<BlockNodes<D>>& blocks, NodeCube<Real, D>& cube) {
   for (int k = 0; k < power(2, D); ++k) {
-    const f64x4* from = blocks[static_cast<std::size_t>(tile.block[k])].data();
+    const f64x4* from = blocks[tile.block[k]].data();
     for (int row = 0; row < power(tile_cells, D - 1); ++row)
       for (NodeOf<Real>*to = &cube[row_in_cube<D>(k, row)], *end = to + tile_cells; to != end; ++to)
         *to = __builtin_convertvector(*from++, NodeOf<Real>);
@@ -141,7 +141,7 @@ void sum_tiles(const NodeBlock<D>& block, const std::vector<NodeCube<Real, D>>& 
   RowOf<Real> sum[rows] = {};
   for (int k = 0; k < power(2, D); ++k) {
     if (block.tile[k] < 0) continue;
-    const NodeCube<Real, D>& buffer = buffers[static_cast<std::size_t>(block.tile[k])];
+    const NodeCube<Real, D>& buffer = buffers[block.tile[k]];
     for (int row = 0; row < rows; ++row)
       sum[row] = sum[row] + load_row<Real>(&buffer[row_in_cube<D>(k, row)]);
   }
@@ -188,7 +188,7 @@ std::vector<BlockNodes<D>> kept(const std::vector<NodeBlock<D>>& old, const std:
                                 const std::vector<NodeBlock<D>>& blocks) {
   std::vector<BlockNodes<D>> now(blocks.size());
   for (std::size_t b = 0; b < blocks.size(); ++b)
-    if (const int was = find_at<D>(old, blocks[b].at); was >= 0) now[b] = v[static_cast<std::size_t>(was)];
+    if (const int was = find_at<D>(old, blocks[b].at); was >= 0) now[b] = v[was];
   return now;
 }
 

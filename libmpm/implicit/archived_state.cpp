@@ -1,5 +1,7 @@
 #include "libmpm/implicit/archived_state.hpp"
 
+#include "libmpm/geometry/spaces.hpp"
+
 namespace tremie {
 
 template <int D>
@@ -36,12 +38,6 @@ void visit(Archive& archive, ImplicitBody<Geometry>& body) {
 }
 
 #define TREMIE_ARCHIVED_IN(Geometry) template void visit(Archive&, ImplicitBody<Geometry>&);
-TREMIE_ARCHIVED_IN(Axisymmetric)
-TREMIE_ARCHIVED_IN(PlaneStrain)
-#ifndef TREMIE_SECTIONS_ONLY  // the page for the browser has no vane and nothing in space
-TREMIE_ARCHIVED_IN(Couette)
-TREMIE_ARCHIVED_IN(Polar)
-TREMIE_ARCHIVED_IN(ThreeD)
-#endif
+TREMIE_IN_ALL_SPACES(TREMIE_ARCHIVED_IN)
 
 }  // namespace tremie

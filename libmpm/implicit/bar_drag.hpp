@@ -2,7 +2,7 @@
 
 // The drag of slender bars (libmpm/boundary/slender_bars.hpp) in a step's problem.
 
-#include "libmpm/constitutive/yield_law.hpp"
+#include "libmpm/constitutive/laws/yield_law.hpp"
 #include "libmpm/implicit/state.hpp"
 
 namespace tremie::detail {

@@ -13,18 +13,12 @@ template <class Geometry>
 void carry_over_admm_state(const IndexMap<Geometry::dim>& old_map, const ActiveGrid<Geometry::dim>& grid,
                            AdmmState<Geometry>& admm_state) {
   AdmmState<Geometry> now;
-  now.stress.resize(grid.cell_index.size());
-  now.rate.resize(grid.cell_index.size());
-  for (int c = 0; c < grid.n_cells(); ++c) {
-    const int old = old_map.value.empty() ? -1 : old_map.at(grid.cell_index[c]);
-    for (int k = 0; k < power(2, Geometry::dim); ++k) {
-      now.stress[c][k].setZero();
-      now.rate[c][k].setZero();
-      if (old < 0) continue;
-      now.stress[c][k] = admm_state.stress[old][k];
-      now.rate[c][k] = admm_state.rate[old][k];
+  now.resize(grid.cell_index.size());
+  for (int c = 0; c < grid.n_cells() && !old_map.value.empty(); ++c)
+    if (const int old = old_map.at(grid.cell_index[c]); old >= 0) {
+      now.stress[c] = admm_state.stress[old];
+      now.rate[c] = admm_state.rate[old];
     }
-  }
   admm_state = std::move(now);
 }
 

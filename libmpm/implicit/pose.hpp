@@ -8,7 +8,6 @@
 #include "libmpm/boundary/flat_walls.hpp"
 #include "libmpm/boundary/rigid_wall.hpp"
 #include "libmpm/implicit/bar_drag.hpp"
-#include "libmpm/implicit/carry_over.hpp"
 #include "libmpm/implicit/free_surface.hpp"
 #include "libmpm/implicit/problem/cell_weights.hpp"
 
@@ -56,6 +55,24 @@ void add_gravity(ImplicitBody<Geometry>& body, const std::vector<Vec<Geometry::d
     for (std::size_t i = 0; i < v_old.size(); ++i)
       if (body.nodes.mass[i] > 0.0)
         body.nodes.v[i] += dt * (weight[i] / body.nodes.mass[i] - 1.0) * body.gravity;
+  }
+}
+
+/// Terms at nodes go on from the forces of the last step at the same nodes; so does a yield force that the pressure makes.
+template <class Geometry>
+void carry_over_terms(const std::vector<NodeTerm<Geometry::dim>>& old,
+                      const IndexMap<Geometry::dim>& old_nodes, const WallLaw& law,
+                      const ActiveGrid<Geometry::dim>& grid, std::vector<NodeTerm<Geometry::dim>>& terms) {
+  std::vector<int> last_at(old_nodes.value.size(),
+                           -1);  // by old node: the last of its entries, walls before held nodes
+  for (std::size_t k = 0; k < old.size(); ++k) last_at[old[k].node] = static_cast<int>(k);
+  for (auto& t : terms) {
+    const int node = old_nodes.value.empty() ? -1 : old_nodes.at(grid.node_index[t.node]);
+    if (node < 0 || last_at[node] < 0 || old[last_at[node]].normal_axis != t.normal_axis) continue;
+    const NodeTerm<Geometry::dim>& before = old[last_at[node]];
+    if (t.normal_axis >= 0 && follows_pressure(law)) t.limit = before.limit;
+    t.force = before.force;
+    t.slip = before.slip;
   }
 }
 

@@ -8,15 +8,21 @@
 
 namespace tremie::detail {
 
+/// Stress of a step's solution at quadrature point k of cell c, at the strain rate q there.
+template <class Form, class Geometry>
+auto stress_in(const YieldProblem<Geometry>& problem, const YieldLaw& law,
+               const ImplicitBody<Geometry>& body) {
+  return [&](int c, int k, const Vec<Geometry::n_strain>& q) -> Vec<Geometry::n_strain> {
+    return problem.mu * q + Form::stress(law, body.admm_state, c, k);
+  };
+}
+
 /// Yield forces of the wall law from the reactions; returns the relative change of their sum.
 template <class Form, class Geometry>
 double renew_yield_forces(YieldProblem<Geometry>& problem, const YieldLaw& law, const WallLaw& wall_law,
                           const ImplicitBody<Geometry>& body) {
   constexpr int D = Geometry::dim;
-  const auto stress = [&](int c, int k, const Vec<Geometry::n_strain>& q) -> Vec<Geometry::n_strain> {
-    return problem.mu * q + Form::stress(law, body.admm_state, c, k);
-  };
-  const Eigen::VectorXd R = residual(problem, body.v, stress);
+  const Eigen::VectorXd R = residual(problem, body.v, stress_in<Form>(problem, law, body));
   double change = 0.0, sum = 0.0;
   for (NodeTerm<D>& t : problem.wall_nodes) {
     if (t.normal_axis < 0) continue;

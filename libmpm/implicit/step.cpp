@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "libmpm/geometry/spaces.hpp"
 #include "libmpm/implicit/detached_particles.hpp"
 #include "libmpm/implicit/pose.hpp"
 #include "libmpm/implicit/solve.hpp"
@@ -111,17 +112,9 @@ StepReport implicit_step(ImplicitBody<Geometry>& body, const YieldLaw& law, cons
                                                    old_nodes);
 }
 
-template StepReport implicit_step(ImplicitBody<Axisymmetric>&, const YieldLaw&, const StepSettings&,
-                                  const RigidWall<2>&);
-template StepReport implicit_step(ImplicitBody<PlaneStrain>&, const YieldLaw&, const StepSettings&,
-                                  const RigidWall<2>&);
-#ifndef TREMIE_SECTIONS_ONLY  // the page for the browser has no vane and nothing in space
-template StepReport implicit_step(ImplicitBody<Couette>&, const YieldLaw&, const StepSettings&,
-                                  const RigidWall<1>&);
-template StepReport implicit_step(ImplicitBody<Polar>&, const YieldLaw&, const StepSettings&,
-                                  const RigidWall<2>&);
-template StepReport implicit_step(ImplicitBody<ThreeD>&, const YieldLaw&, const StepSettings&,
-                                  const RigidWall<3>&);
-#endif
+#define TREMIE_IMPLICIT_STEP_IN(Geometry)                                                          \
+  template StepReport implicit_step(ImplicitBody<Geometry>&, const YieldLaw&, const StepSettings&, \
+                                    const RigidWall<Geometry::dim>&);
+TREMIE_IN_ALL_SPACES(TREMIE_IMPLICIT_STEP_IN)
 
 }  // namespace tremie

@@ -12,9 +12,7 @@ template <class Form, class Geometry>
 void keep_forces(const YieldProblem<Geometry>& problem, const YieldLaw& law, ImplicitBody<Geometry>& body) {
   constexpr int D = Geometry::dim;
   body.dissipation = 0.0;
-  const auto stress = [&](int c, int k, const Vec<Geometry::n_strain>& q) -> Vec<Geometry::n_strain> {
-    return problem.mu * q + Form::stress(law, body.admm_state, c, k);
-  };
+  const auto stress = stress_in<Form, Geometry>(problem, law, body);
   for (int c = 0; c < problem.grid.n_cells(); ++c)
     for (int k = 0; k < power(2, D); ++k) {
       const auto q = strain_rate(problem, body.v, c, k);

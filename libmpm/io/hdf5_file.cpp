@@ -34,6 +34,13 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
+/// How objects are made that carry no times.
+Handle without_times(hid_t kind) {
+  const hid_t creation = H5Pcreate(kind);
+  H5Pset_obj_track_times(creation, false);
+  return {creation, H5Pclose};
+}
+
 herr_t write_attribute(hid_t object, const std::string& name, hid_t type, const void* value) {
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
   const Handle attribute(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
@@ -72,9 +79,7 @@ void Hdf5File::close() {
 
 void Hdf5File::group(const std::string& path) {
   errno = 0;
-  // Objects carry no times unless asked for; groups are said so explicitly through the creation list.
-  const Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
-  H5Pset_obj_track_times(creation, false);
+  const Handle creation = without_times(H5P_GROUP_CREATE);
   const Handle made(H5Gcreate2(file_, path.c_str(), H5P_DEFAULT, creation, H5P_DEFAULT), H5Gclose);
   check(made);
 }
@@ -110,8 +115,7 @@ void Hdf5File::array(const std::string& path, std::span<const double> values, st
   errno = 0;
   const std::array<hsize_t, 2> size{values.size() / columns, columns};
   const Handle space(H5Screate_simple(columns == 1 ? 1 : 2, size.data(), nullptr), H5Sclose);
-  const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-  H5Pset_obj_track_times(creation, false);
+  const Handle creation = without_times(H5P_DATASET_CREATE);
   if (packed && !values.empty()) {
     H5Pset_chunk(creation, columns == 1 ? 1 : 2, size.data());
     H5Pset_shuffle(creation);
@@ -142,8 +146,7 @@ void Hdf5File::dimension(const std::string& path, std::size_t size, const std::v
   errno = 0;
   const hsize_t places = size;
   const Handle space(H5Screate_simple(1, &places, nullptr), H5Sclose);
-  const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-  H5Pset_obj_track_times(creation, false);
+  const Handle creation = without_times(H5P_DATASET_CREATE);
   {
     const Handle made(
         H5Dcreate2(file_, path.c_str(), H5T_IEEE_F32BE, space, H5P_DEFAULT, creation, H5P_DEFAULT), H5Dclose);

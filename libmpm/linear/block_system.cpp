@@ -43,11 +43,6 @@ void BlockSystem<D>::add_diagonal(int node, int d, double value) {
 }
 
 template <int D>
-double BlockSystem<D>::diagonal(int dof) const {
-  return sparse_->matrix.valuePtr()[diagonal_[dof]];
-}
-
-template <int D>
 void BlockSystem<D>::add_cell(int cell, const CellMatrix& K) {
   const auto& nodes = cell_nodes_[cell];
   if (!mirrors_.empty()) return add_mirrored_cell(cell, K);

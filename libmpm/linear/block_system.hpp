@@ -38,7 +38,6 @@ class BlockSystem {
   /// Numerical factorisation; false where the matrix is not positive definite.
   bool factorise();
   Eigen::VectorXd solve(const Eigen::VectorXd& rhs) const;
-  double diagonal(int dof) const;
 
  private:
   /// Sorted numbers of the nodes that share a cell with each node and are not before it.
@@ -53,7 +52,7 @@ class BlockSystem {
   void add_mirrored_cell(int cell, const CellMatrix& K);
   void add_block(int row, int column, const Mat<D, D>& block, bool same_local_node);
 
-  std::vector<std::array<int, n_local>> cell_nodes_;
+  CellNodes<D> cell_nodes_;
   std::vector<MirrorNode<D>> mirrors_;
   std::vector<int> unknown_;  ///< of each node: itself, or the one that it mirrors
   std::vector<std::vector<int>> neighbours_;

@@ -25,8 +25,7 @@ std::array<double, sizeof...(Others)> block_dots(const Vector& z, const Others&.
   using Sums = std::array<double, sizeof...(Others)>;
   std::vector<Sums> part(static_cast<std::size_t>((z.size() + dot_block - 1) / dot_block));
   for_each_block(z.size(), [&](Eigen::Index i, Eigen::Index size) {
-    part[static_cast<std::size_t>(i / dot_block)] = {
-        static_cast<double>(with.segment(i, size).dot(z.segment(i, size)))...};
+    part[i / dot_block] = {static_cast<double>(with.segment(i, size).dot(z.segment(i, size)))...};
   });
   Sums sum{};
   for (const Sums& p : part)

@@ -16,12 +16,11 @@ int whole_blocks(int rows) { return (std::max(0, rows) + block - 1) / block * bl
 std::vector<int> column_heights(const std::vector<int>& first, int blocks) {
   const int n = static_cast<int>(first.size());
   std::vector<int> last(first.size(), 0);  // by column: the last row that begins there, if any
-  for (int i = 0; i < n; ++i) last[static_cast<std::size_t>(first[static_cast<std::size_t>(i)])] = i;
+  for (int i = 0; i < n; ++i) last[first[i]] = i;
   std::vector<int> heights;
   int end = 0;  // of the rows that begin in the columns so far
   for (int k = 0; k < blocks; ++k) {
-    for (int j = k * block; j < (k + 1) * block; ++j)
-      end = std::max(end, last[static_cast<std::size_t>(j)] + 1);
+    for (int j = k * block; j < (k + 1) * block; ++j) end = std::max(end, last[j] + 1);
     heights.push_back(whole_blocks(end - (k + 1) * block));
   }
   return heights;
@@ -32,8 +31,7 @@ std::vector<int> heights_from_the_last(const std::vector<int>& first, int blocks
   std::vector<int> heights;
   int begin = n;  // the first column of the rows so far
   for (int k = 0; k < blocks; ++k) {
-    for (int i = n - 1 - k * block; i >= n - (k + 1) * block; --i)
-      begin = std::min(begin, first[static_cast<std::size_t>(i)]);
+    for (int i = n - 1 - k * block; i >= n - (k + 1) * block; --i) begin = std::min(begin, first[i]);
     heights.push_back(whole_blocks(n - (k + 1) * block - begin));
   }
   return heights;
@@ -44,7 +42,7 @@ std::vector<int> heights_from_the_last(const std::vector<int>& first, int blocks
 void TwistedCholesky::reset(const std::vector<int>& first) {
   n_ = static_cast<int>(first.size());
   int bandwidth = 0;
-  for (int i = 0; i < n_; ++i) bandwidth = std::max(bandwidth, i - first[static_cast<std::size_t>(i)]);
+  for (int i = 0; i < n_; ++i) bandwidth = std::max(bandwidth, i - first[i]);
   below_ = whole_blocks(bandwidth);
   const int blocks = std::max(0, n_ - below_) / block;
 #pragma omp parallel for schedule(static, 1)
@@ -60,7 +58,7 @@ bool TwistedCholesky::factorise() {
 #pragma omp parallel
   {
 #pragma omp for schedule(static, 1)
-    for (int e = 0; e < 2; ++e) good[static_cast<std::size_t>(e)] = ends_[e].factorise();
+    for (int e = 0; e < 2; ++e) good[e] = ends_[e].factorise();
 #pragma omp single
     middle_good = factorise_middle();
   }
@@ -99,14 +97,14 @@ void TwistedCholesky::End::reset(std::vector<int> heights, int reach) {
 /// then each entry is summed in the same order as without the rows left out.
 int TwistedCholesky::End::rows_needed(int k, int j) const {
   constexpr int tile = 3 * 64 / static_cast<int>(sizeof(float));
-  const int rows = std::max(0, height[static_cast<std::size_t>(k)] - j);
+  const int rows = std::max(0, height[k] - j);
   return std::min(below - j, (rows + tile - 1) / tile * tile);
 }
 
 bool TwistedCholesky::End::factorise() {
   const int n = static_cast<int>(columns.size());
   for (int k = 0; k < n; ++k) {
-    Eigen::MatrixXf& column = columns[static_cast<std::size_t>(k)];
+    Eigen::MatrixXf& column = columns[k];
     auto diagonal = column.topRows<block>();
     const Eigen::LLT<Eigen::MatrixXf> llt(diagonal);
     if (llt.info() != Eigen::Success) return false;
@@ -114,12 +112,12 @@ bool TwistedCholesky::End::factorise() {
     llt.matrixL().solveInPlace(diagonal);
     auto panel = column.middleRows(block, rows_needed(k, 0));
     panel = (panel * diagonal.transpose()).eval();
-    for (int j = 0; j * block < height[static_cast<std::size_t>(k)]; ++j) {
+    for (int j = 0; j * block < height[k]; ++j) {
       const int rows = rows_needed(k, j * block);
       const auto target =
           column.middleRows((j + 1) * block, rows) * column.middleRows((j + 1) * block, block).transpose();
       if (k + 1 + j < n) {
-        columns[static_cast<std::size_t>(k + 1 + j)].topRows(rows).noalias() -= target;
+        columns[k + 1 + j].topRows(rows).noalias() -= target;
       } else {
         const int at = (k + 1 + j - n) * block;
         rest.block(at, at, rows, block).noalias() -= target;
@@ -132,19 +130,19 @@ bool TwistedCholesky::End::factorise() {
 void TwistedCholesky::End::forward() {
   y.tail(below).setZero();
   for (int k = 0; k < static_cast<int>(columns.size()); ++k) {
-    const Eigen::MatrixXf& column = columns[static_cast<std::size_t>(k)];
+    const Eigen::MatrixXf& column = columns[k];
     const Eigen::Matrix<float, block, 1> part = column.topRows<block>() * y.segment<block>(k * block);
     y.segment<block>(k * block) = part;
-    const int rows = height[static_cast<std::size_t>(k)];
+    const int rows = height[k];
     y.segment((k + 1) * block, rows).noalias() -= column.middleRows(block, rows) * part;
   }
 }
 
 void TwistedCholesky::End::backward() {
   for (int k = static_cast<int>(columns.size()) - 1; k >= 0; --k) {
-    const Eigen::MatrixXf& column = columns[static_cast<std::size_t>(k)];
+    const Eigen::MatrixXf& column = columns[k];
     Eigen::Matrix<float, block, 1> part = y.segment<block>(k * block);
-    const int rows = height[static_cast<std::size_t>(k)];
+    const int rows = height[k];
     part.noalias() -= column.middleRows(block, rows).transpose() * y.segment((k + 1) * block, rows);
     y.segment<block>(k * block) = column.topRows<block>().transpose() * part;
   }

@@ -47,9 +47,7 @@ class TwistedCholesky {
     int size() const { return static_cast<int>(columns.size()) * block; }
     bool empty() const { return columns.empty(); }
     void reset(std::vector<int> heights, int reach);
-    void add(int i, int j, float value) {
-      columns[static_cast<std::size_t>(j / block)](i - j / block * block, j % block) += value;
-    }
+    void add(int i, int j, float value) { columns[j / block](i - j / block * block, j % block) += value; }
     int rows_needed(int k, int j) const;
     bool factorise();
     void forward();

@@ -4,8 +4,8 @@
 // processor has wide registers, the same bits where it has not.
 
 #include <array>
+#include <bit>
 #include <cstdint>
-#include <cstring>
 #include <type_traits>
 #ifdef __AVX512F__
 #include <immintrin.h>
@@ -73,10 +73,7 @@ inline double sum(const f64x8& a) {
 /// The lanes as integers, where they hold whole numbers of another type.
 template <class T>
 std::array<int, f64x8_size> to_integers(const T& a) {
-  const auto converted = __builtin_convertvector(a, i32x8);
-  std::array<int, f64x8_size> whole;
-  std::memcpy(whole.data(), &converted, sizeof converted);
-  return whole;
+  return std::bit_cast<std::array<int, f64x8_size>>(__builtin_convertvector(a, i32x8));
 }
 
 /// Whether a mask has any lane.
@@ -145,12 +142,9 @@ inline f64x8 exp(const f64x8& x) {
   const f64x8 p = detail::polynomial(
       r, {1.0, 1.0, 0.5, 1.0 / 6.0, 1.0 / 24.0, 1.0 / 120.0, 1.0 / 720.0, 1.0 / 5040.0, 1.0 / 40320.0,
           1.0 / 362880.0, 1.0 / 3628800.0, 1.0 / 39916800.0, 1.0 / 479001600.0, 1.0 / 6227020800.0});
-  i64x8 bits;
-  std::memcpy(&bits, &shifted, sizeof bits);
-  bits = (bits + 1023) << 52;  // 2^k; what the shift pushes out is the rounding constant
-  f64x8 scale;
-  std::memcpy(&scale, &bits, sizeof scale);
-  return p * scale;
+  // 2^k; what the shift pushes out is the rounding constant
+  const i64x8 bits = (std::bit_cast<i64x8>(shifted) + 1023) << 52;
+  return p * std::bit_cast<f64x8>(bits);
 }
 
 /// e^-x for x >= 0, to 2e-16 relative; without e^x's range reduction where no lane is above 1/500, as in

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <memory>
 
+#include "libmpm/geometry/spaces.hpp"
 #include "libmpm/grid/node_reduction.hpp"
 
 namespace tremie {
@@ -99,7 +100,7 @@ CellQuads cell_momenta(const ActiveGrid<3>& grid, const Points<3>& points, int c
     const int p = grid.order[i];
     const PointStencil<3> st(grid.axes, grid.cell_index[c], xi, points.x[p]);
     const double m = points.mass[p];
-    std::array<Quad, 3> slope;
+    std::array<f64x4, 3> slope;
     for (int d = 0; d < 3; ++d) slope[d] = m * to_quad(points.C[p].col(d));
     spread(st.with_arms(), m * to_quad(points.v[p], 1.0), slope, sum);
   }
@@ -113,8 +114,7 @@ void add_momenta(const ActiveGrid<D>& grid, const Points<D>& points, NodalState<
   nodes.mass.assign(grid.node_index.size(), 0.0);
   nodes.v.assign(grid.node_index.size(), Vec<D>::Zero());
   using Momenta = std::array<Vec<D + 1>, n_local>;
-  const std::unique_ptr<Momenta[]> local(
-      new Momenta[static_cast<std::size_t>(std::min(grid.n_cells(), at_a_time))]);
+  const std::unique_ptr<Momenta[]> local(new Momenta[std::min(grid.n_cells(), at_a_time)]);
   for (int first = 0; first < grid.n_cells(); first += at_a_time) {
     const int last = std::min(first + at_a_time, grid.n_cells());
 #pragma omp parallel for schedule(static)
@@ -131,20 +131,12 @@ void add_momenta(const ActiveGrid<D>& grid, const Points<D>& points, NodalState<
 [[maybe_unused]] void add_momenta(const ActiveGrid<3>& grid, const Points<3>& points, NodalState<3>& nodes) {
   resize_for_overwrite(nodes.mass, grid.node_index.size());
   resize_for_overwrite(nodes.v, grid.node_index.size());
-  NodeReduction reduction;
-  reduction.lay_out(grid);
-  ReductionBuffer buffer;
-  reduction.resize_for_overwrite(buffer);
-  const auto give = [&](int chunk, double* to) {
-    for (int c = reduction.first_cell(chunk); c < reduction.last_cell(chunk); ++c) {
-      const CellQuads momenta = cell_momenta(grid, points, c);
-      for (std::size_t k = 0; k < 27; ++k)
-        add_to_node(momenta[k], to + 4 * std::ptrdiff_t{grid.cell_nodes[c][k]});
-    }
+  const auto give = [&](int c, double* to) {
+    const CellQuads momenta = cell_momenta(grid, points, c);
+    for (std::size_t k = 0; k < 27; ++k)
+      add_to_node(momenta[k], to + 4 * std::ptrdiff_t{grid.cell_nodes[c][k]});
   };
-#pragma omp parallel
-  reduction.sweep_in_region<double>(buffer, give, [&](int i) {
-    const Vec<4> sum = reduction.sum_at<double, 4>(i, buffer);
+  sum_over_cells(grid, give, [&](int i, const Vec<4>& sum) {
     nodes.v[i] = sum.head<3>();
     nodes.mass[i] = sum[3];
   });
@@ -165,11 +157,26 @@ void velocity_at(const std::array<Vec<D>, power(3, D)>& u, const PointStencil<D>
 }
 [[maybe_unused]] void velocity_at(const CellQuads& u, const PointStencil<3>& st, Vec<3>& vp,
                                   Mat<3, 3>& moment) {
-  Quad value;
-  std::array<Quad, 3> slope;
+  f64x4 value;
+  std::array<f64x4, 3> slope;
   contract(u, st.with_arms(), value, slope);
   vp = to_vec(value);
   for (int d = 0; d < 3; ++d) moment.col(d) = to_vec(slope[d]);
+}
+
+/// use(c, p, st, u) for all points p of all cells c: the stencil of the point and the nodal vectors v of the cell.
+template <int D, class Use>
+void for_each_point(const ActiveGrid<D>& grid, const std::vector<Vec<D>>& v, const Points<D>& points,
+                    Use use) {
+#pragma omp parallel for schedule(static)
+  for (int c = 0; c < grid.n_cells(); ++c) {
+    const auto xi = node_positions<D>(grid.axes, grid.cell_index[c]);
+    const auto u = at_controls(grid, v, c);
+    for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
+      const int p = grid.order[i];
+      use(c, p, PointStencil<D>(grid.axes, grid.cell_index[c], xi, points.x[p]), u);
+    }
+  }
 }
 
 /// grid_to_point(), whatever the motion.
@@ -177,25 +184,18 @@ template <int D, class Move>
 void move_with_grid(const ActiveGrid<D>& grid, const std::vector<Vec<D>>& v, const std::vector<Vec<D>>& v_old,
                     const Transfer& transfer, double dt, Points<D>& points, const Move& motion) {
   points.C.resize(points.size());
-#pragma omp parallel for schedule(static)
-  for (int c = 0; c < grid.n_cells(); ++c) {
-    const auto xi = node_positions<D>(grid.axes, grid.cell_index[c]);
-    const auto u = at_controls(grid, v, c);
-    for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
-      const int p = grid.order[i];
-      const PointStencil<D> st(grid.axes, grid.cell_index[c], xi, points.x[p]);
-      Vec<D> vp, vp_old = Vec<D>::Zero();
-      Mat<D, D> moment, unused;
-      velocity_at(u, st, vp, moment);
-      if (transfer.flip) velocity_at(at_controls(grid, v_old, c), st, vp_old, unused);
-      points.C[p] =
-          transfer.flip ? Mat<D, D>(Mat<D, D>::Zero()) : Mat<D, D>(moment * st.inverse_inertia.asDiagonal());
-      points.v[p] = transfer.flip ? Vec<D>(vp + transfer.flip_blend * (points.v[p] - vp_old)) : vp;
-      const Vec<D> from = points.x[p];
-      motion.move(points, p, vp, dt);
-      keep_in_domain<D>(grid, from, points.x[p]);
-    }
-  }
+  for_each_point(grid, v, points, [&](int c, int p, const PointStencil<D>& st, const auto& u) {
+    Vec<D> vp, vp_old = Vec<D>::Zero();
+    Mat<D, D> moment, unused;
+    velocity_at(u, st, vp, moment);
+    if (transfer.flip) velocity_at(at_controls(grid, v_old, c), st, vp_old, unused);
+    points.C[p] =
+        transfer.flip ? Mat<D, D>(Mat<D, D>::Zero()) : Mat<D, D>(moment * st.inverse_inertia.asDiagonal());
+    points.v[p] = transfer.flip ? Vec<D>(vp + transfer.flip_blend * (points.v[p] - vp_old)) : vp;
+    const Vec<D> from = points.x[p];
+    motion.move(points, p, vp, dt);
+    keep_in_domain<D>(grid, from, points.x[p]);
+  });
 }
 
 }  // namespace
@@ -225,19 +225,12 @@ void grid_to_point(const ActiveGrid<2>& grid, const std::vector<Vec<2>>& v, cons
 template <int D>
 void affine_from_grid(const ActiveGrid<D>& grid, const std::vector<Vec<D>>& v, Points<D>& points) {
   points.C.resize(points.size());
-#pragma omp parallel for schedule(static)
-  for (int c = 0; c < grid.n_cells(); ++c) {
-    const auto xi = detail::node_positions<D>(grid.axes, grid.cell_index[c]);
-    const auto u = detail::at_controls(grid, v, c);
-    for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
-      const int p = grid.order[i];
-      const detail::PointStencil<D> st(grid.axes, grid.cell_index[c], xi, points.x[p]);
-      Vec<D> vp;
-      Mat<D, D> moment;
-      detail::velocity_at(u, st, vp, moment);
-      points.C[p] = moment * st.inverse_inertia.asDiagonal();
-    }
-  }
+  detail::for_each_point(grid, v, points, [&](int, int p, const detail::PointStencil<D>& st, const auto& u) {
+    Vec<D> vp;
+    Mat<D, D> moment;
+    detail::velocity_at(u, st, vp, moment);
+    points.C[p] = moment * st.inverse_inertia.asDiagonal();
+  });
 }
 
 template <class Geometry>
@@ -245,31 +238,24 @@ void shear_rate_at_points(const ActiveGrid<Geometry::dim>& grid, const std::vect
                           const Points<Geometry::dim>& points, std::vector<double>& gamma_dot) {
   constexpr int D = Geometry::dim;
   gamma_dot.resize(points.size());
-#pragma omp parallel for schedule(static)
-  for (int c = 0; c < grid.n_cells(); ++c) {
-    const auto xi = detail::node_positions<D>(grid.axes, grid.cell_index[c]);
-    const auto u = detail::at_controls(grid, v, c);
-    for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
-      const int p = grid.order[i];
-      const detail::PointStencil<D> st(grid.axes, grid.cell_index[c], xi, points.x[p]);
-      if constexpr (D == 3) {
-        detail::Quad value;
-        std::array<detail::Quad, 3> slope;
-        detail::contract(u, st.with_slopes(), value, slope);
-        Mat<3, 3> L;
-        for (int d = 0; d < 3; ++d) L.col(d) = detail::to_vec(slope[d]);
-        const Mat<3, 3> rate = L + L.transpose();  // 2 D
-        gamma_dot[p] = std::sqrt(0.5 * (rate.squaredNorm() - rate.trace() * rate.trace() / 3.0));
-      } else {
-        Vec<Geometry::n_strain> q = Vec<Geometry::n_strain>::Zero();
-        for (int k = 0; k < power(3, D); ++k) {
-          const Index<D> o = local_offset<D>(k);
-          q += Geometry::strain_rows(st.N(o), st.gradient(o), points.x[p]) * u[k];
-        }
-        gamma_dot[p] = q.norm();
+  detail::for_each_point(grid, v, points, [&](int, int p, const detail::PointStencil<D>& st, const auto& u) {
+    if constexpr (D == 3) {
+      f64x4 value;
+      std::array<f64x4, 3> slope;
+      detail::contract(u, st.with_slopes(), value, slope);
+      Mat<3, 3> L;
+      for (int d = 0; d < 3; ++d) L.col(d) = detail::to_vec(slope[d]);
+      const Mat<3, 3> rate = L + L.transpose();  // 2 D
+      gamma_dot[p] = std::sqrt(0.5 * (rate.squaredNorm() - rate.trace() * rate.trace() / 3.0));
+    } else {
+      Vec<Geometry::n_strain> q = Vec<Geometry::n_strain>::Zero();
+      for (int k = 0; k < power(3, D); ++k) {
+        const Index<D> o = local_offset<D>(k);
+        q += Geometry::strain_rows(st.N(o), st.gradient(o), points.x[p]) * u[k];
       }
+      gamma_dot[p] = q.norm();
     }
-  }
+  });
 }
 
 #define TREMIE_TRANSFER_IN(D)                                                                               \
@@ -287,12 +273,6 @@ template void affine_from_grid(const ActiveGrid<3>&, const std::vector<Vec<3>>&,
   template void shear_rate_at_points<Geometry>(const ActiveGrid<Geometry::dim>&,       \
                                                const std::vector<Vec<Geometry::dim>>&, \
                                                const Points<Geometry::dim>&, std::vector<double>&);
-TREMIE_SHEAR_RATES_IN(Axisymmetric)
-TREMIE_SHEAR_RATES_IN(PlaneStrain)
-#ifndef TREMIE_SECTIONS_ONLY  // the page for the browser has no vane and nothing in space
-TREMIE_SHEAR_RATES_IN(Couette)
-TREMIE_SHEAR_RATES_IN(Polar)
-TREMIE_SHEAR_RATES_IN(ThreeD)
-#endif
+TREMIE_IN_ALL_SPACES(TREMIE_SHEAR_RATES_IN)
 
 }  // namespace tremie

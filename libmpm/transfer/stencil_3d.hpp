@@ -6,16 +6,15 @@
 #include <array>
 
 #include "libmpm/grid/active_grid.hpp"
+#include "libmpm/parallel/simd.hpp"
 
 namespace tremie::detail {
 
 /// A vector of three and one more.
-using Quad [[gnu::vector_size(32)]] = double;
+inline f64x4 to_quad(const Vec<3>& v, double last = 0.0) { return f64x4{v[0], v[1], v[2], last}; }
+inline Vec<3> to_vec(const f64x4& q) { return Vec<3>(q[0], q[1], q[2]); }
 
-inline Quad to_quad(const Vec<3>& v, double last = 0.0) { return Quad{v[0], v[1], v[2], last}; }
-inline Vec<3> to_vec(const Quad& q) { return Vec<3>(q[0], q[1], q[2]); }
-
-using CellQuads = std::array<Quad, 27>;
+using CellQuads = std::array<f64x4, 27>;
 
 /// Values of the three splines in each direction, and what takes their place for the slope in that direction.
 struct SpaceWeights {
@@ -23,16 +22,16 @@ struct SpaceWeights {
 };
 
 /// Sum over the nodes of N u, and of the same with the slope's weights in direction d.
-inline void contract(const CellQuads& u, const SpaceWeights& w, Quad& value, std::array<Quad, 3>& slope) {
+inline void contract(const CellQuads& u, const SpaceWeights& w, f64x4& value, std::array<f64x4, 3>& slope) {
   const auto &x = w.N[0], &y = w.N[1], &z = w.N[2];
   const auto &dx = w.slope[0], &dy = w.slope[1], &dz = w.slope[2];
-  value = Quad{};
-  slope.fill(Quad{});
+  value = f64x4{};
+  slope.fill(f64x4{});
   for (int i = 0; i < 3; ++i) {
-    Quad plane = {}, plane_y = {}, plane_z = {};
+    f64x4 plane = {}, plane_y = {}, plane_z = {};
     for (int j = 0; j < 3; ++j) {
-      const Quad* a = &u[static_cast<std::size_t>(9 * i + 3 * j)];
-      const Quad line = z[0] * a[0] + z[1] * a[1] + z[2] * a[2];
+      const f64x4* a = &u[9 * i + 3 * j];
+      const f64x4 line = z[0] * a[0] + z[1] * a[1] + z[2] * a[2];
       plane += y[j] * line;
       plane_y += dy[j] * line;
       plane_z += y[j] * (dz[0] * a[0] + dz[1] * a[1] + dz[2] * a[2]);
@@ -45,15 +44,15 @@ inline void contract(const CellQuads& u, const SpaceWeights& w, Quad& value, std
 }
 
 /// The adjoint of contract(), added to the nodes.
-inline void spread(const SpaceWeights& w, const Quad& value, const std::array<Quad, 3>& slope, CellQuads& u) {
+inline void spread(const SpaceWeights& w, const f64x4& value, const std::array<f64x4, 3>& slope,
+                   CellQuads& u) {
   const auto &x = w.N[0], &y = w.N[1], &z = w.N[2];
   const auto &dx = w.slope[0], &dy = w.slope[1], &dz = w.slope[2];
   for (int i = 0; i < 3; ++i) {
-    const Quad plane = x[i] * value + dx[i] * slope[0], plane_y = x[i] * slope[1], plane_z = x[i] * slope[2];
+    const f64x4 plane = x[i] * value + dx[i] * slope[0], plane_y = x[i] * slope[1], plane_z = x[i] * slope[2];
     for (int j = 0; j < 3; ++j) {
-      const Quad line = y[j] * plane + dy[j] * plane_y, line_z = y[j] * plane_z;
-      for (int k = 0; k < 3; ++k)
-        u[static_cast<std::size_t>(9 * i + 3 * j + k)] += z[k] * line + dz[k] * line_z;
+      const f64x4 line = y[j] * plane + dy[j] * plane_y, line_z = y[j] * plane_z;
+      for (int k = 0; k < 3; ++k) u[9 * i + 3 * j + k] += z[k] * line + dz[k] * line_z;
     }
   }
 }

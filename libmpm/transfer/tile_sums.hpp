@@ -281,8 +281,8 @@ template <class Real, int D, int N>
   GatheredRows<Real, D, N> of;
   StencilRows<Real, D> rows;
   for (int l = 0, loaded = -1; l < f64x8_size; ++l) {
-    const int base = weights.base[static_cast<std::size_t>(l)];
-    if (base != loaded) rows.load(&v[static_cast<std::size_t>(loaded = base)]);
+    const int base = weights.base[l];
+    if (base != loaded) rows.load(&v[loaded = base]);
     gather_rows<D, N, Real>(rows, lanes[l], l, of);
   }
   const auto& w = weights.w[D - 1];
@@ -313,15 +313,15 @@ template <class Real, int D, int N, bool outer>
     for (int d = 0; d < D; ++d) detail::to_nodes<Real>(points.along[s][d], along[s][d]);
   RowOf<Real> rows[power(3, D - 1)] = {};
   for (int l = 0; l < n;) {
-    const int base = weights.base[static_cast<std::size_t>(l)];
+    const int base = weights.base[l];
     do {
       AtPoint<Real, D, N> point;
       point.value = value[l];
       for (int s = 0; s < N; ++s)
         for (int d = 0; d < D; ++d) point.along[s][d] = along[s][d][l];
       scatter<D, N, outer, Real>(of[l], point, rows);
-    } while (++l < n && weights.base[static_cast<std::size_t>(l)] == base);
-    add_rows<D, outer, Real>(rows, &sums[static_cast<std::size_t>(base)]);
+    } while (++l < n && weights.base[l] == base);
+    add_rows<D, outer, Real>(rows, &sums[base]);
   }
 }
 

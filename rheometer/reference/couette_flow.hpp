@@ -1,6 +1,6 @@
 #pragma once
 
-#include "libmpm/constitutive/yield_law.hpp"
+#include "libmpm/constitutive/laws/yield_law.hpp"
 #include "rheometer/reference/instrument.hpp"
 
 namespace tremie {

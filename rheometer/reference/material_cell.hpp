@@ -12,8 +12,8 @@
 #include <string_view>
 #include <vector>
 
+#include "libmpm/constitutive/laws/yield_law.hpp"
 #include "libmpm/constitutive/mix.hpp"
-#include "libmpm/constitutive/yield_law.hpp"
 #include "rheometer/records/shear_history.hpp"
 
 namespace tremie {

@@ -170,6 +170,17 @@ TEST(Splines, AreC0AtRepeatedKnotsAlone) {
     }
 }
 
+/// Integral of node j's spline over the cells that exist [m]: its share of the line. Without repeated knots.
+double spline_integral(const Axis& axis, int j) {
+  double share = 1.0;
+  if (axis.wall_low()) share = j == 0 ? 1.0 / 3.0 : j == 1 ? 2.0 / 3.0 : share;
+  if (axis.wall_high()) {
+    const int k = axis.n_cells + 1 - j;
+    share -= k == 0 ? 2.0 / 3.0 : k == 1 ? 1.0 / 3.0 : 0.0;
+  }
+  return share * axis.h;
+}
+
 // The integral of every spline over the cells that exist, by Simpson's rule, exact on quadratics.
 TEST(Splines, Integrals) {
   for (const Axis& a : axes())

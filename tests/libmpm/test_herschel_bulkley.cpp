@@ -8,8 +8,8 @@
 #include <tuple>
 #include <vector>
 
+#include "libmpm/constitutive/laws/yield_law.hpp"
 #include "libmpm/constitutive/stress.hpp"
-#include "libmpm/constitutive/yield_law.hpp"
 #include "libmpm/implicit/step.hpp"
 #include "libmpm/particles/seeding.hpp"
 

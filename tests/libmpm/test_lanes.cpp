@@ -5,7 +5,7 @@
 #include <random>
 
 #include "libmpm/constitutive/flocculation.hpp"
-#include "libmpm/constitutive/yield_law.hpp"
+#include "libmpm/constitutive/laws/yield_law.hpp"
 #include "libmpm/explicit/tiled_particles.hpp"
 #include "libmpm/geometry/gradients.hpp"
 #include "libmpm/transfer/shape_functions.hpp"

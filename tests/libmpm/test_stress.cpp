@@ -8,8 +8,8 @@
 #include <random>
 #include <vector>
 
+#include "libmpm/constitutive/laws/yield_law.hpp"
 #include "libmpm/constitutive/stress.hpp"
-#include "libmpm/constitutive/yield_law.hpp"
 
 namespace tremie {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "libmpm/constitutive/yield_law.hpp"
+#include "libmpm/constitutive/laws/yield_law.hpp"
 
 namespace tremie {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "apparatus/icar_vane/icar_vane.hpp"
 #include "apparatus/verification/references/vane_finite_elements.hpp"
-#include "libmpm/constitutive/yield_law.hpp"
+#include "libmpm/constitutive/laws/yield_law.hpp"
 #include "libmpm/implicit/step.hpp"
 #include "libmpm/particles/seeding.hpp"
 #include "rheometer/reference/reiner_riwlin.hpp"

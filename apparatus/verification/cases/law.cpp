@@ -7,8 +7,8 @@
 #include <random>
 
 #include "apparatus/verification/suite.hpp"
+#include "libmpm/constitutive/laws/yield_law.hpp"
 #include "libmpm/constitutive/stress.hpp"
-#include "libmpm/constitutive/yield_law.hpp"
 
 namespace tremie::verification {
 namespace {

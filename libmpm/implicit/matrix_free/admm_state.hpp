@@ -12,7 +12,7 @@
 #include <cmath>
 #include <vector>
 
-#include "libmpm/constitutive/yield_law.hpp"
+#include "libmpm/constitutive/laws/yield_law.hpp"
 #include "libmpm/grid/active_grid.hpp"
 #include "libmpm/implicit/matrix_free/cell_simd.hpp"
 
@@ -60,7 +60,7 @@ void unpack_stress_and_rate(const Law& law, const Lanes<double> (&a)[5], const L
 /// Unstressed ADMM state of so many cells.
 inline PackedAdmmState zero_admm_state(int n_cells) {
   PackedAdmmState admm_state;
-  admm_state.batch.resize(static_cast<std::size_t>((n_cells + batch_size - 1) / batch_size));
+  admm_state.batch.resize((n_cells + batch_size - 1) / batch_size);
   for (PackedAdmmState::Batch& b : admm_state.batch)
     for (int k = 0; k < 8; ++k) {
       b.tau_y[k].setZero();

@@ -1,5 +1,3 @@
-// Velocity gradients in batches of cells, and their adjoint.
-
 #include "libmpm/implicit/matrix_free/cell_gradients.hpp"
 
 namespace tremie {
@@ -45,7 +43,7 @@ void CellBatches::gradients(int batch, const Scalar* v, QuadratureTensors<Scalar
   const Factors<Scalar> ends = factors<Scalar>(batch);
   const auto& inverse_h = ends.inverse_h;
   Lanes<Scalar> u[3][27];
-  const Nodes* nodes = &nodes_[static_cast<std::size_t>(batch * kept_nodes())];
+  const Nodes* nodes = &nodes_[batch * kept_nodes()];
   for (int k = 0; k < 27; ++k) {
     const int* first = nodes[lines_ ? k / 3 : k].data();
     load_nodes(v + (lines_ ? node_stride<Scalar> * (k % 3) : 0), first, u[0][k], u[1][k], u[2][k]);
@@ -141,7 +139,7 @@ void CellBatches::scatter(int batch, const QuadratureTensors<Scalar>& T, Scalar*
     }
   }
   const int n = std::min(batch_size, n_cells_ - batch * batch_size);
-  const Nodes* nodes = &nodes_[static_cast<std::size_t>(batch * kept_nodes())];
+  const Nodes* nodes = &nodes_[batch * kept_nodes()];
   for (int k = 0; k < 27; ++k) {
     for (int d = 0; d < 3 && n < batch_size; ++d) u[d][k].tail(batch_size - n).setZero();
     const int* first = nodes[lines_ ? k / 3 : k].data();

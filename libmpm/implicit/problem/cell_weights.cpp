@@ -13,7 +13,7 @@ std::array<Shares, 64> shares_of_kinds(const ActiveGrid<3>& grid, const Quadratu
   std::array<Shares, 64> shares;
   std::array<bool, 64> done{};
   for (int c = 0; c < grid.n_cells(); ++c) {
-    const unsigned char kind = cell_kind<3>(grid.axes, grid.cell_index[c]);
+    const unsigned char kind = cell_kind(grid.axes, grid.cell_index[c]);
     if (done[kind] || !quadrature.full[c]) continue;
     done[kind] = true;
     shares[kind].fill(0.0);
@@ -52,22 +52,14 @@ std::vector<double> node_weights(const ActiveGrid<3>& grid, const Points<3>& poi
                                  const Quadrature<ThreeD>& quadrature) {
   const std::array<Shares, 64> shares = shares_of_kinds(grid, quadrature);
   std::vector<double> weight(grid.node_index.size());
-  NodeReduction reduction;
-  reduction.lay_out(grid);
-  ReductionBuffer buffer;
-  reduction.resize_for_overwrite(buffer);
-  const auto give = [&](int chunk, double* to) {
-    for (int c = reduction.first_cell(chunk); c < reduction.last_cell(chunk); ++c) {
-      const bool full = quadrature.full[c];
-      const Shares& of =
-          full ? shares[cell_kind<3>(grid.axes, grid.cell_index[c])] : counted_weight(grid, points, c);
-      const double mass = full ? density(grid, points, c) * quadrature.V_cell[c] : 1.0;
-      for (std::size_t k = 0; k < 27; ++k) to[4 * std::ptrdiff_t{grid.cell_nodes[c][k]}] += mass * of[k];
-    }
+  const auto give = [&](int c, double* to) {
+    const bool full = quadrature.full[c];
+    const Shares& of =
+        full ? shares[cell_kind(grid.axes, grid.cell_index[c])] : counted_weight(grid, points, c);
+    const double mass = full ? density(grid, points, c) * quadrature.V_cell[c] : 1.0;
+    for (std::size_t k = 0; k < 27; ++k) to[4 * std::ptrdiff_t{grid.cell_nodes[c][k]}] += mass * of[k];
   };
-#pragma omp parallel
-  reduction.sweep_in_region<double>(buffer, give,
-                                    [&](int i) { weight[i] = reduction.sum_at<double, 1>(i, buffer)[0]; });
+  sum_over_cells(grid, give, [&](int i, const Vec<4>& sum) { weight[i] = sum[0]; });
   fold_mirrors<3>(grid, weight);
   return weight;
 }

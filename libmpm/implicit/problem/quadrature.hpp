@@ -8,6 +8,7 @@
 // the number of points, and more points a cell make the weights smoother without making the solver slower.
 
 #include <array>
+#include <numeric>
 #include <type_traits>
 #include <vector>
 
@@ -36,40 +37,37 @@ class CellRows {
   std::vector<Rows> rows_;
 };
 
-/// Which walls a cell touches, as six bits: its splines follow from that.
-template <int D>
-unsigned char cell_kind(const std::array<Axis, D>& axes, const Index<D>& cell) {
-  unsigned kind = 0;
-  for (int d = 0; d < D; ++d) {
-    if (axes[d].clamped_low() && cell[d] == 0) kind |= 1u << (2 * d);
-    if (axes[d].clamped_high() && cell[d] == axes[d].n_cells - 1) kind |= 2u << (2 * d);
-  }
-  return static_cast<unsigned char>(kind);
-}
-
-/// Which ends of the axes a cell touches, walls or planes of symmetry, as six bits: what its nodes are
-/// follows from that.
-template <int D>
-unsigned char cell_ends(const std::array<Axis, D>& axes, const Index<D>& cell) {
+/// Which ends of the axes a cell touches, as six bits: of those that low() and high() say count.
+template <bool (Axis::*low)() const, bool (Axis::*high)() const>
+unsigned char ends_touched(const std::array<Axis, 3>& axes, const Index<3>& cell) {
   unsigned ends = 0;
-  for (int d = 0; d < D; ++d) {
-    if (axes[d].wall_low() && cell[d] == 0) ends |= 1u << (2 * d);
-    if (axes[d].wall_high() && cell[d] == axes[d].n_cells - 1) ends |= 2u << (2 * d);
+  for (int d = 0; d < 3; ++d) {
+    if ((axes[d].*low)() && cell[d] == 0) ends |= 1u << (2 * d);
+    if ((axes[d].*high)() && cell[d] == axes[d].n_cells - 1) ends |= 2u << (2 * d);
   }
   return static_cast<unsigned char>(ends);
+}
+/// Walls: a cell's splines follow from them.
+inline unsigned char cell_kind(const std::array<Axis, 3>& axes, const Index<3>& cell) {
+  return ends_touched<&Axis::clamped_low, &Axis::clamped_high>(axes, cell);
+}
+/// Walls and planes of symmetry: what a cell's nodes are follows from them.
+inline unsigned char cell_ends(const std::array<Axis, 3>& axes, const Index<3>& cell) {
+  return ends_touched<&Axis::wall_low, &Axis::wall_high>(axes, cell);
 }
 
 template <class Geometry>
 struct Quadrature {
   static constexpr int D = Geometry::dim, n_strain = Geometry::n_strain;
   static constexpr int n_places = power(2, D), n_local = power(3, D);
+  static constexpr bool by_kind = std::is_same_v<Geometry, ThreeD>;  ///< else rows are kept cell by cell
   using StrainRows = std::array<Mat<n_strain, D>, n_local>;
 
   using DivergenceRows = std::array<Vec<D>, n_local>;
 
-  CellRows<std::array<StrainRows, n_places>, D == 3> B;  ///< strain rows, [1/m]
-  std::vector<DivergenceRows> b;  ///< rows of the cell's mean divergence in a section [1/m]
-  CellRows<std::array<DivergenceRows, n_places>, D == 3> slopes;  ///< in 3D: gradients of the splines [1/m]
+  CellRows<std::array<StrainRows, n_places>, by_kind> B;  ///< strain rows, [1/m]
+  std::vector<DivergenceRows> b;                          ///< cell by cell: rows of the mean divergence [1/m]
+  CellRows<std::array<DivergenceRows, n_places>, by_kind> slopes;  ///< by kind: the splines' gradients [1/m]
   std::vector<char> full;  ///< in 3D: whether the cell lies inside the body and counts as full
   std::vector<std::array<double, n_places>> V;      ///< concrete volume of each place [m^3]
   std::vector<std::array<double, n_places>> tau_y;  ///< yield stress there [Pa]
@@ -80,7 +78,7 @@ struct Quadrature {
   void resize(std::size_t n) {
     B.resize(n), resize_for_overwrite(V, n), resize_for_overwrite(tau_y, n), resize_for_overwrite(V_cell, n),
         resize_for_overwrite(p, n);
-    if constexpr (D < 3)
+    if constexpr (!by_kind)
       resize_for_overwrite(b, n), resize_for_overwrite(place, n);
     else
       slopes.resize(n), resize_for_overwrite(full, n);
@@ -88,8 +86,8 @@ struct Quadrature {
 
   /// Rows of the mean divergence of cell c [1/m]. In 3D they are made when they are asked for: 648 bytes a
   /// cell from its eight volumes.
-  std::conditional_t<D == 3, DivergenceRows, const DivergenceRows&> divergence_rows(int c) const {
-    if constexpr (D < 3) {
+  std::conditional_t<by_kind, DivergenceRows, const DivergenceRows&> divergence_rows(int c) const {
+    if constexpr (!by_kind) {
       return b[c];
     } else {
       const auto of_place = [&](int k) {
@@ -168,13 +166,7 @@ std::array<double, power(2, Geometry::dim)> full_volumes(
   return volume;
 }
 
-inline double sum_of_volumes(const auto& V) {
-  double sum = 0.0;
-  for (double V_k : V) sum += V_k;
-  return sum;
-}
-
-/// In a section: strain rows at every quadrature point and the rows of the cell's mean divergence.
+/// Strain rows at every quadrature point and the rows of the cell's mean divergence, kept cell by cell.
 template <class Geometry>
 void lay_out_rows(const std::array<Stencil<Geometry::dim>, power(2, Geometry::dim)>& st,
                   const std::array<Vec<Geometry::dim>, power(2, Geometry::dim)>& x, int c,
@@ -206,7 +198,7 @@ double mean_pressure(const ActiveGrid<D>& grid, const Points<D>& points, double 
 inline void lay_out_kinds(const ActiveGrid<3>& grid, Quadrature<ThreeD>& quadrature) {
   std::array<bool, 64> done{};
   for (int c = 0; c < grid.n_cells(); ++c) {
-    const unsigned char kind = cell_kind<3>(grid.axes, grid.cell_index[c]);
+    const unsigned char kind = cell_kind(grid.axes, grid.cell_index[c]);
     quadrature.B.set_kind(c, kind);
     quadrature.slopes.set_kind(c, kind);
     if (done[kind]) continue;
@@ -279,7 +271,7 @@ void lay_out_quadrature(const ActiveGrid<Geometry::dim>& grid, const Points<Geom
     // Inside the body a cell is full: with counted volumes the pressure would push whenever a point crosses
     // into a cell.
     if (inside) quadrature.V[c] = detail::full_volumes<Geometry>(grid.axes, x);
-    quadrature.V_cell[c] = detail::sum_of_volumes(quadrature.V[c]);
+    quadrature.V_cell[c] = std::accumulate(quadrature.V[c].begin(), quadrature.V[c].end(), 0.0);
     if constexpr (D == 3) {
       quadrature.full[c] = inside ? 1 : 0;
     } else {

@@ -1,6 +1,7 @@
 #include "libmpm/implicit/problem/yield_problem.hpp"
 
-#include "libmpm/implicit/problem/cylindrical_quadrature.hpp"
+#include "libmpm/geometry/cylindrical.hpp"
+#include "libmpm/geometry/spaces.hpp"
 
 namespace tremie::detail {
 
@@ -71,10 +72,7 @@ void assemble_cells(const YieldProblem<Geometry>& problem, const CellTangents<Ge
     cell.noalias() += (quad.V_cell[c] * bulk * b) * b.transpose();
     system.add_cell(c, cell);
   }
-  // A point on the very edge of a cell gives some of its nodes no mass; a trace of it keeps the matrix
-  // definite.
-  double trace = 0.0;
-  for (double m : problem.nodes.mass) trace = std::max(trace, 1e-12 * m);
+  const double trace = trace_of_mass(problem.nodes.mass);
   for (int i = 0; i < problem.grid.n_nodes(); ++i)
     for (int d = 0; d < D; ++d)
       system.add_diagonal(i, d,
@@ -89,12 +87,8 @@ void assemble_cells(const YieldProblem<Geometry>& problem, const CellTangents<Ge
       const YieldProblem<Geometry>&, const std::vector<Vec<Geometry::dim>>&, const CellStresses<Geometry>&); \
   template void assemble_cells(const YieldProblem<Geometry>&, const CellTangents<Geometry>&,                 \
                                BlockSystem<Geometry::dim>&);
-TREMIE_YIELD_PROBLEM_IN(Axisymmetric)
-TREMIE_YIELD_PROBLEM_IN(PlaneStrain)
-#ifndef TREMIE_SECTIONS_ONLY  // the page for the browser has no vane and nothing in space
-TREMIE_YIELD_PROBLEM_IN(Couette)
-TREMIE_YIELD_PROBLEM_IN(Polar)
-TREMIE_YIELD_PROBLEM_IN(ThreeD)
+TREMIE_IN_ALL_SPACES(TREMIE_YIELD_PROBLEM_IN)
+#ifndef TREMIE_SECTIONS_ONLY
 TREMIE_YIELD_PROBLEM_IN(Cylindrical)
 #endif
 

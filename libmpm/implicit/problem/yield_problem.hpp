@@ -41,6 +41,13 @@ struct AdmmState {
   std::vector<std::array<Strain, n>> stress;  ///< [Pa]
   std::vector<std::array<Strain, n>> rate;    ///< [1/s]
   std::conditional_t<Geometry::dim == 3, PackedAdmmState, Nothing> packed;
+
+  /// Of so many cells, without stress.
+  void resize(std::size_t cells) {
+    std::array<Strain, n> none;
+    none.fill(Strain::Zero());
+    stress.assign(cells, none), rate.assign(cells, none);
+  }
 };
 
 template <class Geometry>
@@ -138,11 +145,28 @@ Eigen::VectorXd residual(const YieldProblem<Geometry>& problem, const std::vecto
   });
 }
 
+/// Volume of the concrete around each node: an equal share of every cell that it touches [m^3].
+template <class Geometry>
+std::vector<double> volumes_around_nodes(const YieldProblem<Geometry>& problem) {
+  std::vector<double> V(problem.grid.node_index.size(), 0.0);
+  for (int c = 0; c < problem.grid.n_cells(); ++c)
+    for (int i : problem.grid.cell_nodes[c]) V[i] += problem.quadrature.V_cell[c] / power(3, Geometry::dim);
+  fold_mirrors<Geometry::dim>(problem.grid, V);
+  return V;
+}
+
+/// A point on the very edge of a cell gives some of its nodes no mass; a trace of the largest keeps the matrices definite.
+inline double trace_of_mass(const std::vector<double>& mass) {
+  double trace = 0.0;
+  for (double m : mass) trace = std::max(trace, 1e-12 * m);
+  return trace;
+}
+
 /// Sets to zero what walls prescribe.
 inline void mask(const std::vector<char>& fixed, Eigen::VectorXd& R) {
 #pragma omp parallel for schedule(static) if (R.size() > 10'000)
   for (Eigen::Index i = 0; i < R.size(); ++i)
-    if (fixed[static_cast<std::size_t>(i)]) R[i] = 0.0;
+    if (fixed[i]) R[i] = 0.0;
 }
 
 /// Assembles what residual() has, and the deviatoric stiffness V B' T B with the tangents T = tangent(c, k), a number or a

@@ -1,5 +1,3 @@
-// Cells in columns and their places.
-
 #include "libmpm/implicit/schur/cell_chunks.hpp"
 
 namespace tremie {

@@ -1,5 +1,3 @@
-// The divergence rows of the cells and how they are shared.
-
 #include "libmpm/implicit/schur/divergence_operator.hpp"
 
 namespace tremie {
@@ -14,7 +12,7 @@ void DivergenceOperator::number_rows(const ActiveGrid<3>& grid, const Quadrature
       rows_of_[c] = n++;
       continue;
     }
-    int& shared = of_kind[cell_ends<3>(grid.axes, grid.cell_index[c])];
+    int& shared = of_kind[cell_ends(grid.axes, grid.cell_index[c])];
     if (shared < 0) shared = n++;
     rows_of_[c] = shared;
   }
@@ -27,8 +25,7 @@ void DivergenceOperator::build(const ActiveGrid<3>& grid, const Quadrature<Three
   resize_for_overwrite(G_inverse, inverse_blocks.size());
 #pragma omp parallel for schedule(static)
   for (std::size_t i = 0; i < G_inverse.size(); ++i)
-    for (std::size_t d = 0; d < 3; ++d)
-      G_inverse[i][d] << inverse_blocks[i].col(static_cast<Eigen::Index>(d)).cast<float>(), 0.0f;
+    for (std::size_t d = 0; d < 3; ++d) G_inverse[i][d] << inverse_blocks[i].col(d).cast<float>(), 0.0f;
   softness.resize(grid.n_cells());
   left_out.resize(grid.cell_index.size());
   for (int c = 0; c < grid.n_cells(); ++c) {

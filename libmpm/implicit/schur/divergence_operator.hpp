@@ -74,13 +74,11 @@ class DivergenceOperator {
   const CellRows& of_cell(int c) const { return rows_[place_of(c)]; }
   /// Full cells of a kind have the same rows: how many different ones there are, and which are a cell's.
   std::size_t n_rows() const { return rows_.size(); }
-  std::size_t place_of(int c) const {
-    return static_cast<std::size_t>(rows_of_[static_cast<std::size_t>(c)]);
-  }
+  int place_of(int c) const { return rows_of_[c]; }
   /// A cell that has rows r.
   int a_cell_of(std::size_t r) const { return cell_of_rows_[r]; }
   const Eigen::Vector4f& of_entry(int e) const {
-    return of_cell(CellBatches::cell_of(e))[static_cast<std::size_t>(CellBatches::local_of(e))];
+    return of_cell(CellBatches::cell_of(e))[CellBatches::local_of(e)];
   }
 
   std::vector<Block> G_inverse;

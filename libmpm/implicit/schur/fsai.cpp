@@ -1,5 +1,3 @@
-// A factorised sparse approximate inverse of S.
-
 #include "libmpm/implicit/schur/fsai.hpp"
 
 namespace tremie {
@@ -124,7 +122,7 @@ void Fsai::transposed_column(CellColumns& layout, const Column& column) const {
 
 void Fsai::apply_in_region(CellColumns& layout, const Eigen::VectorXf& r) const {
 #pragma omp for schedule(static)
-  for (Eigen::Index c = 0; c < r.size(); ++c) layout.x[layout.place_of[static_cast<std::size_t>(c)]] = r[c];
+  for (Eigen::Index c = 0; c < r.size(); ++c) layout.x[layout.place_of[c]] = r[c];
 #pragma omp for schedule(static)
   for (std::size_t k = 0; k < layout.columns.size(); ++k) multiply_column(layout, layout.columns[k]);
 #pragma omp for schedule(static)

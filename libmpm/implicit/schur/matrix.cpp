@@ -1,5 +1,3 @@
-// The matrix S of the pressures, and products with it.
-
 #include "libmpm/implicit/schur/matrix.hpp"
 
 namespace tremie {

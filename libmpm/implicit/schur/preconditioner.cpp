@@ -1,5 +1,3 @@
-// The Schur complement S is filled, factorised or iterated with, and P^-1 applied.
-
 #include "libmpm/implicit/schur/preconditioner.hpp"
 
 namespace tremie {
@@ -24,7 +22,7 @@ void SchurComplementPreconditioner::number_cells(const std::vector<char>& left_o
   number_.resize(order_.size());
   int n = 0;
   for (int c : order_) number_[c] = left_out[c] ? -1 : n++;
-  first_.resize(static_cast<std::size_t>(n));
+  first_.resize(n);
 }
 
 /// Calls use(cell, offset) for the cells within two of `cell` in every direction, which are those that share
@@ -48,7 +46,7 @@ void SchurComplementPreconditioner::for_each_neighbour(const ActiveGrid<3>& grid
       for (offset[c] = -2; offset[c] <= 2; ++offset[c]) {
         const std::ptrdiff_t at_c = at[c][offset[c] + 2];
         if (at_c < 0) continue;
-        const int other = map.value[static_cast<std::size_t>(at_a + at_b + at_c)];
+        const int other = map.value[at_a + at_b + at_c];
         if (other >= 0 && !use(other, offset)) return;
       }
     }
@@ -82,22 +80,18 @@ float box_sum(const Eigen::Vector4f* a, const Eigen::Vector4f* b) {
   return sum.sum();
 }
 
-/// The same over the box of nodes that a cell with the values a shares with the one at `offset`, which has
-/// b.
+/// The sums over all boxes of one to three nodes a direction, the last direction fastest.
+template <int... k>
+constexpr auto box_sums(std::integer_sequence<int, k...>) {
+  return std::array{box_sum<1 + k / 9, 1 + k / 3 % 3, 1 + k % 3>...};
+}
+
+/// The sum over the box of nodes that a cell with the values a shares with the one at `offset`, which has b.
 float box_product(const Index<3>& offset, const Eigen::Vector4f* a, const Eigen::Vector4f* b) {
-  using Sum = float (*)(const Eigen::Vector4f*, const Eigen::Vector4f*);
-  static constexpr Sum sums[3][3][3] = {{{box_sum<1, 1, 1>, box_sum<1, 1, 2>, box_sum<1, 1, 3>},
-                                         {box_sum<1, 2, 1>, box_sum<1, 2, 2>, box_sum<1, 2, 3>},
-                                         {box_sum<1, 3, 1>, box_sum<1, 3, 2>, box_sum<1, 3, 3>}},
-                                        {{box_sum<2, 1, 1>, box_sum<2, 1, 2>, box_sum<2, 1, 3>},
-                                         {box_sum<2, 2, 1>, box_sum<2, 2, 2>, box_sum<2, 2, 3>},
-                                         {box_sum<2, 3, 1>, box_sum<2, 3, 2>, box_sum<2, 3, 3>}},
-                                        {{box_sum<3, 1, 1>, box_sum<3, 1, 2>, box_sum<3, 1, 3>},
-                                         {box_sum<3, 2, 1>, box_sum<3, 2, 2>, box_sum<3, 2, 3>},
-                                         {box_sum<3, 3, 1>, box_sum<3, 3, 2>, box_sum<3, 3, 3>}}};
+  static constexpr auto sums = box_sums(std::make_integer_sequence<int, 27>{});
   const auto [x, y, z] = offset;
   const int own = 9 * std::max(0, x) + 3 * std::max(0, y) + std::max(0, z), shift = 9 * x + 3 * y + z;
-  return sums[2 - std::abs(x)][2 - std::abs(y)][2 - std::abs(z)](a + own, b + own - shift);
+  return sums[26 - 9 * std::abs(x) - 3 * std::abs(y) - std::abs(z)](a + own, b + own - shift);
 }
 
 }  // namespace detail

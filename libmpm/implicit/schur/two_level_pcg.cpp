@@ -1,5 +1,3 @@
-// Conjugate gradients for S on two levels.
-
 #include "libmpm/implicit/schur/two_level_pcg.hpp"
 
 namespace tremie {
@@ -30,10 +28,10 @@ void TwoLevelPcg::find_aggregates(const ActiveGrid<3>& grid) {
 void TwoLevelPcg::fill_coarse() {
   const int n = static_cast<int>(aggregate_begin_.size()) - 1;
   std::vector<int> first(static_cast<std::size_t>(n));
-  for (int k = 0; k < n; ++k) first[static_cast<std::size_t>(k)] = k;
+  for (int k = 0; k < n; ++k) first[k] = k;
   entries.for_each([&](int c, int other, float) {
     const auto [low, high] = std::minmax(cube_[c], cube_[other]);
-    first[static_cast<std::size_t>(high)] = std::min(first[static_cast<std::size_t>(high)], low);
+    first[high] = std::min(first[high], low);
   });
   band_.reset(first);
   coarse_.setZero(n);

@@ -134,10 +134,10 @@ Vec<D> value_at(const ActiveGrid<D>& grid, int c, const std::array<Vec<D>, power
 inline Vec<3> value_at(const ActiveGrid<3>& grid, int c, const CellQuads& u, const Vec<3>& s) {
   std::array<std::array<double, 3>, 3> N;
   for (int d = 0; d < 3; ++d) N[d] = splines(grid.axes[d], grid.cell_index[c][d], s[d]).N;
-  Quad value = {};
+  f64x4 value = {};
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = 0; j < 3; ++j) {
-      const Quad* line = &u[9 * i + 3 * j];
+      const f64x4* line = &u[9 * i + 3 * j];
       value += N[0][i] * N[1][j] * (N[2][0] * line[0] + N[2][1] * line[1] + N[2][2] * line[2]);
     }
   return to_vec(value);

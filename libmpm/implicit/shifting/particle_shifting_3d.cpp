@@ -1,5 +1,3 @@
-// Displacements that even out the points in 3D.
-
 #include "libmpm/implicit/shifting/particle_shifting_3d.hpp"
 
 namespace tremie {
@@ -69,8 +67,7 @@ std::vector<Vec<3>> shifting_displacement_3d(const YieldProblem<ThreeD>& problem
   const std::vector<char> fixed = held_by_walls<3>(grid);
   detail::EveningMatrix matrix{problem, cells.stiffness, fixed, system.batches, preconditioner.rows(), {},
                                {},      problem.bound};
-  double trace = 0.0;
-  for (double m : problem.nodes.mass) trace = std::max(trace, 1e-12 * m);
+  const double trace = trace_of_mass(problem.nodes.mass);
   resize_for_overwrite(matrix.mass, problem.nodes.mass.size());
   for (std::size_t i = 0; i < matrix.mass.size(); ++i)
     matrix.mass[i] = std::max(trace, problem.nodes.mass[i]);

@@ -15,7 +15,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libmpm/constitutive/yield_law.hpp"
+#include "libmpm/constitutive/laws/yield_law.hpp"
 #include "libmpm/implicit/problem/yield_problem.hpp"
 
 namespace tremie {

@@ -45,16 +45,6 @@ AdmmResiduals update_stress_and_rate(const YieldProblem<Geometry>& problem, cons
   return sum;
 }
 
-/// Volume of the concrete around each node: an equal share of every cell that it touches [m^3].
-template <class Geometry>
-std::vector<double> volumes_around_nodes(const YieldProblem<Geometry>& problem) {
-  std::vector<double> V(problem.grid.node_index.size(), 0.0);
-  for (int c = 0; c < problem.grid.n_cells(); ++c)
-    for (int i : problem.grid.cell_nodes[c]) V[i] += problem.quadrature.V_cell[c] / power(3, Geometry::dim);
-  fold_mirrors<Geometry::dim>(problem.grid, V);
-  return V;
-}
-
 }  // namespace detail
 
 template <class Geometry>
@@ -73,8 +63,7 @@ struct FactorisedAdmm {
     assemble(
         problem, [&](int, int) { return problem.mu + r; }, system);
     if (!problem.wall_nodes.empty())
-      add_node_stiffness_admm<D>(detail::volumes_around_nodes(problem), problem.mu + r, problem.wall_nodes,
-                                 system);
+      add_node_stiffness_admm<D>(volumes_around_nodes(problem), problem.mu + r, problem.wall_nodes, system);
     system.fix(problem.fixed);
     return system.factorise();
   }

@@ -1,5 +1,3 @@
-// ADMM in 3D without a matrix: a pass over the cells, residuals, multipliers.
-
 #include "libmpm/implicit/solvers/admm_matrix_free.hpp"
 
 namespace tremie {
@@ -22,7 +20,7 @@ PackedAdmmState pack(const AdmmState<ThreeD>& admm_state, const Quadrature<Three
 AdmmState<ThreeD> unpack(const YieldLaw& law, const PackedAdmmState& packed) {
   const int n_cells = static_cast<int>(packed.batch.size()) * batch_size;
   AdmmState<ThreeD> admm_state;
-  admm_state.stress.resize(n_cells), admm_state.rate.resize(n_cells);
+  admm_state.resize(n_cells);
   for (int c = 0; c < n_cells; ++c)
     for (int k = 0; k < 8; ++k) {
       const PackedAdmmState::Batch& b = packed.batch[c / batch_size];

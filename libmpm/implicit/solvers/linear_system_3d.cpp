@@ -1,11 +1,9 @@
-// The linear system of a step in 3D: set-up, products, solution.
-
 #include "libmpm/implicit/solvers/linear_system_3d.hpp"
 
 namespace tremie {
 
-void add_penalty_blocks(std::span<const PointTerm<3>> terms,
-                        const std::vector<std::array<int, 27>>& cell_nodes, std::vector<Mat<3, 3>>& blocks) {
+void add_penalty_blocks(std::span<const PointTerm<3>> terms, const CellNodes<3>& cell_nodes,
+                        std::vector<Mat<3, 3>>& blocks) {
   for (const PointTerm<3>& t : terms)
     for (int k = 0; k < 27; ++k) blocks[cell_nodes[t.cell][k]] += t.N[k] * t.N[k] * t.penalty;
 }
@@ -13,14 +11,11 @@ void add_penalty_blocks(std::span<const PointTerm<3>> terms,
 void invert_blocks(const std::vector<char>& fixed, std::vector<Mat<3, 3>>& G) {
 #pragma omp parallel for schedule(static)
   for (std::size_t i = 0; i < G.size(); ++i) {
-    for (std::size_t d = 0; d < 3; ++d)
-      if (fixed[3 * i + d]) {
-        const auto e = static_cast<Eigen::Index>(d);
-        G[i].row(e).setZero(), G[i].col(e).setZero(), G[i](e, e) = 1.0;
-      }
+    for (int d = 0; d < 3; ++d)
+      if (fixed[3 * i + d]) G[i].row(d).setZero(), G[i].col(d).setZero(), G[i](d, d) = 1.0;
     G[i] = G[i].inverse().eval();
-    for (std::size_t d = 0; d < 3; ++d)
-      if (fixed[3 * i + d]) G[i](static_cast<Eigen::Index>(d), static_cast<Eigen::Index>(d)) = 0.0;
+    for (int d = 0; d < 3; ++d)
+      if (fixed[3 * i + d]) G[i](d, d) = 0.0;
   }
 }
 
@@ -41,20 +36,15 @@ void MatrixFreeSystem::set_up(YieldProblem<ThreeD>& problem, double most_band_op
 bool MatrixFreeSystem::prepare(YieldProblem<ThreeD>& problem, double eta_system) {
   eta_system_ = eta_system;
   const int n = problem.grid.n_nodes();
-  double trace = 0.0;
-  for (double m : problem.nodes.mass) trace = std::max(trace, 1e-12 * m);
+  const double trace = trace_of_mass(problem.nodes.mass);
   Eigen::VectorXd diagonal(3 * n);
 #pragma omp parallel for schedule(static)
   for (int i = 0; i < n; ++i)
     diagonal.segment<3>(3 * i).setConstant(std::max(trace, problem.nodes.mass[i]) / problem.dt +
                                            (problem.drag.empty() ? 0.0 : problem.drag[i].k));
   if (!problem.wall_nodes.empty()) {
-    std::vector<double> V(n, 0.0);
-    for (int c = 0; c < problem.grid.n_cells(); ++c)
-      for (int i : problem.grid.cell_nodes[c]) V[i] += problem.quadrature.V_cell[c] / 27;
-    fold_mirrors<3>(problem.grid, V);
     Diagonal to{diagonal};
-    add_node_stiffness_admm<3>(V, eta_system, problem.wall_nodes, to);
+    add_node_stiffness_admm<3>(volumes_around_nodes(problem), eta_system, problem.wall_nodes, to);
   }
   free_.resize(4 * n), free_diagonal_.resize(4 * n);
 #pragma omp parallel for schedule(static)
@@ -85,7 +75,7 @@ std::vector<Mat<3, 3>> MatrixFreeSystem::node_blocks(const YieldProblem<ThreeD>&
   std::array<bool, 64> done{};
   std::vector<unsigned char> kind(grid.n_cells());
   for (int c = 0; c < grid.n_cells(); ++c) {
-    kind[c] = cell_kind<3>(grid.axes, grid.cell_index[c]);
+    kind[c] = cell_kind(grid.axes, grid.cell_index[c]);
     if (done[kind[c]]) continue;
     done[kind[c]] = true;
     for (int k = 0; k < 8; ++k) {

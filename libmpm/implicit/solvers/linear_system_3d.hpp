@@ -12,8 +12,8 @@ namespace tremie {
 
 /// Adds what walls inside the grid do to the field x.
 template <class Vector>
-void add_penalty_products(std::span<const PointTerm<3>> terms,
-                          const std::vector<std::array<int, 27>>& cell_nodes, const Vector& x, Vector& out) {
+void add_penalty_products(std::span<const PointTerm<3>> terms, const CellNodes<3>& cell_nodes,
+                          const Vector& x, Vector& out) {
   using Scalar = typename Vector::Scalar;
   constexpr int stride = node_stride<Scalar>;
   for (const PointTerm<3>& t : terms) {
@@ -66,8 +66,8 @@ void for_each_contact(const std::vector<ContactPoint<3>>& contact, const NodeRed
     if (c->active) use(*c);
 }
 
-void add_penalty_blocks(std::span<const PointTerm<3>> terms,
-                        const std::vector<std::array<int, 27>>& cell_nodes, std::vector<Mat<3, 3>>& blocks);
+void add_penalty_blocks(std::span<const PointTerm<3>> terms, const CellNodes<3>& cell_nodes,
+                        std::vector<Mat<3, 3>>& blocks);
 
 /// Inverts node blocks in place; what a wall prescribes becomes zero.
 void invert_blocks(const std::vector<char>& fixed, std::vector<Mat<3, 3>>& G);

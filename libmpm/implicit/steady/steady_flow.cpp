@@ -28,32 +28,26 @@ void lay_out_steady_flow(SteadyBody& body) {
   activate(grid, middles);
   const auto n = grid.cell_index.size();
   auto& quad = body.quadrature;
-  quad.B.resize(n), quad.b.resize(n), quad.V.resize(n), quad.tau_y.resize(n), quad.V_cell.resize(n);
-  quad.p.assign(n, 0.0);
+  quad.resize(n);
+  std::fill(quad.p.begin(), quad.p.end(), 0.0);
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < grid.n_cells(); ++c) {
     const Index<3>& cell = grid.cell_index[c];
     std::array<Vec<3>, 8> x;
-    for (int k = 0; k < 8; ++k) x[k] = position_in_cell<3>(grid.axes, cell, quadrature_point<3>(k));
-    quad.V[c] = detail::full_volumes<Cylindrical>(grid.axes, x);
-    quad.V_cell[c] = detail::sum_of_volumes(quad.V[c]);
-    quad.tau_y[c].fill(body.mix.tau_0);
-    quad.b[c].fill(Vec<3>::Zero());
+    std::array<Stencil<3>, 8> st;
     for (int k = 0; k < 8; ++k) {
-      const Stencil<3> st = stencil<3>(grid.axes, cell, quadrature_point<3>(k));
-      for (int i = 0; i < 27; ++i) {
-        quad.B[c][k][i] = Cylindrical::strain_rows(st.N[i], st.g[i], x[k]);
-        quad.b[c][i] += quad.V[c][k] / quad.V_cell[c] * Cylindrical::divergence_row(st.N[i], st.g[i], x[k]);
-      }
+      x[k] = position_in_cell<3>(grid.axes, cell, quadrature_point<3>(k));
+      st[k] = stencil<3>(grid.axes, cell, quadrature_point<3>(k));
     }
+    quad.V[c] = detail::full_volumes<Cylindrical>(grid.axes, x);
+    quad.V_cell[c] = std::accumulate(quad.V[c].begin(), quad.V[c].end(), 0.0);
+    quad.tau_y[c].fill(body.mix.tau_0);
+    detail::lay_out_rows<Cylindrical>(st, x, c, quad);
   }
   body.nodes.mass.assign(grid.node_index.size(), no_mass);
   body.nodes.v.assign(grid.node_index.size(), Vec<3>::Zero());
   body.v = body.nodes.v;
-  AdmmState<Cylindrical>::Strain none = AdmmState<Cylindrical>::Strain::Zero();
-  body.admm_state.stress.resize(n), body.admm_state.rate.resize(n);
-  for (auto& cell : body.admm_state.stress) cell.fill(none);
-  for (auto& cell : body.admm_state.rate) cell.fill(none);
+  body.admm_state.resize(n);
 }
 
 SolveReport solve_steady_flow(SteadyBody& body, const YieldLaw& law, double rate, int max_iterations) {
@@ -78,7 +72,7 @@ SolveReport solve_steady_flow(SteadyBody& body, const YieldLaw& law, double rate
 double steady_pressure(const SteadyBody& body, int c) {
   double divergence = 0.0;
   for (std::size_t i = 0; i < 27; ++i)
-    divergence += body.quadrature.b[static_cast<std::size_t>(c)][i].dot(body.v[body.grid.cell_nodes[c][i]]);
+    divergence += body.quadrature.b[c][i].dot(body.v[body.grid.cell_nodes[c][i]]);
   return -body.mix.K * body.dt * divergence;
 }
 

@@ -6,8 +6,8 @@
 // The flow is the same at every time and no cell is ever empty, so there are no points: every cell is full and carries
 // the mix's yield stress. Bodies that carry flocculation, or whose inertia counts, need the steps.
 
+#include "libmpm/geometry/cylindrical.hpp"
 #include "libmpm/implicit/pose.hpp"
-#include "libmpm/implicit/problem/cylindrical_quadrature.hpp"
 #include "libmpm/implicit/update.hpp"
 
 namespace tremie {

@@ -7,10 +7,10 @@
 #include <cstddef>
 #include <variant>
 
-#include "libmpm/constitutive/bi_viscous.hpp"
-#include "libmpm/constitutive/bingham.hpp"
-#include "libmpm/constitutive/herschel_bulkley.hpp"
-#include "libmpm/constitutive/papanastasiou.hpp"
+#include "libmpm/constitutive/laws/bi_viscous.hpp"
+#include "libmpm/constitutive/laws/bingham.hpp"
+#include "libmpm/constitutive/laws/herschel_bulkley.hpp"
+#include "libmpm/constitutive/laws/papanastasiou.hpp"
 
 namespace tremie {
 

@@ -8,8 +8,8 @@
 #include <array>
 #include <cmath>
 
-#include "libmpm/constitutive/law_interface.hpp"
-#include "libmpm/constitutive/papanastasiou.hpp"
+#include "libmpm/constitutive/laws/law_interface.hpp"
+#include "libmpm/constitutive/laws/papanastasiou.hpp"
 
 namespace tremie {
 

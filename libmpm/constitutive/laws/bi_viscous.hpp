@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "libmpm/constitutive/law_interface.hpp"
+#include "libmpm/constitutive/laws/law_interface.hpp"
 #include "libmpm/parallel/simd.hpp"
 
 namespace tremie {
