@@ -5,12 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-<<<<<<< HEAD
-#include "libmpm/constitutive/yield_law.hpp"
-=======
 #include "libmpm/constitutive/laws/yield_law.hpp"
-#include "rheometer/fits/replicates.hpp"
->>>>>>> less_libmpm
 #include "rheometer/protocol/protocol.hpp"
 #include "rheometer/reference/couette_flow.hpp"
 #include "rheometer/reference/reiner_riwlin.hpp"

@@ -5,12 +5,8 @@
 #include <Eigen/Geometry>
 #include <limits>
 
-<<<<<<< HEAD
 #include "apparatus/run/body_readings.hpp"
-#include "libmpm/constitutive/yield_law.hpp"
-=======
 #include "libmpm/constitutive/laws/yield_law.hpp"
->>>>>>> less_libmpm
 #include "libmpm/implicit/step.hpp"
 #include "libmpm/particles/seeding.hpp"
 
