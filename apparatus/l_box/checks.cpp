@@ -71,6 +71,10 @@ std::string wrong_level(const View& j) {
       stopped_early ? "cells at the channel's end are not full; " : "");
 }
 
+std::string no_number(const View& v) {
+  return std::isfinite(v.r.h1) ? std::string{} : "H1 is not a finite number";
+}
+
 }  // namespace
 
 double drop_at_rest(const Scene& scene, double h, double length) {
@@ -107,7 +111,7 @@ std::optional<double> ratio_change(const std::vector<Sample>& series) {
 }
 
 void add_reasons(const Scene& scene, Outcome& outcome) {
-  scene::add_reasons<View>({inertia_at_the_bars, wide_cells_at_the_bars, few_cells, wrong_level},
+  scene::add_reasons<View>({inertia_at_the_bars, wide_cells_at_the_bars, few_cells, wrong_level, no_number},
                            {scene, outcome}, outcome.checks.reasons);
 }
 

@@ -198,7 +198,6 @@ scene::Outcome run_and_read(const Scene& scene, const RunOptions& options, const
   outcome.tables = {{"profile.csv", columns_from(profile_columns, raw.results.profile)}};
   outcome.charts = charts_of(scene.mix.thixotropy.has_value());
   outcome.pictured = false;
-  if (!std::isfinite(raw.results.h1)) outcome.checks.reasons.push_back("H1 is not a finite number");
   return outcome;
 }
 

@@ -214,8 +214,6 @@ Outcome run(const cone::Scene& scene, const RunOptions& options, const Observer&
   outcome.stage = cone::stage_of(scene);
   outcome.charts = cone::charts_of(scene, references_for(outcome.measured));
   outcome.axisymmetric = scene.model.space == SpaceKind::axisymmetric;
-  if (!std::isfinite(raw.results.spread))
-    outcome.checks.reasons.push_back("the spread is not a finite number");
   return outcome;
 }
 

@@ -1,4 +1,4 @@
-// Rung 2: lambda of one point against closed forms and an integration of equation (3) that is the test's own.
+// Verification case 2: lambda of one point against closed forms and an integration of equation (3) that is the test's own.
 
 #include <gtest/gtest.h>
 

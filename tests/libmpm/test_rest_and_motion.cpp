@@ -1,4 +1,4 @@
-// Rung 3: bodies at rest and in rigid motion, in the three spaces.
+// Verification case 3: bodies at rest and in rigid motion, in the three spaces.
 
 #include <gtest/gtest.h>
 #include <omp.h>

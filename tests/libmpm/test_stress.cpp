@@ -1,4 +1,4 @@
-// Rung 1: the stress of every yield law against closed forms and independently computed numbers.
+// Verification case 1: the stress of every yield law against closed forms and independently computed numbers.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Rung 4: a Bingham film down an inclined plane and plane Poiseuille flow (apparatus/verification/references/film.hpp), at
+// Verification case 4: a Bingham film down an inclined plane and plane Poiseuille flow (apparatus/verification/references/film.hpp), at
 // exact yield and with Papanastasiou's m = 100 s.
 
 #include "apparatus/verification/references/film.hpp"

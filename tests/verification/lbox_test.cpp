@@ -1,4 +1,4 @@
-// Rung 7: the L-box, on cells of 20 mm (lbox_study.md has finer ones): the profile at rest against the closed
+// Verification case 7: the L-box, on cells of 20 mm (lbox_study.md has finer ones): the profile at rest against the closed
 // form in both modes, a fluid that levels, a concrete that stays in the column, Newton beside ADMM.
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Rung 6: the slump of real mixes with the cone gone at once, against a body-fitted finite-element solution
+// Verification case 6: the slump of real mixes with the cone gone at once, against a body-fitted finite-element solution
 // (exact Bingham, no slip, with inertia; published to +-2 mm) and between the two thin-layer balances at
 // rest.
 

@@ -1,4 +1,4 @@
-// Rung 6: a patch of fluid that spreads on a no-slip floor, against Huppert's similarity solution and against
+// Verification case 6: a patch of fluid that spreads on a no-slip floor, against Huppert's similarity solution and against
 // the lubrication equation of a Bingham fluid (lubrication.hpp).
 
 #include <gtest/gtest.h>

@@ -98,6 +98,10 @@ std::string lifted_by_the_cone(const View& j) {
       1e3 * highest);
 }
 
+std::string no_number(const View& v) {
+  return std::isfinite(v.r.spread) ? std::string{} : "the spread is not a finite number";
+}
+
 }  // namespace
 
 /// Concrete that presses on the cone for long goes through its wall, and the opening under a rim that has not
@@ -115,7 +119,7 @@ std::string went_through_the_cone(const View& j) {
 
 void add_reasons(const Scene& scene, Outcome& outcome) {
   scene::add_reasons<View>({too_thin, few_cells, few_points_across, went_through_the_cone,
-                            slow_lift_unverified, narrow_opening, lifted_by_the_cone},
+                            slow_lift_unverified, narrow_opening, lifted_by_the_cone, no_number},
                            {scene, outcome}, outcome.checks.reasons);
 }
 
