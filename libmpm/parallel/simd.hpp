@@ -4,8 +4,8 @@
 // processor has wide registers, the same bits where it has not.
 
 #include <array>
-#include <bit>
 #include <cstdint>
+#include <cstring>
 #include <type_traits>
 #ifdef __AVX512F__
 #include <immintrin.h>
@@ -16,6 +16,15 @@ namespace tremie {
 inline constexpr int f64x8_size = 8;
 using f64x8 [[gnu::vector_size(64)]] = double;
 using i64x8 [[gnu::vector_size(64)]] = std::int64_t;
+
+/// std::bit_cast, which the browser's standard library lacks.
+template <class To, class From>
+To bit_cast(const From& from) {
+  static_assert(sizeof(To) == sizeof(From));
+  To to;
+  std::memcpy(&to, &from, sizeof to);
+  return to;
+}
 
 inline f64x8 all_lanes(double x) { return f64x8{x, x, x, x, x, x, x, x}; }
 
@@ -73,7 +82,7 @@ inline double sum(const f64x8& a) {
 /// The lanes as integers, where they hold whole numbers of another type.
 template <class T>
 std::array<int, f64x8_size> to_integers(const T& a) {
-  return std::bit_cast<std::array<int, f64x8_size>>(__builtin_convertvector(a, i32x8));
+  return bit_cast<std::array<int, f64x8_size>>(__builtin_convertvector(a, i32x8));
 }
 
 /// Whether a mask has any lane.
@@ -143,8 +152,8 @@ inline f64x8 exp(const f64x8& x) {
       r, {1.0, 1.0, 0.5, 1.0 / 6.0, 1.0 / 24.0, 1.0 / 120.0, 1.0 / 720.0, 1.0 / 5040.0, 1.0 / 40320.0,
           1.0 / 362880.0, 1.0 / 3628800.0, 1.0 / 39916800.0, 1.0 / 479001600.0, 1.0 / 6227020800.0});
   // 2^k; what the shift pushes out is the rounding constant
-  const i64x8 bits = (std::bit_cast<i64x8>(shifted) + 1023) << 52;
-  return p * std::bit_cast<f64x8>(bits);
+  const i64x8 bits = (bit_cast<i64x8>(shifted) + 1023) << 52;
+  return p * bit_cast<f64x8>(bits);
 }
 
 /// e^-x for x >= 0, to 2e-16 relative; without e^x's range reduction where no lane is above 1/500, as in
