@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <stdexcept>
+#include <numbers>
 
 #include "apparatus/common/shared_keys.hpp"
 #include "apparatus/parts/bars.hpp"
@@ -60,7 +60,7 @@ void check_ring(const Values& values, const cone::Scene& scene) {
     values.fail("ring.diameter",
                 fmt::format("the bars stand in the cone; allowed: more than \"{}\", its foot and a bar",
                             write_quantity(foot + ring.bar_diameter, Dimension::length)));
-  const double apart = ring.diameter * std::sin(3.141592653589793 / ring.bars);
+  const double apart = ring.diameter * std::sin(std::numbers::pi / ring.bars);
   if (apart <= ring.bar_diameter)
     values.fail("ring.bar_diameter", fmt::format("the bars touch each other; allowed: less than \"{}\"",
                                                  write_quantity(apart, Dimension::length)));

@@ -24,7 +24,7 @@ ImplicitBody<ThreeD> column(const Mix& mix) {
   return body;
 }
 
-/// With the tolerance of a body that flows (apparatus/slump_flow/run_implicit.cpp).
+/// With the tolerance of a body that flows (apparatus/parts/cone/run_implicit.cpp).
 StepSettings flowing() {
   StepSettings settings;
   settings.admm.tolerance = 4e-3;
