@@ -18,7 +18,7 @@
 namespace tremie::cli {
 namespace {
 
-struct Options {
+struct CheckOptions {
   std::string scene;
   std::vector<std::string> overrides;
   bool json = false;
@@ -76,7 +76,7 @@ void print_json(const scene::Scene& scene, const std::optional<scene::SizeEstima
   fmt::print("{}\n", json.dump(2));
 }
 
-void print_text(const Options& options, const scene::Scene& scene,
+void print_text(const CheckOptions& options, const scene::Scene& scene,
                 const std::optional<scene::SizeEstimate>& estimate) {
   fmt::print("# {}: valid. Every value that it uses, in SI:\n\n{}",
              options.scene == "-" ? "the scene" : options.scene, scene.resolved);
@@ -87,13 +87,13 @@ void print_text(const Options& options, const scene::Scene& scene,
 }
 
 /// "-" stands for the standard input.
-scene::Scene read(const Options& options) {
+scene::Scene read(const CheckOptions& options) {
   if (options.scene != "-") return scene::read(options.scene, options.overrides, "");
   const std::string text{std::istreambuf_iterator<char>(std::cin), {}};
   return scene::read_text(text, "standard input", options.overrides, "");
 }
 
-void check(const Options& options) {
+void check(const CheckOptions& options) {
   const auto scene = read(options);
   const auto estimate = scene::estimate(scene);  // refuses what the apparatus cannot run
   options.json ? print_json(scene, estimate) : print_text(options, scene, estimate);
@@ -102,7 +102,7 @@ void check(const Options& options) {
 }  // namespace
 
 void add_command_check(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CheckOptions>();
   Command command(app, "check", "Validate a scene; print it resolved, what it uses and what it costs");
   command.required("scene", options->scene, "Scene file (TOML), or - for the standard input");
   command.overrides(options->overrides);

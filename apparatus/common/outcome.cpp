@@ -22,6 +22,12 @@ std::optional<double> find_number(const Outcome& outcome, const std::string& nam
   return number ? std::optional(*number) : std::nullopt;
 }
 
+const Column* find_column(const std::vector<Column>& columns, const std::string& name) {
+  const auto found =
+      std::find_if(columns.begin(), columns.end(), [&](const Column& c) { return c.name == name; });
+  return found == columns.end() ? nullptr : &*found;
+}
+
 const std::vector<Column>& columns_of(const Chart& chart, const Outcome& outcome) {
   static const std::vector<Column> none;
   if (chart.table.empty()) return outcome.series;

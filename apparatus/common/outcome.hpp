@@ -38,6 +38,8 @@ struct Column {
   std::string name;  ///< with its unit: "spread_mm"
   std::vector<double> values;
 };
+/// None where no column has the name.
+const Column* find_column(const std::vector<Column>& columns, const std::string& name);
 
 /// A horizontal line in the chart: what was measured on the real concrete, in the chart's unit.
 struct Reference {

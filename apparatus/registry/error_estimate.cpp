@@ -34,11 +34,11 @@ double order_from(double ratio, const Coarsening& by) {
 }
 
 /// A coarser run shows its progress alone: its frames, and what it would be compared with, are nobody's.
-Outcome run_coarser(const Scene& scene, double factor, const Observer& observer) {
+Outcome run_coarser(const Scene& scene, double ratio, const Observer& observer) {
   Observer quiet;
   quiet.on_progress = observer.on_progress;
   quiet.interrupted = observer.interrupted;
-  return run(coarsened(scene, factor), quiet, true);
+  return run(coarsened(scene, ratio), quiet, true);
 }
 
 std::string basis_of(const Headline& headline, const Extrapolation& e) {
@@ -63,12 +63,12 @@ Extrapolation extrapolate(double fine, double middle, double coarse, const Coars
   return e;
 }
 
-Scene coarsened(const Scene& scene, double factor) {
+Scene coarsened(const Scene& scene, double ratio) {
   Scene result = scene;
   Model& model = model_of(result);
-  for (double& h : model.cell) h *= factor;
-  if (model.time_step) *model.time_step *= factor;
-  model.step_scale *= factor;
+  for (double& h : model.cell) h *= ratio;
+  if (model.time_step) *model.time_step *= ratio;
+  model.step_scale *= ratio;
   return result;
 }
 
@@ -127,9 +127,9 @@ Choice choose_cells(const Scene& scene, double accuracy, const Observer& observe
   return choice;
 }
 
-std::string cells_override(const Scene& scene, double factor) {
+std::string cells_override(const Scene& scene, double ratio) {
   const auto cell = model_of(scene).cell;
-  const double across = 1e3 * factor * cell[0], up = 1e3 * factor * cell[1];
+  const double across = 1e3 * ratio * cell[0], up = 1e3 * ratio * cell[1];
   if (cell[0] == cell[1]) return fmt::format("model.cell=\"{:.4g} mm\"", across);
   return fmt::format("model.cell=[\"{:.4g} mm\", \"{:.4g} mm\"]", across, up);
 }

@@ -26,8 +26,8 @@ struct Extrapolation {
 /// spread of the three. Never less than a thousandth of the value.
 Extrapolation extrapolate(double fine, double middle, double coarse, const Coarsening& by = {});
 
-/// The same scene with cells and steps, fixed or chosen, `factor` times as large.
-Scene coarsened(const Scene& scene, double factor);
+/// The same scene with cells and steps, fixed or chosen, `ratio` times as large.
+Scene coarsened(const Scene& scene, double ratio);
 
 /// The error bars of the outcome's headline numbers, and what they cost. Runs two coarser scenes. Empty, with
 /// the reason in `basis`, where those cannot be run.
@@ -42,8 +42,8 @@ struct Choice {
 };
 Choice choose_cells(const Scene& scene, double accuracy, const Observer& observer = {});
 
-/// The --set argument that gives the scene cells `factor` times as large.
-std::string cells_override(const Scene& scene, double factor);
+/// The --set argument that gives the scene cells `ratio` times as large.
+std::string cells_override(const Scene& scene, double ratio);
 
 /// "spread 556 ± 4 mm", a line each.
 std::vector<std::string> error_lines(const Scene& scene, const Outcome& outcome);

@@ -75,7 +75,7 @@ std::string section_text(const Section& section, const std::string& place, const
 }
 
 /// What may stand there: words, a range, units.
-std::string allowed_text(const Key& key) {
+std::string allowed_briefly(const Key& key) {
   std::vector<std::string> parts;
   std::string words;
   for (const auto& word : key.words) words += (words.empty() ? "" : " | ") + quoted(word);
@@ -89,7 +89,7 @@ std::string allowed_text(const Key& key) {
 }
 
 std::string allowed_comment(const Key& key) {
-  const std::string allowed = allowed_text(key);
+  const std::string allowed = allowed_briefly(key);
   return (key.required ? "needed: " : "") + key.help + (allowed.empty() || key.help.empty() ? "" : ": ") +
          allowed;
 }

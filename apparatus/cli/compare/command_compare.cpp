@@ -19,19 +19,19 @@
 namespace tremie::cli {
 namespace {
 
-struct Options {
+struct CompareOptions {
   std::vector<std::string> folders;
   std::string out = "runs/compare";
   bool quiet = false, force = false, json = false;
 };
 
-std::string command_of(const Options& options) {
+std::string command_of(const CompareOptions& options) {
   std::string text = "tremie compare";
   for (const auto& folder : options.folders) text += " " + folder;
   return text;
 }
 
-void write(const report::Comparison& comparison, const Options& options, const Stopwatch& watch,
+void write(const report::Comparison& comparison, const CompareOptions& options, const Stopwatch& watch,
            const std::filesystem::path& folder) {
   scene::Outcome outcome;
   outcome.apparatus = "compare";
@@ -70,7 +70,7 @@ void print_text(const report::Comparison& comparison) {
   }
 }
 
-int run(const Options& options) {
+int run_comparison(const CompareOptions& options) {
   const Stopwatch watch;
   const auto comparison = report::compare(options.folders);
   const HeldInterrupts held;  // outlives the folder
@@ -90,7 +90,7 @@ int run(const Options& options) {
 }  // namespace
 
 void add_command_compare(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CompareOptions>();
   Command command(app, "compare", "Set results side by side: curves, and what differs");
   command.required("folders", options->folders, "Folders of results, two to eight");
   command.option_with_default("--out", options->out, "Folder for the comparison");
@@ -98,7 +98,7 @@ void add_command_compare(CLI::App& app, int& exit_code) {
   command.flag("--quiet", options->quiet, "Print nothing but errors");
   command.flag("--force", options->force, "Replace an earlier result in the folder");
   command.example("tremie compare runs/fresh runs/rested");
-  command.run([options, &exit_code] { exit_code = run(*options); });
+  command.run([options, &exit_code] { exit_code = run_comparison(*options); });
 }
 
 }  // namespace tremie::cli

@@ -22,12 +22,12 @@ namespace {
 
 using scene::Dimension;
 
-struct Options {
+struct EstimateOptions {
   std::string spread, t500, density, spread_error, t500_error, chart;
   bool json = false;
 };
 
-estimate::Measured measured_of(const Options& o) {
+estimate::Measured measured_of(const EstimateOptions& o) {
   estimate::Measured m;
   const auto sensible = [](double spread) { return spread > 0.2 && spread < 2.0; };
   m.spread = *quantity("--spread", o.spread, Dimension::length, sensible);
@@ -49,7 +49,7 @@ void print_interval(const char* name, const std::optional<estimate::Interval>& i
     fmt::print("{:<24} {}\n", name, none);
 }
 
-void print_text(const Options& o, const estimate::Measured& m, const estimate::MixEstimate& e) {
+void print_text(const EstimateOptions& o, const estimate::Measured& m, const estimate::MixEstimate& e) {
   print_interval("yield stress", e.tau_0, "Pa", "not in the table");
   print_interval("plastic viscosity", e.mu, "Pa.s",
                  o.t500.empty() ? "takes --t500" : "not told by this t500");
@@ -85,7 +85,7 @@ std::vector<estimate::NamedMix> published_mixes() {
 }
 
 /// SVG, or PDF by rsvg-convert.
-void draw_chart(const Options& options, const estimate::SlumpTable& table,
+void draw_chart(const EstimateOptions& options, const estimate::SlumpTable& table,
                 const std::optional<estimate::MixEstimate>& result) {
   namespace fs = std::filesystem;
   const fs::path file = fs::absolute(options.chart);
@@ -107,7 +107,7 @@ void draw_chart(const Options& options, const estimate::SlumpTable& table,
   if (code != 0) throw std::runtime_error("rsvg-convert failed: the chart is missing or not complete");
 }
 
-int run(const Options& options) {
+int run_estimate(const EstimateOptions& options) {
   const auto table = estimate::find_slump_table(scene::data_folders());
   if (options.spread.empty()) {
     if (options.chart.empty()) throw scene::InputError("--spread: is missing; without it, --chart alone");
@@ -125,7 +125,7 @@ int run(const Options& options) {
 }  // namespace
 
 void add_command_estimate(CLI::App& app, int& exit_code) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<EstimateOptions>();
   Command command(app, "estimate", "Yield stress and plastic viscosity from a slump flow, by a table");
   command.option("--spread", o->spread, "Slump flow: \"590 mm\"");
   command.option("--t500", o->t500, "Time to 500 mm from the start of the lift: \"2.5 s\"");
@@ -137,7 +137,7 @@ void add_command_estimate(CLI::App& app, int& exit_code) {
       "Draw a rheograph, FILE.svg or FILE.pdf: contours of slump flow and t500; without --spread it alone");
   command.flag("--json", o->json, "Print one JSON object");
   command.example("tremie estimate --spread \"590 mm\" --t500 \"2.5 s\"");
-  command.run([o, &exit_code] { exit_code = run(*o); });
+  command.run([o, &exit_code] { exit_code = run_estimate(*o); });
 }
 
 }  // namespace tremie::cli

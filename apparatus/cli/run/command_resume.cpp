@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct ResumeOptions {
   std::string folder;
   bool quiet = false, json = false;
 };
@@ -51,7 +51,7 @@ report::Checkpoint checked(const std::string& folder) {
   return checkpoint;
 }
 
-int resume(const Options& options) {
+int resume(const ResumeOptions& options) {
   auto checkpoint = checked(options.folder);
   const report::RunRequest& request = checkpoint.request;
   auto scene = scene::read_text(request.resolved, request.name);
@@ -67,7 +67,7 @@ int resume(const Options& options) {
 }  // namespace
 
 void add_command_resume(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ResumeOptions>();
   Command command(app, "resume", "Go on with a run that was interrupted or killed");
   command.required("folder", options->folder, "Folder of the run's result (tremie run --out)");
   add_json_option(command, options->json);

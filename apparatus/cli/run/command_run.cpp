@@ -21,7 +21,7 @@
 namespace tremie::cli {
 namespace {
 
-struct Options {
+struct RunOptions {
   std::string scene, out;
   std::vector<std::string> overrides;
   int threads = 0;  ///< 0: as many as pay
@@ -30,7 +30,7 @@ struct Options {
 };
 
 /// The scene with the cells that the accuracy wants; says the price first.
-scene::Scene with_cells_for(const scene::Scene& scene, const Options& options) {
+scene::Scene with_cells_for(const scene::Scene& scene, const RunOptions& options) {
   scene::Observer observer;
   observer.interrupted = &stop_requested;
   const auto choice = scene::choose_cells(scene, accuracy_of(options.accuracy), observer);
@@ -44,7 +44,7 @@ scene::Scene with_cells_for(const scene::Scene& scene, const Options& options) {
 }
 
 /// What repeats the run, to be typed where it was.
-std::string command_of(const Options& options) {
+std::string command_of(const RunOptions& options) {
   std::string text = "tremie run " + options.scene;
   for (const auto& change : options.overrides) text += " --set '" + change + "'";
   if (!options.accuracy.empty()) return text + " --accuracy '" + options.accuracy + "'";
@@ -62,16 +62,16 @@ void check_threads(int threads) {
                processors);
 }
 
-int threads_for(const scene::Scene& scene, const Options& options) {
+int threads_for(const scene::Scene& scene, const RunOptions& options) {
   check_threads(options.threads);
   return options.threads > 0 ? options.threads : scene::default_threads(scene);
 }
 
-report::RunFolder folder_of(const Options& options, const scene::Scene& scene) {
+report::RunFolder folder_of(const RunOptions& options, const scene::Scene& scene) {
   return {options.out.empty() ? "runs/" + scene.name : options.out, options.force};
 }
 
-int run_cell(const Options& options) {
+int run_cell(const RunOptions& options) {
   const auto scene = scene::read(options.scene, options.overrides, "cell");
   const HeldInterrupts held;  // outlives the folder
   report::RunFolder folder = folder_of(options, scene);
@@ -80,7 +80,7 @@ int run_cell(const Options& options) {
       screen_of(options.quiet, options.json), folder);
 }
 
-int run(const Options& options) {
+int run_scene(const RunOptions& options) {
   auto scene = scene::read(options.scene, options.overrides);
   if (!options.accuracy.empty()) accuracy_of(options.accuracy);
   const int threads = threads_for(scene, options);
@@ -103,7 +103,7 @@ int run(const Options& options) {
 }  // namespace
 
 void add_command_run(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RunOptions>();
   Command command(app, "run", "Run a scene and write its result");
   command.required("scene", options->scene, "Scene file (TOML)");
   command.option("--out", options->out, "Folder for the result (default: runs/<scene name>)");
@@ -121,11 +121,11 @@ void add_command_run(CLI::App& app, int& exit_code) {
       "tremie new slump_flow > slump.toml writes a scene to start from; tremie run slump.toml runs it,\n"
       "with --set test.rest=\"240 s\" after four minutes of rest. Bundled mixes: mix = \"mix_a\", mix_b, "
       "mix_c.");
-  command.run([options, &exit_code] { exit_code = run(*options); });
+  command.run([options, &exit_code] { exit_code = run_scene(*options); });
 }
 
 void add_command_cell(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RunOptions>();
   Command command(app, "cell", "Run the law alone, in one material cell at a prescribed shear rate");
   command.required("scene", options->scene, "Scene file (TOML) with apparatus = \"cell\"");
   command.option("--out", options->out, "Folder for the result (default: runs/<scene name>)");

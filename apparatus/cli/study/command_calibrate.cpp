@@ -30,7 +30,7 @@ using Json = nlohmann::ordered_json;
 using calibration::Calibration;
 using calibration::Lab;
 
-struct Options {
+struct CalibrateOptions {
   std::string file, out;
   int jobs = 0;
   std::size_t runs = 0;
@@ -189,7 +189,7 @@ int stopped() {
   return interrupted;
 }
 
-int run(const Options& options) {
+int run_calibration(const CalibrateOptions& options) {
   const Stopwatch watch;
   const Lab lab = calibration::read_lab(options.file);
   report::RunFolder folder(options.out.empty() ? "runs/" + lab.name : options.out, options.force);
@@ -227,7 +227,7 @@ int run(const Options& options) {
 }  // namespace
 
 void add_command_calibrate(CLI::App& app, int& exit_code) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<CalibrateOptions>();
   Command command(app, calibrate_command.name, calibrate_command.description);
   command.required("lab", o->file, "Laboratory file (TOML): [[measured]], [unknown], [known], [[forecast]]");
   command.option("--out", o->out, "Folder for the result (default: runs/<file's name>)");
@@ -243,7 +243,7 @@ void add_command_calibrate(CLI::App& app, int& exit_code) {
       "ranges.");
   command.run([o, &exit_code] {
     o->quiet = o->quiet || o->json;
-    exit_code = run(*o);
+    exit_code = run_calibration(*o);
   });
 }
 

@@ -31,7 +31,7 @@
 namespace tremie::cli {
 namespace {
 
-struct Options {
+struct Given {
   std::vector<std::string> data;
   std::string out;
   std::vector<std::string> texts = std::vector<std::string>(fit_options().size());  ///< of fit_options()
@@ -39,7 +39,7 @@ struct Options {
   bool json = false, quiet = false, force = false;
 };
 
-FitOptions options_of(const Options& o) {
+FitOptions options_of(const Given& o) {
   FitOptions options;
   for (std::size_t i = 0; i < o.texts.size(); ++i) {
     const FitOption& option = fit_options()[i];
@@ -67,7 +67,7 @@ RecordFits fit_files(const std::vector<std::string>& files, const FitOptions& op
 using Files = std::vector<std::pair<std::string, std::string>>;
 
 /// The files of a result, each a name and a text.
-Files files_of(const RecordFits& fits, const Options& o) {
+Files files_of(const RecordFits& fits, const Given& o) {
   std::vector<std::string> texts = o.texts;
   for (std::size_t i = 0; i < texts.size(); ++i)
     if (o.flags[i]) texts[i] = "given";
@@ -94,7 +94,7 @@ Files files_of(const RecordFits& fits, const Options& o) {
   return files;
 }
 
-int run(const Options& o) {
+int run_fit(const Given& o) {
   const Stopwatch watch;
   const FitOptions options = options_of(o);
   const RecordFits fits = fit_files(o.data, options);
@@ -122,7 +122,7 @@ int run(const Options& o) {
   return fits.reasons.empty() ? done : not_to_be_trusted;
 }
 
-void add_options(Command& command, Options& o) {
+void add_options(Command& command, Given& o) {
   for (std::size_t i = 0; i < fit_options().size(); ++i) {
     const FitOption& option = fit_options()[i];
     const std::string name = report::command_name(option);
@@ -138,7 +138,7 @@ void add_options(Command& command, Options& o) {
 }  // namespace
 
 void add_command_fit(CLI::App& app, int& exit_code) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<Given>();
   Command command(app, fit_command.name, fit_command.description);
   command.required("data", o->data,
                    "CSV or an instrument's export: speed and torque (flow curve), time and torque (decay), "
@@ -149,7 +149,7 @@ void add_command_fit(CLI::App& app, int& exit_code) {
   command.flag("--quiet", o->quiet, "Print nothing but errors");
   command.flag("--force", o->force, "Replace an earlier result in the folder");
   command.example("tremie fit torque.csv, with --speed \"0.25 rev/s\" --rest \"240 s\" for a torque decay");
-  command.run([o, &exit_code] { exit_code = run(*o); });
+  command.run([o, &exit_code] { exit_code = run_fit(*o); });
 }
 
 }  // namespace tremie::cli

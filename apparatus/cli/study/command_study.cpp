@@ -37,7 +37,7 @@ using study::Definition;
 using study::Design;
 using study::Row;
 
-struct Options {
+struct StudyOptions {
   std::string file, out, engine;
   int jobs = 0;
   std::int64_t row = -1;
@@ -67,7 +67,7 @@ void remove_earlier_study(const fs::path& folder) {
   fs::remove_all(folder / "rows");
 }
 
-void make_folder(const Job& job, const Options& options) {
+void make_folder(const Job& job, const StudyOptions& options) {
   const bool filled = fs::is_directory(job.folder) && !fs::is_empty(job.folder);
   if (fs::exists(job.folder) && !fs::is_directory(job.folder)) refuse(job.folder, "is no folder");
   const bool goes_on = options.resume || options.collect || options.row >= 0;
@@ -123,12 +123,12 @@ std::vector<std::size_t> rows_to_run(const Job& job, const std::vector<Row>& the
   return rows;
 }
 
-int jobs_of(const Options& options) {
+int jobs_of(const StudyOptions& options) {
   return options.jobs > 0 ? options.jobs : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
 /// False where it was interrupted.
-bool run_rows(const Job& job, const Options& options, study::Journal& journal,
+bool run_rows(const Job& job, const StudyOptions& options, study::Journal& journal,
               const std::vector<Row>& there) {
   const auto rows = rows_to_run(job, there);
   StudyProgress progress(job.design.size(), job.design.size() - rows.size(), options.quiet);
@@ -144,7 +144,7 @@ bool run_rows(const Job& job, const Options& options, study::Journal& journal,
 
 // --- the ways to run ------------------------------------------------------------------------------------
 
-int finish(const Job& job, const Options& options, const study::RowFiles& files,
+int finish(const Job& job, const StudyOptions& options, const study::RowFiles& files,
            const std::vector<Row>& journal, const Stopwatch& watch) {
   std::vector<Row> rows = journal;
   rows.insert(rows.end(), files.rows.begin(), files.rows.end());
@@ -172,7 +172,7 @@ study::RowFiles row_files(const Job& job) {
   return study::read_row_files(job.folder, job.fingerprint, job.definition.results.size());
 }
 
-int run_here(const Job& job, const Options& options) {
+int run_here(const Job& job, const StudyOptions& options) {
   const Stopwatch watch;
   study::Journal journal(job.folder, job.fingerprint, job.definition.results.size());
   const auto files = row_files(job);
@@ -187,7 +187,7 @@ int run_here(const Job& job, const Options& options) {
   return finish(job, options, files, journal.rows(), watch);
 }
 
-int run_one_row(const Job& job, const Options& options) {
+int run_one_row(const Job& job, const StudyOptions& options) {
   const auto index = static_cast<std::size_t>(options.row);
   if (index >= job.design.size())
     throw scene::InputError(
@@ -201,7 +201,7 @@ int run_one_row(const Job& job, const Options& options) {
   return done;
 }
 
-int hand_to_engine(const Job& job, const Options& options) {
+int hand_to_engine(const Job& job, const StudyOptions& options) {
   const auto engine = options.engine == "slurm"       ? study::Engine::slurm
                       : options.engine == "snakemake" ? study::Engine::snakemake
                                                       : study::Engine::parallel;
@@ -225,14 +225,14 @@ int hand_to_engine(const Job& job, const Options& options) {
   return code == not_to_be_trusted ? not_to_be_trusted : fault;
 }
 
-void check_together(const Options& options) {
+void check_together(const StudyOptions& options) {
   const int ways = (options.row >= 0) + options.collect + options.resume + !options.engine.empty();
   if (ways > 1)
     throw scene::InputError("--row, --collect, --resume and --engine: at most one of them at a time");
   if (options.submit && options.engine.empty()) throw scene::InputError("--submit: goes with --engine");
 }
 
-int run(const Options& options) {
+int run_study(const StudyOptions& options) {
   check_together(options);
   Job job;
   job.definition = study::read_definition(options.file);
@@ -254,7 +254,7 @@ int run(const Options& options) {
 }  // namespace
 
 void add_command_study(CLI::App& app, int& exit_code) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<StudyOptions>();
   Command command(app, study_command.name, study_command.description);
   command.required("study", o->file, "Study file (TOML): base, [[factor]], [design], [read]");
   command.option("--out", o->out, "Folder for the result (default: runs/<study's name>)");
@@ -274,7 +274,7 @@ void add_command_study(CLI::App& app, int& exit_code) {
       "runs.");
   command.run([o, &exit_code] {
     o->quiet = o->quiet || o->json;
-    exit_code = run(*o);
+    exit_code = run_study(*o);
   });
 }
 

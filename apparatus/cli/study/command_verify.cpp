@@ -23,7 +23,7 @@
 namespace tremie::cli {
 namespace {
 
-struct Options {
+struct VerifyOptions {
   std::vector<std::string> cases;
   std::string out;
   bool quick = false, full = false, validation = false, force = false, json = false;
@@ -54,7 +54,7 @@ std::vector<verification::Entry> chosen(const std::vector<std::string>& cases) {
   return entries;
 }
 
-std::string command_line(const Options& options) {
+std::string command_line(const VerifyOptions& options) {
   std::string text = "tremie verify";
   for (const auto& name : options.cases) text += " " + name;
   return text + (options.full ? " --full" : " --quick");
@@ -94,7 +94,7 @@ nlohmann::ordered_json summary_of_sections(const std::vector<validation::Section
 }
 
 /// A measurement that is missed is a finding of the page, not a fault of the run.
-int validate(const Options& options) {
+int validate(const VerifyOptions& options) {
   if (!options.cases.empty()) throw scene::InputError("verify: --validation has no cases");
   if (!validation::has_calibration())
     throw scene::InputError("verify: --validation calibrates, which needs libopenturns-dev at the build");
@@ -123,7 +123,7 @@ int validate(const Options& options) {
   return done;
 }
 
-int verify(const Options& options) {
+int verify(const VerifyOptions& options) {
   if (options.validation) return validate(options);
   const auto entries = chosen(options.cases);
   report::RunFolder folder(options.out.empty() ? "runs/verification" : options.out, options.force);
@@ -158,7 +158,7 @@ int verify(const Options& options) {
 }  // namespace
 
 void add_command_verify(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<VerifyOptions>();
   Command command(app, verify_command.name, verify_command.description);
   command.option("cases", options->cases, "Cases by name or number (default: all): " + known_cases());
   command.flag("--quick", options->quick, "Coarser cells, under five minutes (the default)");

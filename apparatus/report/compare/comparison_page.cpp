@@ -21,12 +21,6 @@ constexpr std::array<std::string_view, 9> about_the_method{
     "spread_max_point_mm", "time_step_s",     "iterations",        "volume_change",   "kinetic_energy_J",
     "max_speed_m_per_s",   "torque_wall_N_m", "momentum_rate_N_m", "torque_power_N_m"};
 
-const scene::Column* find_column(const std::vector<scene::Column>& columns, const std::string& name) {
-  const auto found =
-      std::find_if(columns.begin(), columns.end(), [&](const auto& c) { return c.name == name; });
-  return found == columns.end() ? nullptr : &*found;
-}
-
 const FileColumns* find_table(const RunResult& run, const std::string& file) {
   if (file == run.series.file) return &run.series;
   const auto found =
@@ -44,7 +38,7 @@ void add_overlay(const Comparison& comparison, const std::string& file, const st
   for (const auto& run : comparison.runs) {
     Curve curve{.label = run.name};
     if (const auto* table = find_table(run, file))
-      if (const auto* a = find_column(table->columns, x), *b = find_column(table->columns, y); a && b)
+      if (const auto* a = scene::find_column(table->columns, x), *b = scene::find_column(table->columns, y); a && b)
         curve.x = a->values, curve.y = b->values;
     chart.curves.push_back(std::move(curve));
   }

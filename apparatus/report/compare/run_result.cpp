@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-[[noreturn]] void refuse(const fs::path& folder, const std::string& why) {
+[[noreturn]] void refuse_result(const fs::path& folder, const std::string& why) {
   throw scene::InputError(fmt::format("{}: {}", folder.string(), why));
 }
 
@@ -84,18 +84,18 @@ void flatten(const scene::Node& node, const std::string& place, std::vector<Entr
 
 Json read_summary(const fs::path& folder) {
   std::error_code error;
-  if (!fs::exists(folder, error)) refuse(folder, "there is no such folder");
-  if (!fs::is_directory(folder, error)) refuse(folder, "is no folder; compare takes folders of results");
+  if (!fs::exists(folder, error)) refuse_result(folder, "there is no such folder");
+  if (!fs::is_directory(folder, error)) refuse_result(folder, "is no folder; compare takes folders of results");
   std::ifstream stream(folder / "summary.json");
-  if (!stream) refuse(folder, "holds no result: summary.json is missing");
+  if (!stream) refuse_result(folder, "holds no result: summary.json is missing");
   try {
     Json json = Json::parse(stream);
     for (const char* key : {"apparatus", "status", "results", "checks"})
-      if (!json.contains(key)) refuse(folder, fmt::format("its summary.json has no \"{}\"", key));
-    if (!json["results"].is_object()) refuse(folder, "its summary.json has no results");
+      if (!json.contains(key)) refuse_result(folder, fmt::format("its summary.json has no \"{}\"", key));
+    if (!json["results"].is_object()) refuse_result(folder, "its summary.json has no results");
     return json;
   } catch (const Json::exception&) {
-    refuse(folder, "its summary.json is no JSON");
+    refuse_result(folder, "its summary.json is no JSON");
   }
 }
 
@@ -163,7 +163,7 @@ RunResult read_run_result(const std::string& given) {
   if (summary.contains("error")) flatten(summary["error"], "", run.errors);
   for (const char* file : {"scene.toml", "timeseries.csv"})
     if (is_scene_apparatus(run.apparatus) && !fs::exists(folder / file))
-      refuse(folder, fmt::format("holds a {} without its {}", run.apparatus, file));
+      refuse_result(folder, fmt::format("holds a {} without its {}", run.apparatus, file));
   if (fs::exists(folder / "scene.toml")) flatten(scene::parse_file(folder / "scene.toml"), "", run.scene);
   run.series = {"timeseries.csv", read_columns(folder / "timeseries.csv")};
   if (is_scene_apparatus(run.apparatus)) read_tables(folder, run);

@@ -7,12 +7,6 @@
 namespace tremie::report {
 namespace {
 
-const scene::Column* find_column(const std::vector<scene::Column>& columns, const std::string& name) {
-  const auto found =
-      std::find_if(columns.begin(), columns.end(), [&](const auto& c) { return c.name == name; });
-  return found == columns.end() ? nullptr : &*found;
-}
-
 /// The error bar of a column at the end of the time; the result has the column's name.
 void add_bars(const scene::Chart& chart, const scene::Outcome& outcome, LineChart& drawn) {
   if (!outcome.error || !chart.table.empty()) return;
@@ -27,12 +21,12 @@ void add_bars(const scene::Chart& chart, const scene::Outcome& outcome, LineChar
 LineChart line_chart(const scene::Chart& chart, const scene::Outcome& outcome) {
   const auto& columns = scene::columns_of(chart, outcome);
   LineChart drawn{.title = chart.title, .x_label = chart.x_label, .y_label = chart.y_label};
-  const auto* over = chart.over.empty() || columns.empty() ? nullptr : find_column(columns, chart.over);
+  const auto* over = chart.over.empty() || columns.empty() ? nullptr : scene::find_column(columns, chart.over);
   const bool several = chart.columns.size() + chart.references.size() > 1;
   for (std::size_t i = 0; i < chart.columns.size(); ++i) {
     Curve curve;
     if (several) curve.label = i < chart.labels.size() ? chart.labels[i] : "computed";
-    if (const auto* column = find_column(columns, chart.columns[i]))
+    if (const auto* column = scene::find_column(columns, chart.columns[i]))
       curve.x = over ? over->values : columns.front().values, curve.y = column->values;
     drawn.curves.push_back(std::move(curve));
   }

@@ -113,7 +113,7 @@ std::string program() {
   return fmt::format("{} {} {} {}", version, commit, compiler, lanes);
 }
 
-[[noreturn]] void refuse(const fs::path& folder, const std::string& why) {
+[[noreturn]] void refuse_to_resume(const fs::path& folder, const std::string& why) {
   throw scene::InputError(fmt::format("{}: {}; `tremie run` with --force begins anew", folder.string(), why));
 }
 
@@ -198,7 +198,7 @@ void CheckpointWriter::state(const RunRequest& request, const VisitState& state)
 
 Checkpoint read_checkpoint(const fs::path& folder) {
   const fs::path path = folder / "state";
-  if (!is_whole(path)) refuse(folder, "the checkpoint is damaged or cut");
+  if (!is_whole(path)) refuse_to_resume(folder, "the checkpoint is damaged or cut");
   const File file = open_file(path, "rb");
   Archive archive = reader(file.get(), size_of(path) - sum_size);
   Checkpoint checkpoint{folder, {}};
@@ -208,14 +208,14 @@ Checkpoint read_checkpoint(const fs::path& folder) {
     archive(begin);
     if (begin == magic) archive(written_by);
     if (written_by != program())
-      refuse(folder, fmt::format("the checkpoint is of another version of tremie ({})", written_by));
+      refuse_to_resume(folder, fmt::format("the checkpoint is of another version of tremie ({})", written_by));
     archive(checkpoint.request, checkpoint.frames_length, checkpoint.frames_sum);
   } catch (const std::length_error&) {
-    refuse(folder, "the checkpoint is damaged or cut");
+    refuse_to_resume(folder, "the checkpoint is damaged or cut");
   }
   checkpoint.state_at = static_cast<std::uint64_t>(std::ftell(file.get()));
   if (sum_of(folder / "frames", checkpoint.frames_length) != checkpoint.frames_sum)
-    refuse(folder, "the checkpoint's frames are damaged or cut");
+    refuse_to_resume(folder, "the checkpoint's frames are damaged or cut");
   return checkpoint;
 }
 
@@ -229,14 +229,14 @@ void restore(const Checkpoint& checkpoint, const VisitState& state) {
   const fs::path path = checkpoint.folder / "state";
   const File file = open_file(path, "rb");
   if (!file || std::fseek(file.get(), static_cast<long>(checkpoint.state_at), SEEK_SET) != 0)
-    refuse(checkpoint.folder, "the checkpoint cannot be read");
+    refuse_to_resume(checkpoint.folder, "the checkpoint cannot be read");
   Archive archive = reader(file.get(), size_of(path) - sum_size - checkpoint.state_at);
   state(archive);
 }
 
 void for_each_frame(const Checkpoint& checkpoint, const std::function<void(const Frame&)>& use) {
   const File file = open_file(checkpoint.folder / "frames", "rb");
-  if (!file) refuse(checkpoint.folder, "the checkpoint's frames cannot be read");
+  if (!file) refuse_to_resume(checkpoint.folder, "the checkpoint's frames cannot be read");
   while (static_cast<std::uint64_t>(std::ftell(file.get())) < checkpoint.frames_length) {
     Archive archive =
         reader(file.get(), checkpoint.frames_length - static_cast<std::uint64_t>(std::ftell(file.get())));
