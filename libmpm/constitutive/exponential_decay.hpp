@@ -57,12 +57,12 @@ inline double build_and_break(double lambda, double build_rate, const Decay& d, 
 inline f64x8 decay_asymmetry(const f64x8& k, const f64x8& d) {
   const f64x8 ones = all_lanes(1.0), x = k * k;
   const i64x8 small = k < 0.5;
-  const f64x8 far = (2.0 * (ones - d) / d - k) / (small ? ones : x);
+  const f64x8 far = (2.0 * (ones - d) / d - k) / select(small, ones, x);
   const f64x8 near =
       1.0 / 6.0 -
       x * (1.0 / 360.0 - x * (1.0 / 15120.0 -
                               x * (1.0 / 604800.0 - x * (1.0 / 23950080.0 - x * (691.0 / 653837184000.0)))));
-  return small ? near : far;
+  return select(small, near, far);
 }
 
 }  // namespace tremie

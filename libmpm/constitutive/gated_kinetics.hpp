@@ -51,13 +51,14 @@ struct GatedKinetics {
     const f64x8 none = {}, gate = none + gamma_c;
     const i64x8 rest_0 = gamma_0 < gamma_c, rest_1 = gamma_1 < gamma_c;
     const i64x8 crosses = rest_0 ^ rest_1;
-    if (!any(crosses)) return rest_0 ? lambda + built : lambda * decay(half * (gamma_0 + gamma_1));
+    if (!any(crosses)) return select(rest_0, lambda + built, lambda * decay(half * (gamma_0 + gamma_1)));
     // Before and after the crossing of gamma_c at the share theta of the step.
-    const f64x8 theta = crosses ? (gate - gamma_0) / (crosses ? gamma_1 - gamma_0 : none + 1.0) : none + 1.0;
-    const f64x8 before = rest_0 ? built * theta : none;
-    const f64x8 after = (crosses & rest_1) ? built * (1.0 - theta) : none;
-    const f64x8 flow_0 = rest_0 ? none : half * theta * (gamma_0 + (crosses ? gate : gamma_1));
-    const f64x8 flow_1 = (crosses & rest_0) ? half * (1.0 - theta) * (gate + gamma_1) : none;
+    const f64x8 ones = none + 1.0;
+    const f64x8 theta = select(crosses, (gate - gamma_0) / select(crosses, gamma_1 - gamma_0, ones), ones);
+    const f64x8 before = select(rest_0, built * theta, none);
+    const f64x8 after = select(crosses & rest_1, built * (1.0 - theta), none);
+    const f64x8 flow_0 = select(rest_0, none, half * theta * (gamma_0 + select(crosses, gate, gamma_1)));
+    const f64x8 flow_1 = select(crosses & rest_0, half * (1.0 - theta) * (gate + gamma_1), none);
     return (lambda + before) * decay(flow_0 + flow_1) + after;
   }
 

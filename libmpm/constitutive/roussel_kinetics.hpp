@@ -43,7 +43,7 @@ struct RousselKinetics {
     const double built = build_rate * dt, half = 0.5 * alpha * dt;
     const f64x8 k = half * (gamma_0 + gamma_1), d = mean_decay(k);
     const f64x8 ones = all_lanes(1.0), left = d * exp(-(half * (gamma_1 - gamma_0) * decay_asymmetry(k, d)));
-    return lambda * (1.0 - k * d) + built * (left < ones ? left : ones);
+    return lambda * (1.0 - k * d) + built * min(left, ones);
   }
 
   /// Sixth order. alpha dt int_x^1 gamma_dot dx = ku + c u(1 - u) + d u(1 - u)(1 - 2u) + ..., u = 1 - x; the

@@ -157,7 +157,9 @@ void affine_from_moments(TilePass<Real, Geometry>& in, std::size_t g,
   for (int b = 0; b < D; ++b) {
     const Real h = in.frame.axis[b].h;
     const auto seen = weights.inertia[b] > static_cast<Real>(1e-12) * h * h;
-    const V inverse = seen && !in.settings.transfer.flip ? 1 / (seen ? weights.inertia[b] : 1 - V{}) : V{};
+    const V one = 1 - V{}, inverse = in.settings.transfer.flip
+                                         ? V{}
+                                         : select(seen, 1 / select(seen, weights.inertia[b], one), V{});
     for (int a = 0; a < D; ++a) {
       C[b][a] *= inverse;
       if (!in.points.C[0].empty()) in.points.C[a * D + b][g] = to_double(C[b][a]);

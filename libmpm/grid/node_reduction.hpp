@@ -15,6 +15,7 @@
 
 #include "libmpm/grid/active_grid.hpp"
 #include "libmpm/parallel/buffers.hpp"
+#include "libmpm/parallel/simd.hpp"
 
 namespace tremie {
 
@@ -45,10 +46,7 @@ class ReductionBuffer {
 template <class Four, class Scalar>
 void add_to_node(const Four& value, Scalar* at) {
   static_assert(sizeof(Four) == 4 * sizeof(Scalar));
-  Four sum;
-  std::memcpy(&sum, at, sizeof sum);
-  sum += value;
-  std::memcpy(at, &sum, sizeof sum);
+  store(load<Four>(at) + value, at);
 }
 
 class NodeReduction {

@@ -26,28 +26,19 @@ inline constexpr int tile_span = 2 * tile_cells;  ///< nodes that a tile sees in
 /// One entry a node: components 0 to D-1 a vector, component D the mass, or of velocities 1/mass [1/kg], 0
 /// where there is none.
 template <class Real>
-using NodeOf = std::conditional_t<std::is_same_v<Real, float>, f32x4, f64x4>;
+using NodeOf = Simd<Real, 4>;
 
-/// Four nodes of a row (the last direction) as one vector, or as two.
-struct f64x16 {
-  f64x8 low, high;
-};
-inline f64x16 operator+(const f64x16& a, const f64x16& b) { return {a.low + b.low, a.high + b.high}; }
-inline f64x16 operator-(const f64x16& a, const f64x16& b) { return {a.low - b.low, a.high - b.high}; }
-inline f64x16 operator*(const f64x16& a, const f64x16& b) { return {a.low * b.low, a.high * b.high}; }
-inline f64x16 operator*(double a, const f64x16& b) { return {a * b.low, a * b.high}; }
+/// Four nodes of a row (the last direction) side by side.
 template <class Real>
-using RowOf = std::conditional_t<std::is_same_v<Real, float>, f32x16, f64x16>;
+using RowOf = Simd<Real, 16>;
 
 template <class Real>
 [[gnu::always_inline]] inline RowOf<Real> load_row(const NodeOf<Real>* from) {
-  RowOf<Real> row;
-  std::memcpy(&row, from, sizeof row);
-  return row;
+  return load<RowOf<Real>>(reinterpret_cast<const Real*>(from));
 }
 template <class Real>
 [[gnu::always_inline]] inline void store_row(const RowOf<Real>& row, NodeOf<Real>* to) {
-  std::memcpy(to, &row, sizeof row);
+  store(row, reinterpret_cast<Real*>(to));
 }
 
 /// The nodes that a tile sees, the last direction fastest. A row of four may begin at any of them: there is room
@@ -129,7 +120,7 @@ void read_blocks(const Tile<D>& tile, const std::vector<BlockNodes<D>>& blocks, 
     const f64x4* from = blocks[tile.block[k]].data();
     for (int row = 0; row < power(tile_cells, D - 1); ++row)
       for (NodeOf<Real>*to = &cube[row_in_cube<D>(k, row)], *end = to + tile_cells; to != end; ++to)
-        *to = __builtin_convertvector(*from++, NodeOf<Real>);
+        *to = convert<Real>(*from++);
   }
   for (int i = 0; i < tile_cells; ++i) cube[power(tile_span, D) + i] = NodeOf<Real>{};
 }
@@ -146,8 +137,8 @@ void sum_tiles(const NodeBlock<D>& block, const std::vector<NodeCube<Real, D>>& 
       sum[row] = sum[row] + load_row<Real>(&buffer[row_in_cube<D>(k, row)]);
   }
   NodeOf<Real> total[rows * tile_cells];
-  std::memcpy(total, sum, sizeof total);
-  for (int i = 0; i < rows * tile_cells; ++i) visit(i, __builtin_convertvector(total[i], f64x4));
+  for (int row = 0; row < rows; ++row) store_row<Real>(sum[row], total + row * tile_cells);
+  for (int i = 0; i < rows * tile_cells; ++i) visit(i, convert<double>(total[i]));
 }
 
 namespace detail {

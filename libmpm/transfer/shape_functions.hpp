@@ -78,7 +78,7 @@ template <class Real, class V>
                                                               const V& s) {
   const V t = 1 - s;
   V a = Real(0.5) - V{}, b = a;
-  if (axis.walls) a = cell == axis.low ? a + a : a, b = cell == axis.high ? b + b : b;
+  if (axis.walls) a = select(cell == axis.low, a + a, a), b = select(cell == axis.high, b + b, b);
   const V at = a * t, bs = b * s, w_0 = at * t, w_2 = bs * s, dw_0 = -2 * at, dw_2 = 2 * bs;
   return {{w_0, 1 - w_0 - w_2, w_2}, {dw_0, -dw_0 - dw_2, dw_2}, {a - 1 - s, Real(0.5) - s, 2 - b - s}};
 }
@@ -92,7 +92,7 @@ template <class Real, class V>
   V half = axis.half - V{}, inverse = Real(0.5) / axis.half - V{};
   if (axis.walls) {
     const auto wall = (corner == axis.low) | (corner == axis.high);
-    half = wall ? none - V{} : half, inverse = wall ? Real(0.5) / none - V{} : inverse;
+    half = select(wall, none - V{}, half), inverse = select(wall, Real(0.5) / none - V{}, inverse);
   }
   // How much of the extent lies below and above the corner, and how far from it the rest is.
   const V reached = min(max(u, -half), half), below = half - reached, above = half + reached, zero = {};

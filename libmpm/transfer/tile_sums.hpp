@@ -9,9 +9,6 @@
 // (moments, and momenta of affine velocities), or first the ones and then the others: N sets of them.
 
 #include "libmpm/transfer/shape_functions.hpp"
-#ifdef __AVX512F__
-#include <immintrin.h>
-#endif
 
 namespace tremie {
 
@@ -36,31 +33,29 @@ constexpr int row_offset(int r) {
 
 namespace detail {
 
-/// The same node four times, and each of its entries four times; the compiler would go through memory.
-[[gnu::always_inline]] inline f32x16 repeat(const f32x4& a) {
-#ifdef __AVX512F__
-  return _mm512_maskz_broadcast_f32x4(0xffff, a);
-#else
-  const f32x4 four[4] = {a, a, a, a};
-  return load_row<float>(four);
-#endif
+/// The same node in all places of a row.
+template <class Row, class Node>
+[[gnu::always_inline]] inline Row repeat(const Node& a) {
+  if constexpr (std::is_same_v<Row, Node>) {
+    return a;
+  } else {
+    const auto half = repeat<Simd<ScalarOf<Row>, size_of<Row> / 2>>(a);
+    return join(half, half);
+  }
 }
-[[gnu::always_inline]] inline f32x16 repeat_each(const f32x4& a) {
-#ifdef __AVX512F__
-  return _mm512_maskz_permutevar_ps(0xffff, repeat(a),
-                                    _mm512_set_epi32(3, 3, 3, 3, 2, 2, 2, 2, 1, 1, 1, 1, 0, 0, 0, 0));
-#else
-  const f32x4 none = {}, four[4] = {none + a[0], none + a[1], none + a[2], none + a[3]};
-  return load_row<float>(four);
-#endif
-}
-[[gnu::always_inline]] inline f64x16 repeat(const f64x4& a) {
-  const f64x8 two = __builtin_shufflevector(a, a, 0, 1, 2, 3, 0, 1, 2, 3);
-  return {two, two};
-}
-[[gnu::always_inline]] inline f64x16 repeat_each(const f64x4& a) {
-  return {__builtin_shufflevector(a, a, 0, 0, 0, 0, 1, 1, 1, 1),
-          __builtin_shufflevector(a, a, 2, 2, 2, 2, 3, 3, 3, 3)};
+/// Four times each entry of a node, from entry `first` on.
+template <class Row, int first = 0, class Node>
+[[gnu::always_inline]] inline Row repeat_each(const Node& a) {
+  if constexpr (!std::is_same_v<Row, Node>) {
+    using Half = Simd<ScalarOf<Row>, size_of<Row> / 2>;
+    return join(repeat_each<Half, first>(a), repeat_each<Half, first + size_of<Half> / 4>(a));
+  } else if constexpr (is_pair<Node>) {
+    const auto half = half_of<first / 2 != 0>(a),
+               both = __builtin_shufflevector(half, half, first % 2, first % 2);
+    return {both, both};
+  } else {
+    return __builtin_shufflevector(a, a, first, first, first, first);
+  }
 }
 
 /// Sum of the first three nodes.
@@ -141,11 +136,12 @@ template <int D, int N, bool outer, class Real>
 [[gnu::always_inline]] inline void scatter(const PointWeights<Real, D, N>& p, const AtPoint<Real, D, N>& of,
                                            RowOf<Real> (&rows)[power(3, D - 1)]) {
   using Row = RowOf<Real>;
-  const Row w = detail::repeat_each(p.w_row);
-  Row value = w * detail::repeat(of.value), first[3] = {}, second[3] = {};
+  const Row w = detail::repeat_each<Row>(p.w_row);
+  Row value = w * detail::repeat<Row>(of.value), first[3] = {}, second[3] = {};
   for (int n = 0; n < N; ++n) {
-    value = value + detail::repeat_each(p.a_row[n]) * detail::repeat(of.along[n][D - 1]);
-    const Row along_0 = w * detail::repeat(of.along[n][0]), along_1 = w * detail::repeat(of.along[n][1]);
+    value = value + detail::repeat_each<Row>(p.a_row[n]) * detail::repeat<Row>(of.along[n][D - 1]);
+    const Row along_0 = w * detail::repeat<Row>(of.along[n][0]),
+              along_1 = w * detail::repeat<Row>(of.along[n][1]);
 #pragma GCC unroll 3
     for (int k = 0; k < 3; k += outer ? 2 : 1) {
       first[k] = n == 0 ? p.a[n][0][k] * along_0 : first[k] + p.a[n][0][k] * along_0;
@@ -202,37 +198,15 @@ namespace detail {
 template <class Real>
 [[gnu::always_inline]] inline void to_lanes(const NodeOf<Real> (&node)[f64x8_size][4], int k,
                                             SimdOf<Real> (&lanes)[4]) {
-  using V = SimdOf<Real>;
-  V even[2], odd[2];  // components 0 and 2, 1 and 3 of points 0-3 and 4-7
-  for (int i = 0; i < 2; ++i) {
-    const V a = __builtin_shufflevector(node[4 * i][k], node[4 * i + 2][k], 0, 1, 2, 3, 4, 5, 6, 7),
-            b = __builtin_shufflevector(node[4 * i + 1][k], node[4 * i + 3][k], 0, 1, 2, 3, 4, 5, 6, 7);
-    even[i] = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
-    odd[i] = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
-  }
-  lanes[0] = __builtin_shufflevector(even[0], even[1], 0, 1, 4, 5, 8, 9, 12, 13);
-  lanes[1] = __builtin_shufflevector(odd[0], odd[1], 0, 1, 4, 5, 8, 9, 12, 13);
-  lanes[2] = __builtin_shufflevector(even[0], even[1], 2, 3, 6, 7, 10, 11, 14, 15);
-  lanes[3] = __builtin_shufflevector(odd[0], odd[1], 2, 3, 6, 7, 10, 11, 14, 15);
+  for (int i = 0; i < 4; ++i) lanes[i] = join(node[i][k], node[4 + i][k]);
+  transpose(lanes);
 }
 template <class Real>
 [[gnu::always_inline]] inline void to_nodes(const SimdOf<Real> (&lanes)[4],
                                             NodeOf<Real> (&node)[f64x8_size]) {
-  using V = SimdOf<Real>;
-  const V even_low = __builtin_shufflevector(lanes[0], lanes[1], 0, 8, 2, 10, 4, 12, 6, 14),
-          even_high = __builtin_shufflevector(lanes[2], lanes[3], 0, 8, 2, 10, 4, 12, 6, 14),
-          odd_low = __builtin_shufflevector(lanes[0], lanes[1], 1, 9, 3, 11, 5, 13, 7, 15),
-          odd_high = __builtin_shufflevector(lanes[2], lanes[3], 1, 9, 3, 11, 5, 13, 7, 15);
-  const V two[4] = {__builtin_shufflevector(even_low, even_high, 0, 1, 8, 9, 2, 3, 10, 11),
-                    __builtin_shufflevector(odd_low, odd_high, 0, 1, 8, 9, 2, 3, 10, 11),
-                    __builtin_shufflevector(even_low, even_high, 4, 5, 12, 13, 6, 7, 14, 15),
-                    __builtin_shufflevector(odd_low, odd_high, 4, 5, 12, 13, 6, 7, 14, 15)};
-  for (int i = 0; i < 4; ++i) {  // points l and l + 2
-    NodeOf<Real> both[2];
-    std::memcpy(both, &two[i], sizeof both);
-    const int l = i / 2 * 4 + i % 2;
-    node[l] = both[0], node[l + 2] = both[1];
-  }
+  SimdOf<Real> four[4] = {lanes[0], lanes[1], lanes[2], lanes[3]};
+  transpose(four);
+  for (int i = 0; i < 4; ++i) node[i] = half_of<false>(four[i]), node[4 + i] = half_of<true>(four[i]);
 }
 
 /// Weights of eight points one by one.

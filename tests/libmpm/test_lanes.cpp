@@ -26,7 +26,7 @@ TEST(LaneFunctions, ExpAndMeanDecay) {
   for (int i = 0; i < 2000; ++i) {
     const double reach = std::pow(10.0, -8.0 + 10.8 * i / 2000.0);
     const f64x8 x = random_lanes(random, -reach, reach), y = exp(x);
-    const f64x8 z = x < 0.0 ? -x : x, d = mean_decay(z), left = decay(z);
+    const f64x8 z = max(x, -x), d = mean_decay(z), left = decay(z);
     for (int l = 0; l < f64x8_size; ++l) {
       EXPECT_NEAR(y[l] / std::exp(x[l]), 1.0, 1e-15);
       EXPECT_NEAR(d[l] / (-std::expm1(-z[l]) / z[l]), 1.0, 2e-15);
