@@ -176,7 +176,7 @@ class PressureCells {
 
   /// use(r) for the rows of nodes that a cell's row reaches: with hats, those of its corners.
   template <class Use>
-  void for_each_node_row(Use use) const {
+  [[gnu::always_inline]] void for_each_node_row(Use use) const {
     for (int r = 0; r < power(3, D - 1); ++r)
       if (splines_ || (r % 3 < 2 && r / 3 < 2)) use(r);
   }
