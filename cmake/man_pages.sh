@@ -5,6 +5,7 @@ folder=$3
 rm -rf "$folder"
 mkdir -p "$folder"
 version=$("$2" --version)
+version=${version% for *}
 # page NAME PROGRAM-AND-COMMAND DESCRIPTION
 page() {
   "$1" --no-info --version-string "$version" --name "$4" "$3" |

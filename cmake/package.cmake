@@ -19,6 +19,33 @@ install(FILES ${PROJECT_SOURCE_DIR}/cmake/completions/tremie.bash
 install(FILES ${PROJECT_SOURCE_DIR}/cmake/completions/_tremie
         DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
 
+# The programs and Python's core once more for each level of x86-64 that is named: at its start the program becomes, and the
+# module takes, the best that the processor has (apparatus/cli/process/levels.hpp).
+set(TREMIE_LEVELS "" CACHE STRING "Levels of x86-64 that the programs are compiled for too, as -march names them")
+include(ExternalProject)
+foreach(level ${TREMIE_LEVELS})
+  set(folder ${PROJECT_BINARY_DIR}/levels/${level})
+  set(targets tremie)
+  if(TREMIE_PYTHON_FOUND)
+    list(APPEND targets tremie_python)
+  endif()
+  ExternalProject_Add(tremie_${level} SOURCE_DIR ${PROJECT_SOURCE_DIR} BINARY_DIR ${folder} PREFIX ${folder}-project
+    CMAKE_GENERATOR ${CMAKE_GENERATOR} LIST_SEPARATOR | BUILD_ALWAYS ON USES_TERMINAL_BUILD ON INSTALL_COMMAND ""
+    CMAKE_ARGS -DCMAKE_BUILD_TYPE=${CMAKE_BUILD_TYPE} -DTREMIE_NATIVE=OFF -DTREMIE_TESTS=OFF -DTREMIE_PICTURES=OFF
+      "-DCMAKE_CXX_FLAGS=${CMAKE_CXX_FLAGS} -march=${level}" "-DCMAKE_EXE_LINKER_FLAGS=${CMAKE_EXE_LINKER_FLAGS} -s"
+      "-DCMAKE_MODULE_LINKER_FLAGS=${CMAKE_SHARED_LINKER_FLAGS} -s" -DPython_EXECUTABLE=${Python_EXECUTABLE}
+    BUILD_COMMAND ${CMAKE_COMMAND} --build ${folder} --target ${targets})
+  set(programs ${folder}/tremie)
+  if(TARGET tremie_study)
+    list(APPEND programs ${folder}/tremie-study)
+  endif()
+  install(PROGRAMS ${programs} DESTINATION lib/tremie/${level})
+  if(TREMIE_PYTHON_FOUND)
+    install(DIRECTORY ${folder}/python/tremie/ DESTINATION ${TREMIE_PYTHON_FOLDER}/tremie/${level} COMPONENT python
+            FILES_MATCHING PATTERN *.so)
+  endif()
+endforeach()
+
 execute_process(COMMAND gzip -9nc ${PROJECT_SOURCE_DIR}/CHANGELOG.md OUTPUT_FILE ${PROJECT_BINARY_DIR}/changelog.gz)
 set(documents ${CMAKE_INSTALL_DATADIR}/doc)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${documents}/tremie RENAME copyright)

@@ -8,6 +8,7 @@
 #include "apparatus/cli/commands.hpp"
 #include "apparatus/cli/hand_over.hpp"
 #include "apparatus/cli/options/command.hpp"
+#include "apparatus/cli/process/levels.hpp"
 #include "apparatus/cli/program.hpp"
 
 namespace {
@@ -41,6 +42,7 @@ void name_study_commands(CLI::App& app) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  become_best_level(argv);
   return_large_blocks();
   if (argc > 1 && is_study_command(argv[1])) return hand_over(argv);
   return run_program(argc, argv, [](CLI::App& app, int& exit_code) {

@@ -170,7 +170,7 @@ void print_readings() {
 
 int parse_and_run(int argc, char** argv, const std::function<void(CLI::App&, int&)>& add) {
   CLI::App app{invitation, "tremie"};
-  app.set_version_flag("--version", fmt::format("tremie {} ({})", version, commit));
+  app.set_version_flag("--version", fmt::format("tremie {} ({}) for {}", version, commit, instructions));
   const auto lists = [&app](const char* option, const char* what, auto print) {
     const auto list = [print] {
       print();

@@ -64,7 +64,7 @@ A run fills a folder ([which files](../guide/slump_flow.md#what-a-run-leaves)); 
 | part | fields |
 |---|---|
 | `schema` | version of this layout, 1 |
-| `tremie` | `version`, `commit`, `compiler` |
+| `tremie` | `version`, `commit`, `compiler`, `instructions` (the level of x86-64 that the program is compiled for) |
 | `apparatus`, `status` | which test; `completed`, `interrupted` or `failed` |
 | `results` | the readings, below |
 | `checks` | `volume_change` (ΣV/V0 − 1), `mass_error`, `unconverged_steps`, `points_lost`, `max_speed_end_m_per_s`, `stability_limit_exceeded`, `reasons` |
@@ -73,7 +73,7 @@ A run fills a folder ([which files](../guide/slump_flow.md#what-a-run-leaves)); 
 
 `checks.reasons` is a list of sentences; where it is not empty the result is not to be trusted, and the exit code is 3. The same series as in
 `timeseries.csv` are in `results.h5`, with the points over time and where the numbers come from. Every data set there has `unit` and `description`; the root has `scene`, `schema`,
-`apparatus`, `status`, `tremie_version`, `tremie_commit` and `compiler`:
+`apparatus`, `status`, `tremie_version`, `tremie_commit`, `compiler` and `instructions`:
 
 | in `results.h5` | shape | what |
 |---|---|---|

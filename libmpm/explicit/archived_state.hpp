@@ -7,6 +7,11 @@
 
 namespace tremie {
 
+template <class Half>
+inline constexpr bool stored_plainly<SimdPair<Half>> = true;
+template <class Real, int D>
+inline constexpr bool stored_plainly<NodeCube<Real, D>> = true;
+
 template <int D>
 void visit(Archive& archive, LanePoints<D>& points) {
   for (auto* arrays : {&points.x, &points.v})

@@ -7,6 +7,13 @@
 The functions are those of the program `tremie`, with its keys, its messages and its digits. Quantities are text with
 a unit ("54 Pa") or, where a function's argument says so, numbers in SI units; the names of results bear their units."""
 
+from pathlib import Path as _Path
+
+from ._levels import best_core as _best_core
+
+if _core := _best_core(_Path(__file__).parent):
+    __path__.insert(0, _core)  # _tremie is looked for there first
+
 from ._programs import calibrate, study
 from ._result import Result, UntrustedWarning, read
 from ._rheometer import CouetteFlow, estimate, fit, flocculation, reiner_riwlin, reiner_riwlin_speed

@@ -21,7 +21,7 @@ def program() -> Path:
     """The program `tremie`: $TREMIE_PROGRAM, the one installed or built with this module, or the one in the path."""
     if named := os.environ.get("TREMIE_PROGRAM"):
         return Path(named)
-    for folder in list(Path(_tremie.__file__).absolute().parents)[:5]:
+    for folder in list(Path(_tremie.__file__).absolute().parents)[:6]:
         for file in (folder / "bin" / "tremie", folder / "tremie"):
             if file.is_file() and os.access(file, os.X_OK):
                 return file

@@ -38,7 +38,7 @@ std::string processor() {
 std::vector<Fact> facts_of_this_run(const std::string& command) {
   std::vector<Fact> facts{
       {"date", date_now()},
-      {"program", fmt::format("Tremie {} ({}), {}", version, commit, compiler)},
+      {"program", fmt::format("Tremie {} ({}), {}, {}", version, commit, compiler, instructions)},
       {"machine", fmt::format("{}, {} processors", processor(), sysconf(_SC_NPROCESSORS_ONLN))}};
   if (!command.empty()) facts.push_back({"to repeat it", command});
   return facts;

@@ -105,12 +105,7 @@ Archive reader(std::FILE* file, std::uint64_t left) {
 
 /// Which program wrote it: a state is bytes as they lie in memory.
 std::string program() {
-#ifdef __AVX512F__
-  constexpr const char* lanes = "AVX-512";
-#else
-  constexpr const char* lanes = "";
-#endif
-  return fmt::format("{} {} {} {}", version, commit, compiler, lanes);
+  return fmt::format("{} {} {} {}", version, commit, compiler, instructions);
 }
 
 [[noreturn]] void refuse_to_resume(const fs::path& folder, const std::string& why) {

@@ -143,6 +143,7 @@ ResultFiles::ResultFiles(const std::filesystem::path& folder, const std::string&
   h5_.attribute("/", "tremie_version", std::string(version));
   h5_.attribute("/", "tremie_commit", std::string(commit));
   h5_.attribute("/", "compiler", std::string(compiler));
+  h5_.attribute("/", "instructions", std::string(instructions));
   h5_.attribute("/", "scene", resolved_);
   h5_.group("/frames");
 }
