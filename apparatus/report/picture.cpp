@@ -1,6 +1,7 @@
 #include "apparatus/report/picture.hpp"
 
 #include <fmt/format.h>
+#include <omp.h>
 
 #include <cstdlib>
 
@@ -32,6 +33,8 @@ std::string draw_picture(const scene::Outcome& outcome, const fs::path& folder, 
   const fs::path program = picture_program();
   if (program.empty()) return "tremie-picture is not beside tremie (building it needs VTK): no picture";
   auto arguments = arguments_for(outcome, vtp);
+  // Mesa's renderer takes as many threads as the run had.
+  setenv("LP_NUM_THREADS", std::to_string(omp_get_max_threads()).c_str(), 0);
   const char* display = std::getenv("DISPLAY");
   if (display && *display && run_program(program, arguments, folder) == 0) return "";
   const fs::path xvfb = find_program("xvfb-run");

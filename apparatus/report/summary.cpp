@@ -78,7 +78,8 @@ const char* status_name(Status status) {
 Json run_summary(const scene::Outcome& outcome) {
   Json json;
   json["schema"] = 1;
-  json["tremie"] = {{"version", version}, {"commit", commit}, {"compiler", compiler}, {"instructions", instructions}};
+  json["tremie"] = {
+      {"version", version}, {"commit", commit}, {"compiler", compiler}, {"instructions", instructions}};
   json["apparatus"] = outcome.apparatus;
   json["status"] = status_name(outcome.status);
   json["results"] = to_json(outcome.results);
