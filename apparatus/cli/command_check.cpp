@@ -11,6 +11,7 @@
 #include "apparatus/cli/options/command.hpp"
 #include "apparatus/cli/options/json_option.hpp"
 #include "apparatus/registry/cost_estimate.hpp"
+#include "apparatus/registry/machine_pace.hpp"
 #include "apparatus/registry/registry.hpp"
 #include "apparatus/report/compare/run_result.hpp"
 #include "apparatus/run/machine/free_memory.hpp"
@@ -31,7 +32,7 @@ std::string count_text(std::int64_t n) {
 }
 
 void print_estimate(const scene::Scene& scene, const scene::SizeEstimate& e) {
-  const auto cost = scene::cost_of(scene, e);
+  const auto cost = scene::cost_of(scene, e, scene::machine_pace(scene));
   fmt::print("\n# cost, estimated\n#   {} points, {} bytes a point\n#   {} active cells at the start\n",
              e.points, e.bytes_per_point, e.cells_active);
   fmt::print("#   about {} steps, at most some {}\n", count_text(e.steps_expected), count_text(e.steps));
@@ -46,7 +47,7 @@ void print_estimate(const scene::Scene& scene, const scene::SizeEstimate& e) {
 
 Json cost_json(const scene::Scene& scene, const std::optional<scene::SizeEstimate>& e) {
   if (!e) return nullptr;
-  const auto cost = scene::cost_of(scene, *e);
+  const auto cost = scene::cost_of(scene, *e, scene::machine_pace(scene));
   return {{"points", e->points},
           {"bytes_per_point", e->bytes_per_point},
           {"cells_active", e->cells_active},

@@ -12,10 +12,11 @@
 namespace tremie::scene {
 namespace {
 
-constexpr double factor = 2.0;           ///< that the seconds are good to
-constexpr double start_and_end = 0.12;   ///< CPU of reading, charts and files [s]
-constexpr double program = 21e6;         ///< memory without points [bytes]
-constexpr double page = 0.5e6;           ///< of files without frames [bytes]
+constexpr double factor = 2.0,
+                 factor_here = 1.5;     ///< that the seconds are good to, without and with the machine's pace
+constexpr double start_and_end = 0.12;  ///< CPU of reading, charts and files [s]
+constexpr double program = 21e6;        ///< memory without points [bytes]
+constexpr double page = 0.5e6;          ///< of files without frames [bytes]
 constexpr double frame_of_point = 85.0;  ///< in frames/ and results.h5 [bytes]
 constexpr double most_shown = 20000.0;   ///< points of a frame
 constexpr double solver_of_cell =
@@ -35,13 +36,13 @@ double frames_over(const Scene& scene, double time, double points) {
 
 }  // namespace
 
-CostEstimate cost_of(const Scene& scene, const SizeEstimate& e) {
+CostEstimate cost_of(const Scene& scene, const SizeEstimate& e, std::optional<double> pace) {
   const auto points = static_cast<double>(e.points);
-  const double per_step = points * e.point_step;
+  const double per_step = points * e.point_step * pace.value_or(1.0), good_to = pace ? factor_here : factor;
   CostEstimate cost;
   cost.cpu = start_and_end + per_step * static_cast<double>(e.steps_expected);
-  cost.cpu_low = cost.cpu / factor, cost.cpu_high = cost.cpu * factor;
-  cost.cpu_most = factor * (start_and_end + per_step * static_cast<double>(e.steps));
+  cost.cpu_low = cost.cpu / good_to, cost.cpu_high = cost.cpu * good_to;
+  cost.cpu_most = good_to * (start_and_end + per_step * static_cast<double>(e.steps));
   const bool explicit_scheme = model_of(scene).scheme != SchemeKind::implicit;
   const bool space = experiment::is_3d(model_of(scene).space);
   const double shown_and_solver = explicit_scheme ? 320.0 : space ? 150.0 : 500.0;

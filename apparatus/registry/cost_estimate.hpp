@@ -13,8 +13,9 @@ struct CostEstimate {
   double memory = 0.0, disk = 0.0;  ///< [bytes]
 };
 
-/// By rates measured on the shipped scenes (Zen 4 and Xeon processors of 2023), good to a factor of two.
-CostEstimate cost_of(const Scene& scene, const SizeEstimate& estimate);
+/// By rates measured on the shipped scenes with one core of an AMD EPYC of 2023 (Zen 4, AVX-512), good to a factor of two on
+/// machines of today. `pace`: how many times as long a step takes on another (machine_pace.hpp), then good to 1.5.
+CostEstimate cost_of(const Scene& scene, const SizeEstimate& estimate, std::optional<double> pace = {});
 
 /// Why a run of this cost should not be begun, with its remedy: it needs more than `free_memory` [bytes], or more
 /// than a day by so many threads. Empty where nothing is against it.

@@ -1,0 +1,39 @@
+#include "apparatus/registry/machine_pace.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "apparatus/run/machine/threads.hpp"
+
+namespace tremie::scene {
+namespace {
+
+/// A few steps of a slump flow, and what they take the machine of the rates.
+struct Blink {
+  std::vector<std::string> settings;
+  double cpu;  ///< [s]
+};
+
+const Blink& blink_for(const Scene& scene) {
+  static const Blink section{{"model.cell=20 mm", "test.duration=0.3 s"}, 0.030},
+      space{{"model.space=quarter", "model.cell=30 mm", "test.duration=0.05 s"}, 0.140},
+      explicit_steps{{"preset=paper", "model.space=quarter", "model.cell=30 mm", "test.duration=0.02 s"},
+                     0.030};
+  const Model& model = model_of(scene);
+  if (model.scheme != SchemeKind::implicit) return explicit_steps;
+  return experiment::is_3d(model.space) ? space : section;
+}
+
+}  // namespace
+
+double machine_pace(const Scene& scene) {
+  const Blink& blink = blink_for(scene);
+  Scene small =
+      read_text("apparatus = \"slump_flow\"\nmix = \"mix_a\"\n", "the blink of a run", blink.settings);
+  set_threads(small, 1);
+  const auto cpu = [&] { return run(small).cost.cpu; };
+  return std::min(cpu(), cpu()) / blink.cpu;  // the smaller one: caches are cold and others busy at times
+}
+
+}  // namespace tremie::scene
