@@ -19,32 +19,42 @@ std::string quoted_list(const std::vector<std::string>& words) {
   return text;
 }
 
+/// A section that a scene may take whole from a file of reference_data: `mix = "mix_a"`.
+struct FromFile {
+  const char *section, *folder;
+};
+constexpr FromFile from_files[] = {{"mix", "mixes"}, {"cone", "cones"}};
+
 /// The file that `mix = "…"` stands for: a name from reference_data/mixes, or a path beside the scene.
-fs::path mix_file(const std::string& name, const Origin& origin, const fs::path& scene_folder) {
+fs::path file_of(const FromFile& from, const std::string& name, const Origin& origin,
+                 const fs::path& scene_folder) {
   if (name.ends_with(".toml")) return scene_folder / name;
   for (const auto& folder : data_folders()) {
-    const fs::path file = folder / "mixes" / (name + ".toml");
+    const fs::path file = folder / from.folder / (name + ".toml");
     std::error_code error;
     if (fs::is_regular_file(file, error)) return file;
   }
-  const auto known = mix_names();
+  const auto known = names_in(from.folder);
   throw InputError(fmt::format(
-      "{}: mix: there is no mix \"{}\"; did you mean \"{}\"? Allowed: {}, a path to a .toml file, "
-      "or a table [mix]",
-      describe(origin), name, nearest(name, known), quoted_list(known)));
+      "{0}: {1}: there is no {1} \"{2}\"; did you mean \"{3}\"? Allowed: {4}, a path to a .toml file, "
+      "or a table [{1}]",
+      describe(origin), from.section, name, nearest(name, known), quoted_list(known)));
 }
 
-/// Replaces `mix = "mix_a"` by that file's [mix].
-void inline_mix(Node& document, const fs::path& scene_folder) {
-  Node* mix = find(document, "mix");
-  const auto* name = mix ? std::get_if<std::string>(&mix->value) : nullptr;
-  if (!name) return;
-  const fs::path file = mix_file(*name, mix->origin, scene_folder);
-  Node text = parse_file(file);
-  Node* table = find(text, "mix");
-  if (!table || !std::holds_alternative<Table>(table->value))
-    throw InputError(fmt::format("{}:1: mix: missing table [mix]", file.string()));
-  *mix = *table;
+/// Replaces `mix = "mix_a"` by that file's [mix], and so on.
+void inline_files(Node& document, const fs::path& scene_folder) {
+  for (const FromFile& from : from_files) {
+    Node* section = find(document, from.section);
+    const auto* name = section ? std::get_if<std::string>(&section->value) : nullptr;
+    if (!name) continue;
+    const fs::path file = file_of(from, *name, section->origin, scene_folder);
+    Node text = parse_file(file);
+    Node* table = find(text, from.section);
+    if (!table || !std::holds_alternative<Table>(table->value))
+      throw InputError(
+          fmt::format("{}:1: {}: missing table [{}]", file.string(), from.section, from.section));
+    *section = *table;
+  }
 }
 
 /// A key of the concrete itself, not of its name or of what was measured on it.
@@ -60,12 +70,16 @@ std::string apply_overrides(Node& document, const Request& request) {
   std::vector<Override> overrides;
   std::string of_the_concrete;
   for (const auto& argument : request.overrides) overrides.push_back(parse_override(argument));
-  const auto names_the_mix = [](const Override& o) { return o.path.size() == 1 && o.path.front() == "mix"; };
+  const auto names_a_file = [](const Override& o) {
+    return o.path.size() == 1 &&
+           std::any_of(std::begin(from_files), std::end(from_files),
+                       [&](const FromFile& from) { return o.path.front() == from.section; });
+  };
   for (const auto& change : overrides)
-    if (names_the_mix(change)) put(document, change.path, change.value);
-  inline_mix(document, request.path.parent_path());
+    if (names_a_file(change)) put(document, change.path, change.value);
+  inline_files(document, request.path.parent_path());
   for (const auto& change : overrides) {
-    if (names_the_mix(change)) continue;
+    if (names_a_file(change)) continue;
     put(document, change.path, change.value);
     if (is_of_the_concrete(change))
       of_the_concrete += (of_the_concrete.empty() ? "" : ", ") + change.path.back();
@@ -208,17 +222,19 @@ std::vector<fs::path> data_folders() {
   return folders;
 }
 
-std::vector<std::string> mix_names() {
+std::vector<std::string> names_in(const std::string& data_folder) {
   std::vector<std::string> names;
   for (const auto& folder : data_folders()) {
     std::error_code error;
-    for (const auto& entry : fs::directory_iterator(folder / "mixes", error))
+    for (const auto& entry : fs::directory_iterator(folder / data_folder, error))
       if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
   }
   std::sort(names.begin(), names.end());
   names.erase(std::unique(names.begin(), names.end()), names.end());
   return names;
 }
+
+std::vector<std::string> mix_names() { return names_in("mixes"); }
 
 Loaded load(const Request& request, std::span<const ApparatusKeys> known, const std::string& command) {
   Node document = request.text ? parse_text(*request.text, request.path.string(), Layer::scene)

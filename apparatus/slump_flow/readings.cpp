@@ -19,24 +19,43 @@ bool in_tremie_range(double spread) { return spread >= tremie_range_low && sprea
 
 bool stopped(const Results& r) { return r.stopped_at.has_value() && std::isfinite(r.spread); }
 
-/// A class is that of concrete at rest.
-std::string class_of(const Results& r) { return stopped(r) ? cone::spread_class(r.spread) : std::string{}; }
+/// Classes are those of concrete at rest that the Abrams cone left.
+bool has_classes(const cone::Scene& scene, const Results& r) {
+  return stopped(r) && cone::is_abrams(scene.cone);
+}
+
+std::string class_of(const cone::Scene& scene, const Results& r) {
+  return has_classes(scene, r) ? cone::spread_class(r.spread) : std::string{};
+}
+
+double slump_of(const cone::Scene& scene, const Results& r) { return scene.cone.height - r.height; }
+
+std::string slump_class_of(const cone::Scene& scene, const Results& r) {
+  return has_classes(scene, r) ? cone::slump_class(slump_of(scene, r)) : std::string{};
+}
+
+/// Concrete that a laboratory reads by its slump: up to S4.
+bool is_stiff(const cone::Scene& scene, const Results& r) {
+  const std::string cls = slump_class_of(scene, r);
+  return has_classes(scene, r) && cls != "S5";
+}
 
 /// Read to 10 mm, as the standard has it, so that SF1 begins at 545 mm.
 bool is_below(const Results& r) { return r.spread < 0.545; }
 
-ResultValue range_of(const Results& r) {
-  if (!stopped(r)) return std::monostate{};
+ResultValue range_of(const cone::Scene& scene, const Results& r) {
+  if (!has_classes(scene, r)) return std::monostate{};
   return in_tremie_range(r.spread);
 }
 
-/// What was measured after the rest that this scene has; nothing for any other rest. [measured] wins.
-std::optional<Measurement> measurement_for(double rest, const Measured& measured, double spread) {
+/// What was measured on the mix by the Abrams cone after the rest that this scene has; nothing for any other rest or cone.
+/// [measured] wins.
+std::optional<Measurement> measurement_for(const cone::Scene& scene, const Measured& measured, double spread) {
   std::optional<double> value = measured.spread;
   double tolerance = measured.spread_tolerance.value_or(0.03);
-  if (!value) {
-    if (rest == 0.0) value = measured.slump_flow_0;
-    if (rest == 240.0) value = measured.slump_flow_240;
+  if (!value && cone::is_abrams(scene.cone)) {
+    if (scene.rest == 0.0) value = measured.slump_flow_0;
+    if (scene.rest == 240.0) value = measured.slump_flow_240;
     tolerance = measured.tolerance;
   }
   if (!value) return std::nullopt;
@@ -58,7 +77,7 @@ std::vector<Reference> references_for(const std::optional<Measurement>& measured
 /// A run beside what was measured on its concrete.
 struct View : cone::View {
   const Measured& measured;
-  std::optional<Measurement> measurement = measurement_for(scene.rest, measured, r.spread);
+  std::optional<Measurement> measurement = measurement_for(scene, measured, r.spread);
 };
 
 /// Concrete that hardly left the cone's own foot and height.
@@ -67,11 +86,18 @@ bool kept_its_shape(const Results& r, const cone::Cone& cone) {
 }
 
 /// Class and accepted range; only of concrete at rest.
-std::string judged(const Results& r, const cone::Cone& cone) {
+std::string judged(const cone::Scene& scene, const Results& r) {
   if (!stopped(r)) return {};
-  if (kept_its_shape(r, cone))
+  if (!cone::is_abrams(scene.cone))
+    return "Not the Abrams cone of EN 12350: its spread has no class, and no accepted range.";
+  if (kept_its_shape(r, scene.cone))
     return "It kept the cone's shape: too stiff for a slump flow, which has nothing to read from it.";
-  const std::string cls = class_of(r);
+  const std::string slump = slump_class_of(scene, r);
+  if (is_stiff(scene, r))
+    return fmt::format("{}; too stiff for the classes of self-compacting concrete and for tremie concrete.",
+                       slump.empty() ? "A slump below class S1 of EN 206"
+                                     : fmt::format("Class {} of EN 206 by its slump (read to 10 mm)", slump));
+  const std::string cls = class_of(scene, r);
   std::string text = !cls.empty()  ? fmt::format("Class {} of EN 206 (the spread read to 10 mm)", cls)
                      : is_below(r) ? "Below the classes of self-compacting concrete (SF1 begins at 550 mm)"
                                    : "Above the classes of self-compacting concrete (SF3 ends at 850 mm)";
@@ -89,7 +115,9 @@ constexpr const char* why_it_may_differ =
     "that meet the measurements.";
 
 /// Whether t500, or that there is none, hangs on the last millimetres: below 514 mm estimates from a t500 end too.
-bool near_500(const Results& r) { return stopped(r) && std::abs(r.spread - 0.5) < 0.014; }
+bool near_500(const cone::Scene& scene, const Results& r) {
+  return stopped(r) && cone::is_abrams(scene.cone, true) && std::abs(r.spread - 0.5) < 0.014;
+}
 
 /// What a reader must know who has no measurement to compare with, or a spread that is hard to read.
 std::vector<std::string> remarks_on(const cone::Scene& scene, const std::optional<Measurement>& measured,
@@ -108,25 +136,26 @@ std::vector<std::string> remarks_on(const cone::Scene& scene, const std::optiona
         fmt::format("The destructuration α (here {:.3g}) decides how much of what built up at rest is left "
                     "after the lift. It is seldom measured: see what 0.01 and 1 give.",
                     *alpha));
-  if (near_500(r))
+  if (near_500(scene, r))
     remarks.push_back(
         "The spread ends so near to 500 mm that t500, or whether there is one, hangs on its last "
         "millimetres: finer cells may change it by a third.");
   return remarks;
 }
 
-std::string no_class(const Results& r, Status status) {
+std::string no_class(const cone::Scene& scene, const Results& r, Status status) {
+  if (!cone::is_abrams(scene.cone)) return "no class: not the Abrams cone";
   if (stopped(r)) return is_below(r) ? "below class SF1 (550 mm)" : "above class SF3 (850 mm)";
   return ended_early(status) ? "so far: no class" : "no class yet: it still moves";
 }
 
-std::string class_text(const Results& r, Status status) {
-  const std::string cls = class_of(r);
-  return cls.empty() ? no_class(r, status) : "class " + cls + " (read to 10 mm)";
+std::string class_text(const cone::Scene& scene, const Results& r, Status status) {
+  const std::string cls = class_of(scene, r);
+  return cls.empty() ? no_class(scene, r, status) : "class " + cls + " (read to 10 mm)";
 }
 
 std::vector<std::string> range_lines(const View& v) {
-  if (!stopped(v.r)) return {};
+  if (!has_classes(v.scene, v.r)) return {};
   return {fmt::format("tremie concrete {} the accepted 450 to 650 mm",
                       in_tremie_range(v.r.spread) ? "within" : "outside of")};
 }
@@ -153,9 +182,14 @@ const std::vector<Reading<View>>& readings() {
   using S = const cone::Sample&;
   static const auto table = [] {
     Reading<View> spread = cone::spread_row<View>(), t500 = cone::t500_row<View>();
-    spread.remark = [](V v) { return "   " + class_text(v.r, v.status); };
+    spread.remark = [](V v) { return "   " + class_text(v.scene, v.r, v.status); };
+    spread.answer = [](V v) { return is_stiff(v.scene, v.r) ? std::nullopt : std::optional(std::string()); };
+    t500.none = [](V v) {
+      return cone::is_abrams(v.scene.cone, true) ? not_reached(v) : std::string("not the Abrams cone");
+    };
     t500.remark = [](V v) {
-      return std::string(near_500(v.r) ? "   not to be relied on: the spread ends too near to 500 mm" : "");
+      return std::string(near_500(v.scene, v.r) ? "   not to be relied on: the spread ends too near to 500 mm"
+                                                : "");
     };
     return table_of<View>(
         time_column<View>(),
@@ -175,8 +209,8 @@ const std::vector<Reading<View>>& readings() {
         stopped_row<View>(),
         Rows<View>{{.name = "class_en12350_8",
                     .words = "slump-flow class (EN 206); of concrete at rest",
-                    .value = [](V v) { return word_or_null(class_of(v.r)); },
-                    .none = [](V v) { return no_class(v.r, v.status); }}},
+                    .value = [](V v) { return word_or_null(class_of(v.scene, v.r)); },
+                    .none = [](V v) { return no_class(v.scene, v.r, v.status); }}},
         flocculation_rows<View>(),
         Rows<View>{{"shear_rate_mean_peak_per_s", "largest mean shear rate",
                     [](V v) { return number(v.r.shear_rate_mean_peak); }},
@@ -184,8 +218,12 @@ const std::vector<Reading<View>>& readings() {
                     [](V v) { return number(v.r.mean_velocity, mm); }},
                    {.name = "within_tremie_range",
                     .words = "within 450 to 650 mm (tremie concrete)",
-                    .value = [](V v) { return range_of(v.r); },
-                    .none = [](V) { return std::string("not yet known: it still moved"); },
+                    .value = [](V v) { return range_of(v.scene, v.r); },
+                    .none =
+                        [](V v) {
+                          return std::string(cone::is_abrams(v.scene.cone) ? "not yet known: it still moved"
+                                                                           : "not the Abrams cone");
+                        },
                     .lines = range_lines}},
         measured_rows(),
         Rows<View>{cone::time_row<View>("t400_s", "t400, time to a diameter of 400 mm", "t400",
@@ -195,10 +233,28 @@ const std::vector<Reading<View>>& readings() {
         step_columns<View>(),
         Rows<View>{{.name = "slump_mm",
                     .words = "slump, the cone's height less that of the concrete",
-                    .value = [](V v) { return number(v.scene.cone.height - v.r.height, mm); },
+                    .value = [](V v) { return number(slump_of(v.scene, v.r), mm); },
                     .at = [](V v, S s) { return (v.scene.cone.height - s.height) * mm; },
                     .label = "slump",
-                    .measurable = true}});
+                    .remark =
+                        [](V v) {
+                          const std::string cls = slump_class_of(v.scene, v.r);
+                          return cls.empty() ? cls : "   class " + cls;
+                        },
+                    .answer =
+                        [](V v) {
+                          return is_stiff(v.scene, v.r) ? std::optional<std::string>("slump") : std::nullopt;
+                        },
+                    .measurable = true},
+                   {.name = "class_en206_slump",
+                    .words = "slump class (EN 206); of concrete at rest, from the Abrams cone",
+                    .value = [](V v) { return word_or_null(slump_class_of(v.scene, v.r)); },
+                    .none =
+                        [](V v) {
+                          if (!cone::is_abrams(v.scene.cone)) return std::string("not the Abrams cone");
+                          return std::string(stopped(v.r) ? "below class S1 (10 mm)"
+                                                          : "not yet known: it still moved");
+                        }}});
   }();
   return table;
 }
@@ -209,7 +265,7 @@ Outcome run(const cone::Scene& scene, const RunOptions& options, const Observer&
   Outcome outcome = outcome_of(readings(), view, options.measured.name, "slump flow");
   outcome.measured = view.measurement;
   outcome.moving_at_end = !raw.results.stopped_at;
-  outcome.judged = judged(raw.results, scene.cone);
+  outcome.judged = judged(scene, raw.results);
   outcome.remarks = remarks_on(scene, outcome.measured, raw.results);
   outcome.stage = cone::stage_of(scene);
   outcome.charts = cone::charts_of(scene, references_for(outcome.measured));

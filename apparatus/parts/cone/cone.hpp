@@ -19,12 +19,6 @@ inline double inner_radius(const Cone& cone, double z) {
   return cone.bottom_radius + (cone.top_radius - cone.bottom_radius) * z / cone.height;
 }
 
-/// Volume of the cone [m^3].
-inline double volume(const Cone& cone) {
-  const double a = cone.bottom_radius, b = cone.top_radius;
-  return std::numbers::pi * cone.height / 3.0 * (a * a + a * b + b * b);
-}
-
 /// Fills the cone with rings of points under hydrostatic pressure. Rows of height dz, each divided into rings
 /// about dr wide that end at the wall, so that the volume is the cone's to round-off.
 inline void fill(const Cone& cone, const Mix& mix, double g, double dr, double dz, Points<2>& points) {

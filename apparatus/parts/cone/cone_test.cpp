@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "apparatus/parts/cone/explicit_run.hpp"
@@ -107,6 +108,21 @@ double cpu_of_a_point(const Scene& scene) {
 
 }  // namespace
 
+double volume(const Cone& cone) {
+  const double a = cone.bottom_radius, b = cone.top_radius;
+  return std::numbers::pi * cone.height / 3.0 * (a * a + a * b + b * b);
+}
+
+double scale_of(const Cone& cone) { return std::cbrt(volume(cone) / volume(Cone{})); }
+
+bool is_abrams(const Cone& cone, bool either_way) {
+  const Cone abrams, turned{cone.bottom_radius, cone.top_radius, cone.height};
+  const auto close = [](double a, double b) { return std::abs(a - b) <= 2.001e-3; };
+  return (close(cone.top_radius, abrams.top_radius) && close(cone.bottom_radius, abrams.bottom_radius) &&
+          close(cone.height, abrams.height)) ||
+         (either_way && is_abrams(turned));
+}
+
 Outcome run(const Scene& scene, const scene::Observer& observer) {
   refuse_what_has_no_engine(scene);
   omp_set_num_threads(scene.threads);
@@ -153,6 +169,12 @@ std::string spread_class(double spread) {
   if (mm >= 660 && mm <= 750) return "SF2";
   if (mm >= 760 && mm <= 850) return "SF3";
   return "";
+}
+
+std::string slump_class(double slump) {
+  const long mm = 10 * std::lround(100.0 * slump);
+  if (mm < 10) return "";
+  return mm <= 40 ? "S1" : mm <= 90 ? "S2" : mm <= 150 ? "S3" : mm <= 210 ? "S4" : "S5";
 }
 
 }  // namespace tremie::cone

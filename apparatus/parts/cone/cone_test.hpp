@@ -19,6 +19,13 @@ struct Cone {
   double height = 0.30;
 };
 
+/// Volume of concrete that it holds [m^3].
+double volume(const Cone& cone);
+/// How large it is beside the Abrams cone: the cube root of their volumes' ratio, 1 to the last digit for that cone.
+double scale_of(const Cone& cone);
+/// Whether it is the Abrams cone within what EN 12350-2 allows, 2 mm; `either_way`: upside down too (ASTM C1611, B).
+bool is_abrams(const Cone& cone, bool either_way = false);
+
 /// Bars upright on the floor, evenly on a circle about the cone.
 struct Ring {
   int bars = 16;
@@ -80,7 +87,10 @@ scene::SizeEstimate estimate(const Scene& scene);
 /// When the spread passed a diameter [m], from the start of the lift [s]; empty where it never did.
 std::optional<double> time_to_spread(const std::vector<Sample>& series, double diameter);
 
-/// EN 12350-8 class of a spread [m] rounded to 10 mm: "SF1", "SF2", "SF3"; "" outside of all.
+/// EN 206's class of a spread [m] read to 10 mm: "SF1", "SF2", "SF3"; "" outside of all.
 std::string spread_class(double spread);
+
+/// EN 206's class of a slump [m] read to 10 mm: "S1" to "S5"; "" below 10 mm.
+std::string slump_class(double slump);
 
 }  // namespace tremie::cone

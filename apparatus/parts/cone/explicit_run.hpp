@@ -170,7 +170,7 @@ Outcome run_explicit_in(const Scene& scene, const Law& law, const scene::Observe
             return frame;
           },
       .last_frame = [&] { return frame_from(body); },
-      .speed = [](const StepReport& step) { return step.max_speed; },
+      .speed = [scale = scale_of(scene.cone)](const StepReport& step) { return step.max_speed / scale; },
       .free_to_flow = [&] { return clear_of_the_cone(scene, outcome.series.back()); },
       .gains_energy =
           [&] {
@@ -193,7 +193,7 @@ Outcome run_explicit_in(const Scene& scene, const Law& law, const scene::Observe
   experiment::run_experiment(
       flow, body, showing(scene), observer, read_line,
       [&](std::optional<double> stopped_at) {
-        read_results(stopped_at, outcome);
+        read_results(scene, stopped_at, outcome);
         add_reasons(scene, outcome);
         outcome.cost.bytes_per_point = explicit_bytes_per_point<D>(body.points.thixotropic());
       },

@@ -11,10 +11,14 @@ namespace {
 
 Section cone_section() {
   return {.name = "cone",
-          .help = "Inner dimensions; the defaults are the Abrams cone's.",
+          .help =
+              "Inner dimensions; the defaults are the Abrams cone's. Or cone = \"haegermann\", a name from "
+              "reference_data/cones, or a path to a .toml file.",
           .keys = {{.name = "top_radius", .range = positive, .fallback = "50 mm"},
                    {.name = "bottom_radius", .range = positive, .fallback = "100 mm"},
-                   {.name = "height", .range = positive, .fallback = "300 mm"}}};
+                   {.name = "height", .range = positive, .fallback = "300 mm"},
+                   {.name = "name", .kind = Kind::text, .help = "what people call it"},
+                   {.name = "standard", .kind = Kind::text, .help = "that describes it"}}};
 }
 
 Section test_section() {
@@ -24,16 +28,28 @@ Section test_section() {
                    lift_key("lift_speed", "15 cm/s", "of the cone")}};
 }
 
+Cone cone_of(const Values& values) {
+  return {values.number("cone.top_radius"), values.number("cone.bottom_radius"),
+          values.number("cone.height")};
+}
+
 /// Three dimensions start from cells and points that a desk computer carries; a scene that gives one of the
 /// two is taken at its word. The body stretches across and is pressed flat: four points across a cell become
-/// two, and with two at the start the spread is 6 % too far on any cells (three_d.md).
+/// two, and with two at the start the spread is 6 % too far on any cells (three_d.md). Cells are as large to any cone as
+/// these to the Abrams cone.
 void settle_model(Values& values) {
-  if (values.word("model.space") == "axisymmetric") return;
-  const char* note = "the default in three dimensions";
-  const bool implicit = values.word("model.scheme") == "implicit";
-  const std::vector<double> cell = implicit ? std::vector{0.014, 0.007} : std::vector{0.015};
-  const std::vector<double> points = implicit ? std::vector{4.0, 2.0} : std::vector{2.0};
+  const bool section = values.word("model.space") == "axisymmetric",
+             implicit = values.word("model.scheme") == "implicit";
+  const double scale = scale_of(cone_of(values));
+  if (section && scale == 1.0) return;
+  const char* note = section ? "the default, for the size of the cone" : "the default in three dimensions";
+  std::vector<double> cell = section    ? values.numbers("model.cell")
+                             : implicit ? std::vector{0.014, 0.007}
+                                        : std::vector{0.015};
+  for (double& h : cell) h *= scale;
   if (!values.given("model.cell")) values.set_numbers("model.cell", cell, Layer::fallback, note);
+  if (section) return;
+  const std::vector<double> points = implicit ? std::vector{4.0, 2.0} : std::vector{2.0};
   if (!values.given("model.points_per_cell"))
     values.set_numbers("model.points_per_cell", points, Layer::fallback, note);
 }
@@ -77,8 +93,7 @@ Schema sections() { return {cone_section(), test_section()}; }
 Scene read_scene(const Values& values) {
   Scene scene;
   scene.mix = read_mix(values);
-  scene.cone = {values.number("cone.top_radius"), values.number("cone.bottom_radius"),
-                values.number("cone.height")};
+  scene.cone = cone_of(values);
   scene.floor = read_floor(values);
   scene.rest = values.number("test.rest");
   scene.duration = values.number("test.duration");

@@ -25,7 +25,7 @@ Outcome run_implicit_in(const Scene& scene, const scene::Observer& observer) {
   RigidWall<D> wall;
   if (scene.lift_speed) lifted_wall(scene, settings.wall_gap + settings.cfl * scene.model.cell[0], wall);
 
-  const double longest = settings.dt_max;
+  const double longest = settings.dt_max, scale = scale_of(scene.cone);
   Outcome outcome;
   experiment::EnergyWatch energy(experiment::energy_of<Geometry>(body.points, body.mix.K));
   bool flows = true, cone_gone = false;
@@ -53,7 +53,11 @@ Outcome run_implicit_in(const Scene& scene, const scene::Observer& observer) {
             return step;
           },
       .frame = [&] { return experiment::frame_of(body); },
-      .speed = [](const StepReport& step) { return step.max_speed; },
+      .speed =
+          [scale](const StepReport& step) {
+            return step.max_speed / scale;
+          },  // as it were of the Abrams cone
+
       .free_to_flow = [&] { return clear_of_the_cone(scene, outcome.series.back()); },
       .stands_since = [&] { return stands_since(scene, outcome.series); },
       .gains_energy =
@@ -75,7 +79,7 @@ Outcome run_implicit_in(const Scene& scene, const scene::Observer& observer) {
       flow, body, showing(scene), observer,
       [&](const StepReport& step) { return next_line(scene, body, step, outcome); },
       [&](std::optional<double> stopped_at) {
-        read_results(stopped_at, outcome);
+        read_results(scene, stopped_at, outcome);
         if constexpr (D == 3)
           if (scene.ring) outcome.results.step = step_at_the_ring(scene, body.points);
         add_reasons(scene, outcome);

@@ -43,7 +43,7 @@ Sample read(const Scene& scene, const Body<Geometry>& body, const StepReport& st
   return s;
 }
 
-inline void read_results(std::optional<double> stopped_at, Outcome& outcome) {
+inline void read_results(const Scene& scene, std::optional<double> stopped_at, Outcome& outcome) {
   const Sample &first = outcome.series.front(), &last = outcome.series.back();
   Results& r = outcome.results;
   r.spread = last.spread;
@@ -55,7 +55,8 @@ inline void read_results(std::optional<double> stopped_at, Outcome& outcome) {
     r.shear_rate_mean_peak = std::max(r.shear_rate_mean_peak, s.shear_rate_mean);
   r.stopped_at = stopped_at;
   if (stopped_at && *r.stopped_at > 0.0) r.mean_velocity = (r.spread - 0.2) / (2.0 * *r.stopped_at);
-  r.t500 = time_to_spread(outcome.series, standard_t500);
+  // The standards read it with the Abrams cone, upright or upside down.
+  if (is_abrams(scene.cone, true)) r.t500 = time_to_spread(outcome.series, standard_t500);
 }
 
 inline constexpr double beside_the_ring = 0.05;  ///< as far beyond the bars heights are read [m]
@@ -96,7 +97,7 @@ inline bool clear_of_the_cone(const Scene& scene, const Sample& now) {
   return !scene.lift_speed || rim_height(scene, now.time) > now.height + scene.model.cell[1];
 }
 
-/// Concrete stands where spread and height have kept within this for so long. Beside a yield stress of some kPa a step's
+/// Concrete of the Abrams cone stands where spread and height have kept within this for so long. Beside a yield stress of some kPa a step's
 /// solution leaves 0.1 mm/s here and there, so that the speed alone would never be that of rest.
 inline constexpr double standing_within = 1e-4, standing_lasts = 10.0;  // [m], [s]
 
@@ -104,8 +105,9 @@ inline constexpr double standing_within = 1e-4, standing_lasts = 10.0;  // [m], 
 inline std::optional<double> stands_since(const Scene& scene, const std::vector<Sample>& series) {
   const Sample& now = series.back();
   for (auto s = series.rbegin(); s != series.rend(); ++s) {
-    if (std::abs(s->spread - now.spread) > standing_within ||
-        std::abs(s->height - now.height) > standing_within || !clear_of_the_cone(scene, *s))
+    const double within = standing_within * scale_of(scene.cone);
+    if (std::abs(s->spread - now.spread) > within || std::abs(s->height - now.height) > within ||
+        !clear_of_the_cone(scene, *s))
       return std::nullopt;
     if (s->time <= now.time - standing_lasts) return s->time;
   }
