@@ -14,7 +14,7 @@ namespace {
 
 constexpr double factor = 2.0,
                  factor_here = 1.5;     ///< that the seconds are good to, without and with the machine's pace
-constexpr double start_and_end = 0.12;  ///< CPU of reading, charts and files [s]
+constexpr double start_and_end = 0.09;  ///< CPU of reading, charts and files [s]
 constexpr double program = 21e6;        ///< memory without points [bytes]
 constexpr double page = 0.5e6;          ///< of files without frames [bytes]
 constexpr double frame_of_point = 85.0;  ///< in frames/ and results.h5 [bytes]

@@ -16,10 +16,10 @@ struct Blink {
 };
 
 const Blink& blink_for(const Scene& scene) {
-  static const Blink section{{"model.cell=20 mm", "test.duration=0.3 s"}, 0.030},
-      space{{"model.space=quarter", "model.cell=30 mm", "test.duration=0.05 s"}, 0.140},
-      explicit_steps{{"preset=paper", "model.space=quarter", "model.cell=30 mm", "test.duration=0.02 s"},
-                     0.030};
+  static const Blink section{{"model.cell=20 mm", "test.duration=0.3 s"}, 0.024},
+      space{{"model.space=quarter", "model.cell=30 mm", "test.duration=0.05 s"}, 0.117},
+      explicit_steps{{"preset=paper", "model.space=quarter", "model.cell=30 mm", "test.duration=0.1 s"},
+                     0.058};
   const Model& model = model_of(scene);
   if (model.scheme != SchemeKind::implicit) return explicit_steps;
   return experiment::is_3d(model.space) ? space : section;

@@ -18,6 +18,7 @@ struct Entry {
   const char* name;  ///< as on the command line
   const char* what;
   Case (*run)(Depth);
+  double quick_cpu;  ///< of Depth::quick on the machine of the rates (registry/cost_estimate.hpp) [s]
 };
 
 /// All of them, in order.

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <thread>
 
 #include "apparatus/cli/commands.hpp"
@@ -14,6 +15,8 @@
 #include "apparatus/cli/options/json_option.hpp"
 #include "apparatus/cli/process/stop_signals.hpp"
 #include "apparatus/cli/program.hpp"
+#include "apparatus/registry/cost_estimate.hpp"
+#include "apparatus/registry/machine_pace.hpp"
 #include "apparatus/report/run_folder.hpp"
 #include "apparatus/scene/input_error.hpp"
 #include "apparatus/validation/validation.hpp"
@@ -123,6 +126,14 @@ int validate(const VerifyOptions& options) {
   return done;
 }
 
+/// CPU seconds that the cases will take here; in full four times as many.
+double expected_seconds(std::span<const verification::Entry> entries, bool full) {
+  const scene::Scene section = scene::read_text("apparatus = \"slump_flow\"\nmix = \"mix_a\"\n", "section");
+  double cpu = 0.0;
+  for (const auto& entry : entries) cpu += (full ? 4.0 : 1.0) * entry.quick_cpu;
+  return cpu * scene::machine_pace(section);
+}
+
 int verify(const VerifyOptions& options) {
   if (options.validation) return validate(options);
   const auto entries = chosen(options.cases);
@@ -132,6 +143,8 @@ int verify(const VerifyOptions& options) {
   std::vector<verification::Case> cases;
   std::vector<double> cpu;
   stop_on_interrupt();
+  fmt::print(screen, "{} cases, about {} of CPU on this machine\n", entries.size(),
+             scene::duration_text(expected_seconds(entries, options.full)));
   for (const auto& entry : entries) {
     if (stop_requested) {
       fmt::print(screen, "interrupted: nothing written\n");
@@ -161,11 +174,13 @@ void add_command_verify(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<VerifyOptions>();
   Command command(app, verify_command.name, verify_command.description);
   command.option("cases", options->cases, "Cases by name or number (default: all): " + known_cases());
-  command.flag("--quick", options->quick, "Coarser cells, under five minutes (the default)");
-  command.flag_without("--full", {"--quick"}, options->full, "All cells, some ten minutes");
+  command.flag(
+      "--quick", options->quick,
+      "Coarser cells, two to four minutes of one core (the default); what it takes here is said first");
+  command.flag_without("--full", {"--quick"}, options->full, "All cells, four times that");
   command.flag_without(
       "--validation", {"--quick", "--full"}, options->validation,
-      "Predictions beside measurements on concrete, in place of the cases; under ten minutes");
+      "Predictions beside measurements on concrete, in place of the cases; some ten minutes of two cores");
   command.option("--out", options->out,
                  "Folder for the result (default: runs/verification or runs/validation)");
   add_json_option(command, options->json);
