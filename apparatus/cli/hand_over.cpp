@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/process/own_file.hpp"
 
 namespace tremie::cli {
 

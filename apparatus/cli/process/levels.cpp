@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "apparatus/cli/hand_over.hpp"
+#include "apparatus/cli/process/own_file.hpp"
 #include "tremie_version.hpp"
 
 namespace tremie::cli {

@@ -12,9 +12,9 @@
 #include <thread>
 
 #include "apparatus/cli/commands.hpp"
-#include "apparatus/cli/hand_over.hpp"
 #include "apparatus/cli/options/command.hpp"
 #include "apparatus/cli/options/json_option.hpp"
+#include "apparatus/cli/process/own_file.hpp"
 #include "apparatus/cli/process/stop_signals.hpp"
 #include "apparatus/cli/program.hpp"
 #include "apparatus/cli/study/study_progress.hpp"
