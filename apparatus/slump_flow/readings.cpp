@@ -28,17 +28,18 @@ std::string class_of(const cone::Scene& scene, const Results& r) {
   return has_classes(scene, r) ? cone::spread_class(r.spread) : std::string{};
 }
 
-double slump_of(const cone::Scene& scene, const Results& r) { return scene.cone.height - r.height; }
+/// Of the cone's height what a reading of the height has lost of its own at the start, which leaves out the topmost points.
+double slump_at(const cone::View& v, double height) {
+  return v.scene.cone.height * (1.0 - height / v.series.front().height);
+}
+double slump_of(const cone::View& v) { return slump_at(v, v.r.height); }
 
-std::string slump_class_of(const cone::Scene& scene, const Results& r) {
-  return has_classes(scene, r) ? cone::slump_class(slump_of(scene, r)) : std::string{};
+std::string slump_class_of(const cone::View& v) {
+  return has_classes(v.scene, v.r) ? cone::slump_class(slump_of(v)) : std::string{};
 }
 
 /// Concrete that a laboratory reads by its slump: up to S4.
-bool is_stiff(const cone::Scene& scene, const Results& r) {
-  const std::string cls = slump_class_of(scene, r);
-  return has_classes(scene, r) && cls != "S5";
-}
+bool is_stiff(const cone::View& v) { return has_classes(v.scene, v.r) && slump_class_of(v) != "S5"; }
 
 /// Read to 10 mm, as the standard has it, so that SF1 begins at 545 mm.
 bool is_below(const Results& r) { return r.spread < 0.545; }
@@ -50,7 +51,8 @@ ResultValue range_of(const cone::Scene& scene, const Results& r) {
 
 /// What was measured on the mix by the Abrams cone after the rest that this scene has; nothing for any other rest or cone.
 /// [measured] wins.
-std::optional<Measurement> measurement_for(const cone::Scene& scene, const Measured& measured, double spread) {
+std::optional<Measurement> measurement_for(const cone::Scene& scene, const Measured& measured,
+                                           double spread) {
   std::optional<double> value = measured.spread;
   double tolerance = measured.spread_tolerance.value_or(0.03);
   if (!value && cone::is_abrams(scene.cone)) {
@@ -86,14 +88,16 @@ bool kept_its_shape(const Results& r, const cone::Cone& cone) {
 }
 
 /// Class and accepted range; only of concrete at rest.
-std::string judged(const cone::Scene& scene, const Results& r) {
+std::string judged(const cone::View& v) {
+  const cone::Scene& scene = v.scene;
+  const Results& r = v.r;
   if (!stopped(r)) return {};
   if (!cone::is_abrams(scene.cone))
     return "Not the Abrams cone of EN 12350: its spread has no class, and no accepted range.";
   if (kept_its_shape(r, scene.cone))
     return "It kept the cone's shape: too stiff for a slump flow, which has nothing to read from it.";
-  const std::string slump = slump_class_of(scene, r);
-  if (is_stiff(scene, r))
+  const std::string slump = slump_class_of(v);
+  if (is_stiff(v))
     return fmt::format("{}; too stiff for the classes of self-compacting concrete and for tremie concrete.",
                        slump.empty() ? "A slump below class S1 of EN 206"
                                      : fmt::format("Class {} of EN 206 by its slump (read to 10 mm)", slump));
@@ -183,7 +187,7 @@ const std::vector<Reading<View>>& readings() {
   static const auto table = [] {
     Reading<View> spread = cone::spread_row<View>(), t500 = cone::t500_row<View>();
     spread.remark = [](V v) { return "   " + class_text(v.scene, v.r, v.status); };
-    spread.answer = [](V v) { return is_stiff(v.scene, v.r) ? std::nullopt : std::optional(std::string()); };
+    spread.answer = [](V v) { return is_stiff(v) ? std::nullopt : std::optional(std::string()); };
     t500.none = [](V v) {
       return cone::is_abrams(v.scene.cone, true) ? not_reached(v) : std::string("not the Abrams cone");
     };
@@ -231,30 +235,28 @@ const std::vector<Reading<View>>& readings() {
         motion_columns<View>(),
         Rows<View>{{"kinetic_energy_J", "", {}, [](V, S s) { return s.kinetic_energy; }}},
         step_columns<View>(),
-        Rows<View>{{.name = "slump_mm",
-                    .words = "slump, the cone's height less that of the concrete",
-                    .value = [](V v) { return number(slump_of(v.scene, v.r), mm); },
-                    .at = [](V v, S s) { return (v.scene.cone.height - s.height) * mm; },
-                    .label = "slump",
-                    .remark =
-                        [](V v) {
-                          const std::string cls = slump_class_of(v.scene, v.r);
-                          return cls.empty() ? cls : "   class " + cls;
-                        },
-                    .answer =
-                        [](V v) {
-                          return is_stiff(v.scene, v.r) ? std::optional<std::string>("slump") : std::nullopt;
-                        },
-                    .measurable = true},
-                   {.name = "class_en206_slump",
-                    .words = "slump class (EN 206); of concrete at rest, from the Abrams cone",
-                    .value = [](V v) { return word_or_null(slump_class_of(v.scene, v.r)); },
-                    .none =
-                        [](V v) {
-                          if (!cone::is_abrams(v.scene.cone)) return std::string("not the Abrams cone");
-                          return std::string(stopped(v.r) ? "below class S1 (10 mm)"
-                                                          : "not yet known: it still moved");
-                        }}});
+        Rows<View>{
+            {.name = "slump_mm",
+             .words = "slump, the cone's height less that of the concrete",
+             .value = [](V v) { return number(slump_of(v), mm); },
+             .at = [](V v, S s) { return slump_at(v, s.height) * mm; },
+             .label = "slump",
+             .remark =
+                 [](V v) {
+                   const std::string cls = slump_class_of(v);
+                   return cls.empty() ? cls : "   class " + cls;
+                 },
+             .answer = [](V v) { return is_stiff(v) ? std::optional<std::string>("slump") : std::nullopt; },
+             .measurable = true},
+            {.name = "class_en206_slump",
+             .words = "slump class (EN 206); of concrete at rest, from the Abrams cone",
+             .value = [](V v) { return word_or_null(slump_class_of(v)); },
+             .none =
+                 [](V v) {
+                   if (!cone::is_abrams(v.scene.cone)) return std::string("not the Abrams cone");
+                   return std::string(stopped(v.r) ? "below class S1 (10 mm)"
+                                                   : "not yet known: it still moved");
+                 }}});
   }();
   return table;
 }
@@ -265,7 +267,7 @@ Outcome run(const cone::Scene& scene, const RunOptions& options, const Observer&
   Outcome outcome = outcome_of(readings(), view, options.measured.name, "slump flow");
   outcome.measured = view.measurement;
   outcome.moving_at_end = !raw.results.stopped_at;
-  outcome.judged = judged(scene, raw.results);
+  outcome.judged = judged(view);
   outcome.remarks = remarks_on(scene, outcome.measured, raw.results);
   outcome.stage = cone::stage_of(scene);
   outcome.charts = cone::charts_of(scene, references_for(outcome.measured));

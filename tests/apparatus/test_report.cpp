@@ -57,7 +57,8 @@ TEST(Summary, HasTheDocumentedKeys) {
   EXPECT_EQ(json["schema"], 1);
   EXPECT_EQ(json["apparatus"], "slump_flow");
   EXPECT_EQ(json["status"], "completed");
-  for (const char* key : {"version", "commit", "compiler", "instructions"}) EXPECT_TRUE(json["tremie"].contains(key)) << key;
+  for (const char* key : {"version", "commit", "compiler", "instructions"})
+    EXPECT_TRUE(json["tremie"].contains(key)) << key;
   EXPECT_EQ(json["results"]["spread_mm"], 556.0);
   EXPECT_TRUE(json["results"]["t500_s"].is_null());
   EXPECT_TRUE(json["results"]["height_mm"].is_null());
@@ -113,8 +114,8 @@ TEST(ResultsH5, HoldsSeriesFramesAndProvenance) {
   const std::vector<double> position = read_array(file, "/frames/00001/position");
   EXPECT_EQ(position, (std::vector<double>{0.1F, 0.0F, 0.2F, 0.3F, 0.0F, 0.4F}));
   EXPECT_EQ(H5Lexists(file, "/frames/00001/flocculation", H5P_DEFAULT), 0);  // not stored, not written
-  for (const char* name :
-       {"schema", "tremie_version", "tremie_commit", "compiler", "instructions", "scene", "apparatus", "status"})
+  for (const char* name : {"schema", "tremie_version", "tremie_commit", "compiler", "instructions", "scene",
+                           "apparatus", "status"})
     EXPECT_GT(H5Aexists(file, name), 0) << name;
   // netCDF readers find their axes by these: the time of a series, the points of a frame.
   for (const char* axis : {"/series/time_s", "/frames/00001/point", "/frames/00001/component"})

@@ -39,8 +39,9 @@ struct Scene {
   Mix mix;
   Cone cone;
   Floor floor;
-  double rest = 0.0;                        ///< before the lift [s]
-  double duration = 30.0;                   ///< of the flow, at most [s]
+  double rest = 0.0;              ///< before the lift [s]
+  double duration = 30.0;         ///< of the flow, at most [s]
+  double rest_tolerance = 0.002;  ///< it has stopped when it would gain less than this share of its spread
   std::optional<double> lift_speed = 0.15;  ///< [m/s]; empty: the cone is gone at once
   std::optional<Ring> ring;                 ///< in space alone
   Model model;
@@ -54,6 +55,7 @@ struct Sample {
   double spread = 0.0;                           ///< as the standard reads it [m]
   double spread_max_point = 0.0;                 ///< twice the outermost point's radius [m]
   double height = 0.0;                           ///< of the concrete at the centre [m]
+  double reach = 0.0;                            ///< mean distance of the concrete from the axis [m]
   double max_speed = 0.0;                        ///< [m/s]
   double shear_rate_mean = 0.0;                  ///< volume mean [1/s]
   std::optional<double> flocculation_mean = {};  ///< volume mean; empty without thixotropy

@@ -170,8 +170,8 @@ Outcome run_explicit_in(const Scene& scene, const Law& law, const scene::Observe
             return frame;
           },
       .last_frame = [&] { return frame_from(body); },
-      .speed = [scale = scale_of(scene.cone)](const StepReport& step) { return step.max_speed / scale; },
       .free_to_flow = [&] { return clear_of_the_cone(scene, outcome.series.back()); },
+      .stands_since = [&] { return rests_since(scene, outcome.series); },
       .gains_energy =
           [&] {
             energy.see(experiment::energy_of<Geometry>(body.points, body.mix.K), bool{wall});

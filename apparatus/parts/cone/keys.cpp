@@ -24,8 +24,14 @@ Section cone_section() {
 Section test_section() {
   return {.name = "test",
           .help = "The schedule.",
-          .keys = {rest_key("0 s", "before the lift"), duration_key("30 s"),
-                   lift_key("lift_speed", "15 cm/s", "of the cone")}};
+          .keys = {rest_key("0 s", "before the lift"),
+                   duration_key("30 s"),
+                   lift_key("lift_speed", "15 cm/s", "of the cone"),
+                   {.name = "rest_tolerance",
+                    .kind = Kind::number,
+                    .range = {.low = 0.0, .high = 0.1, .low_open = true},
+                    .fallback = "0.002",
+                    .help = "the flow has stopped when it would gain less than this share of its spread"}}};
 }
 
 Cone cone_of(const Values& values) {
@@ -97,6 +103,7 @@ Scene read_scene(const Values& values) {
   scene.floor = read_floor(values);
   scene.rest = values.number("test.rest");
   scene.duration = values.number("test.duration");
+  scene.rest_tolerance = values.number("test.rest_tolerance");
   scene.lift_speed = values.number_unless("test.lift_speed", "instant");
   scene.model = read_model(values);
   scene.frame_interval = read_output(values).frame_interval;

@@ -25,7 +25,7 @@ Outcome run_implicit_in(const Scene& scene, const scene::Observer& observer) {
   RigidWall<D> wall;
   if (scene.lift_speed) lifted_wall(scene, settings.wall_gap + settings.cfl * scene.model.cell[0], wall);
 
-  const double longest = settings.dt_max, scale = scale_of(scene.cone);
+  const double longest = settings.dt_max;
   Outcome outcome;
   experiment::EnergyWatch energy(experiment::energy_of<Geometry>(body.points, body.mix.K));
   bool flows = true, cone_gone = false;
@@ -53,13 +53,8 @@ Outcome run_implicit_in(const Scene& scene, const scene::Observer& observer) {
             return step;
           },
       .frame = [&] { return experiment::frame_of(body); },
-      .speed =
-          [scale](const StepReport& step) {
-            return step.max_speed / scale;
-          },  // as it were of the Abrams cone
-
       .free_to_flow = [&] { return clear_of_the_cone(scene, outcome.series.back()); },
-      .stands_since = [&] { return stands_since(scene, outcome.series); },
+      .stands_since = [&] { return rests_since(scene, outcome.series); },
       .gains_energy =
           [&] {
             // What is elastic in it a body may turn into motion later: it counts for what it may have, not

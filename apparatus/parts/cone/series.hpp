@@ -33,6 +33,7 @@ Sample read(const Scene& scene, const Body<Geometry>& body, const StepReport& st
   s.spread = spread_of(scene, points);
   s.spread_max_point = spread_of_outermost_point(points);
   s.height = centre_height(points, 2.0 * body.grid.axes[0].h);
+  s.reach = mean_distance(points);
   s.max_speed = step.max_speed;
   s.shear_rate_mean = step.shear_rate_mean;
   s.flocculation_mean = experiment::mean_flocculation(points);
@@ -97,21 +98,57 @@ inline bool clear_of_the_cone(const Scene& scene, const Sample& now) {
   return !scene.lift_speed || rim_height(scene, now.time) > now.height + scene.model.cell[1];
 }
 
-/// Concrete of the Abrams cone stands where spread and height have kept within this for so long. Beside a yield stress of some kPa a step's
-/// solution leaves 0.1 mm/s here and there, so that the speed alone would never be that of rest.
-inline constexpr double standing_within = 1e-4, standing_lasts = 10.0;  // [m], [s]
+/// The exponent n of a law's viscous stress k gamma_dot^n; 1 where the viscosity does not depend on the rate.
+inline double flow_index(const YieldLaw& law) {
+  return std::visit(
+      [](const auto& l) {
+        if constexpr (requires { l.n; })
+          return l.n;
+        else
+          return 1.0;
+      },
+      law);
+}
 
-/// Since when the concrete, free of the cone, stands [s]; empty while it does not.
-inline std::optional<double> stands_since(const Scene& scene, const std::vector<Sample>& series) {
+/// The last line of the series until a time [s]; none before the first.
+inline const Sample* line_at(const std::vector<Sample>& series, double time) {
+  const auto line = std::find_if(series.rbegin(), series.rend(),
+                                 [time](const Sample& s) { return s.time <= time * (1.0 + 1e-9); });
+  return line == series.rend() ? nullptr : &*line;
+}
+
+/// The share of its spread that a flow would still gain, as it went on between 0.8 `time` and `time` [s]. Near rest the excess of
+/// the stress over the yield stress, and with it what is left to flow, goes like t^-n, n the law's flow index: the concrete moves
+/// at n/t times what is left. (A Newtonian fluid, whose reach goes like t^(1/8), never comes near to rest by that.) The rate is
+/// that of the mean distance from the axis, which has no grains; what the front gains beside it is told by the second half of
+/// the time.
+inline double gain_left(const Scene& scene, const std::vector<Sample>& series, double time) {
+  const Sample *now = line_at(series, time), *before = line_at(series, 0.8 * time),
+               *half = line_at(series, 0.5 * time);
+  if (!now || !half || now == before) return 1.0;
+  const double rate = std::abs(now->reach - before->reach) / (now->time - before->time) / now->reach;
+  const double gained = std::abs(now->reach / half->reach - 1.0);
+  const double front =
+      gained > 1e-3 ? std::clamp((now->spread / half->spread - 1.0) / gained, 1.0, 4.0) : 1.0;
+  return front * rate * time / flow_index(scene.model.law);
+}
+
+/// A flow is not looked at before, in free falls from the cone's height, of which 0.25 s is the Abrams cone's.
+inline constexpr double first_look = 2.0;
+
+/// Since when the concrete, free of the cone, rests: since it was within the scene's tolerance of where it would end [s]; empty
+/// while it would gain more. What has swung back and stands for a moment alone moved a little earlier.
+inline std::optional<double> rests_since(const Scene& scene, const std::vector<Sample>& series) {
   const Sample& now = series.back();
-  for (auto s = series.rbegin(); s != series.rend(); ++s) {
-    const double within = standing_within * scale_of(scene.cone);
-    if (std::abs(s->spread - now.spread) > within || std::abs(s->height - now.height) > within ||
-        !clear_of_the_cone(scene, *s))
-      return std::nullopt;
-    if (s->time <= now.time - standing_lasts) return s->time;
-  }
-  return std::nullopt;
+  const double tolerance = scene.rest_tolerance;
+  if (now.time < first_look * std::sqrt(2.0 * scene.cone.height / gravity) || !clear_of_the_cone(scene, now))
+    return std::nullopt;
+  const double left = gain_left(scene, series, now.time);
+  if (left > tolerance || gain_left(scene, series, 0.8 * now.time) > 2.0 * tolerance) return std::nullopt;
+  const double within = (1.0 - tolerance) * (1.0 + left) * now.reach;
+  for (const Sample& s : series)
+    if (s.reach >= within) return s.time;
+  return now.time;
 }
 
 /// Whether the cone is so far above the concrete that its wall need not be computed.

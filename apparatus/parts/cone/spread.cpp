@@ -127,7 +127,18 @@ double height_within(const Points<D>& points, double reach) {
   return upper_quantile(heights, 1e-2);
 }
 
+template <int D>
+double mean_distance_of(const Points<D>& points) {
+  double sum = 0.0, mass = 0.0;
+  for (std::size_t p = 0; p < points.size(); ++p)
+    sum += points.mass[p] * std::sqrt(squared_radius(points.x[p])), mass += points.mass[p];
+  return mass > 0.0 ? sum / mass : 0.0;
+}
+
 }  // namespace
+
+double mean_distance(const Points<2>& points) { return mean_distance_of(points); }
+double mean_distance(const Points<3>& points) { return mean_distance_of(points); }
 
 double spread_of_outermost_point(const Points<2>& points) { return 2.0 * outermost_radius(points); }
 double spread_of_outermost_point(const Points<3>& points) { return 2.0 * outermost_radius(points); }

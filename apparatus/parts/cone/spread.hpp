@@ -24,4 +24,8 @@ double spread_of_outermost_point(const Points<3>& points);
 double spread(const Points<3>& points, double cell, bool quarter);
 double centre_height(const Points<3>& points, double radius);
 
+/// Mean distance of the concrete from the axis [m].
+double mean_distance(const Points<2>& points);
+double mean_distance(const Points<3>& points);
+
 }  // namespace tremie::cone

@@ -1,0 +1,65 @@
+// Rest is a distance: a slump flow has stopped when its spread would gain less than 0.2 %, however slowly it creeps.
+
+#include <gtest/gtest.h>
+
+#include "apparatus/registry/registry.hpp"
+
+namespace tremie {
+namespace {
+
+const std::string sticky = R"(apparatus = "slump_flow"
+[mix]
+yield_stress = "20 Pa"
+plastic_viscosity = "100 Pa.s"
+density = "2300 kg/m3"
+[test]
+duration = "20000 s"
+[output]
+frames = false
+)";
+
+scene::Outcome outcome_of(const std::vector<std::string>& overrides) {
+  return scene::run(scene::read_text(sticky, "sticky.toml", overrides));
+}
+
+double number_of(const scene::Outcome& outcome, const char* name) {
+  return scene::find_number(outcome, name).value_or(-1.0);
+}
+
+// The spread at rest follows from the yield stress: three viscosities end within 1 % of each other, and within 1.5 % of 676
+// mm, where runs to rest by steps of a tenth of a second ended. Times go like the viscosity. Runs were called stopped by their
+// speed at 666, 647 and 609 mm.
+TEST(Rest, TheViscosityDecidesWhenAndNotWhere) {
+  double last_time = 0.0;
+  for (const char* viscosity : {"100 Pa.s", "300 Pa.s", "1000 Pa.s"}) {
+    const auto outcome = outcome_of({std::string("mix.plastic_viscosity=") + viscosity});
+    EXPECT_NEAR(number_of(outcome, "spread_mm") / 672.0, 1.0, 0.01) << viscosity;
+    EXPECT_GT(number_of(outcome, "stopped_at_s"), 1.8 * last_time) << viscosity;
+    EXPECT_LT(outcome.cost.steps, 1500) << viscosity;  // in steps of 0.1 s it would be 4,000 to 40,000
+    last_time = number_of(outcome, "stopped_at_s");
+  }
+}
+
+// Without a yield stress it spreads like t^(1/8) for ever (Huppert 1982).
+TEST(Rest, ANewtonianFluidDoesNot) {
+  EXPECT_EQ(number_of(outcome_of({"mix.yield_stress=0 Pa", "test.duration=60 s"}), "stopped_at_s"), -1.0);
+}
+
+TEST(Rest, ABodyThatDoesNotMoveHasNoSlump) {
+  const auto outcome = outcome_of({"mix.yield_stress=5000 Pa"});
+  EXPECT_NEAR(number_of(outcome, "slump_mm"), 0.0, 0.5);
+  EXPECT_GE(number_of(outcome, "stopped_at_s"), 0.0);
+  EXPECT_LT(outcome.cost.simulated, 5.0);
+}
+
+// Ten times the tolerance ends the run sooner, at a smaller spread.
+TEST(Rest, TheSceneMayChooseItsTolerance) {
+  const auto loose = outcome_of({"test.rest_tolerance=0.02"}), close = outcome_of({});
+  EXPECT_LT(loose.cost.simulated, 0.7 * close.cost.simulated);
+  EXPECT_LT(number_of(loose, "spread_mm"), number_of(close, "spread_mm"));
+  EXPECT_GT(number_of(loose, "spread_mm"), 0.96 * number_of(close, "spread_mm"));
+  EXPECT_THROW(outcome_of({"test.rest_tolerance=0"}), std::exception);
+}
+
+}  // namespace
+}  // namespace tremie
