@@ -28,10 +28,7 @@ std::string class_of(const cone::Scene& scene, const Results& r) {
   return has_classes(scene, r) ? cone::spread_class(r.spread) : std::string{};
 }
 
-/// Of the cone's height what a reading of the height has lost of its own at the start, which leaves out the topmost points.
-double slump_at(const cone::View& v, double height) {
-  return v.scene.cone.height * (1.0 - height / v.series.front().height);
-}
+double slump_at(const cone::View& v, double height) { return v.scene.cone.height - height; }
 double slump_of(const cone::View& v) { return slump_at(v, v.r.height); }
 
 std::string slump_class_of(const cone::View& v) {

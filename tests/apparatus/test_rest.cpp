@@ -52,12 +52,12 @@ TEST(Rest, ABodyThatDoesNotMoveHasNoSlump) {
   EXPECT_LT(outcome.cost.simulated, 5.0);
 }
 
-// Ten times the tolerance ends the run sooner, at a smaller spread.
+// A looser tolerance ends the run sooner, at a smaller spread.
 TEST(Rest, TheSceneMayChooseItsTolerance) {
-  const auto loose = outcome_of({"test.rest_tolerance=0.02"}), close = outcome_of({});
+  const auto loose = outcome_of({"test.rest_tolerance=0.05"}), close = outcome_of({});
   EXPECT_LT(loose.cost.simulated, 0.7 * close.cost.simulated);
   EXPECT_LT(number_of(loose, "spread_mm"), number_of(close, "spread_mm"));
-  EXPECT_GT(number_of(loose, "spread_mm"), 0.96 * number_of(close, "spread_mm"));
+  EXPECT_GT(number_of(loose, "spread_mm"), 0.90 * number_of(close, "spread_mm"));
   EXPECT_THROW(outcome_of({"test.rest_tolerance=0"}), std::exception);
 }
 

@@ -14,7 +14,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent.parent
 SOURCES = ["tests/bench/points_per_second.cpp", "libmpm/explicit/step.cpp", "libmpm/grid/active_grid.cpp"]
 OPTIONS = ["-std=c++20", "-O3", "-DNDEBUG", "-fno-math-errno", "-Wno-psabi", "-fopenmp", "-DEIGEN_DONT_PARALLELIZE", f"-I{ROOT}",
-           "-isystem", "/usr/include/eigen3"]
+           "-isystem", "/usr/include/eigen3", "-w"]
 NEEDS = {"x86-64-v2": {"sse4_2"}, "x86-64-v3": {"avx2", "fma"}, "x86-64-v4": {"avx512f", "avx512vl"}}
 
 

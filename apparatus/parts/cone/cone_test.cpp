@@ -145,9 +145,9 @@ scene::SizeEstimate estimate(const Scene& scene) {
     return e;
   }
   const StepSettings settings = step_settings(scene);
-  // After the collapse the flow goes on in the largest step, or 4 times that on average where the local error lets it
-  // grow. Steps that are short beside a slow cone stand for half of those that the collapse would take.
-  const double later = (settings.time_error > 0.0 ? 4.0 : 1.0) * settings.dt_max;
+  // After the collapse the flow goes on in twice the largest step on average, in space 4 times, as the local error lets
+  // it grow. Steps that are short beside a slow cone stand for half of those that the collapse would take.
+  const double later = (scene.model.space == SpaceKind::axisymmetric ? 2.0 : 4.0) * settings.dt_max;
   const double beside = steps_beside_the_cone(scene);
   const auto steps = [&](double share, double time) {
     if (scene.model.time_step) return experiment::whole_steps(time / *scene.model.time_step);

@@ -73,6 +73,7 @@ struct Results {
   double shear_rate_mean_peak = 0.0;         ///< [1/s]
   std::optional<double> mean_velocity = {};  ///< (SF - 200 mm) / (2 t_stop) [m/s]
   std::optional<double> step = {};           ///< mean height inside the ring less that just outside of it [m]
+  double height_scale = 1.0;  ///< of readings of the height, which leave out the topmost points
   /// Share of the volume behind the wall of the cone when its rim has risen by a cell, or at the end.
   std::optional<double> through_the_cone = {};
 };

@@ -186,7 +186,8 @@ Outcome run_explicit_in(const Scene& scene, const Law& law, const scene::Observe
       .state =
           [&](Archive& archive) {
             bool walled{wall};
-            archive(walled, energy, limits, outcome.series, outcome.results.through_the_cone);
+            archive(walled, energy, limits, outcome.series, outcome.results.through_the_cone,
+                    outcome.results.height_scale);
             visit_explicit(archive, body, state);
             if (!walled) wall = {};
           }};

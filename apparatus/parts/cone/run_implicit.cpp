@@ -68,7 +68,8 @@ Outcome run_implicit_in(const Scene& scene, const scene::Observer& observer) {
       .tell = [&](bool, Checks& checks, Cost&) { energy.tell(checks); },
       .state =
           [&](Archive& archive) {
-            archive(body, energy, flows, outcome.series, outcome.results.through_the_cone);
+            archive(body, energy, flows, outcome.series, outcome.results.through_the_cone,
+                    outcome.results.height_scale);
           }};
   experiment::run_experiment(
       flow, body, showing(scene), observer,

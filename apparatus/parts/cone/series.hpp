@@ -84,7 +84,12 @@ Sample next_line(const Scene& scene, const Body<Geometry>& body, const StepRepor
   const bool low = scene.lift_speed && !outcome.series.empty() &&
                    rim_height(scene, outcome.series.back().time) < scene.model.cell[1];
   if (low) outcome.results.through_the_cone = share_behind_wall(scene, body.time, body.points);
-  return read(scene, body, step);
+  Sample line = read(scene, body, step);
+  // The full cone is as high as it is.
+  if (outcome.series.empty() && line.height > 0.0)
+    outcome.results.height_scale = scene.cone.height / line.height;
+  line.height *= outcome.results.height_scale;
+  return line;
 }
 
 /// How a run is shown.
