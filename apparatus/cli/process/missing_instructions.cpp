@@ -6,13 +6,13 @@
 
 namespace {
 
-constexpr char first[] = "tremie: this program is compiled for processors with ",
-               then[] =
-                   ", which this one lacks: "
-                   "build it here, or for any processor with -DTREMIE_NATIVE=OFF\n";
+// Unused where the program needs no more than any processor has.
+[[maybe_unused]] constexpr char
+    first[] = "tremie: this program is compiled for processors with ",
+    then[] = ", which this one lacks: build it here, or for any processor with -DTREMIE_NATIVE=OFF\n";
 
 template <unsigned long n>
-[[gnu::always_inline, gnu::target("arch=x86-64")]] inline void say(const char (&text)[n]) {
+[[maybe_unused, gnu::always_inline, gnu::target("arch=x86-64")]] inline void say(const char (&text)[n]) {
   (void)!write(STDERR_FILENO, text, n - 1);
 }
 
