@@ -69,7 +69,6 @@ inline StepSettings step_settings(const Scene& scene) {
   // The local error chooses the step once the collapse is over; in three dimensions from short ones on.
   const bool section = scene.model.space == SpaceKind::axisymmetric;
   settings.time_error = (section ? 0.002 : 0.005) * scene.model.step_scale * scene.model.step_scale;
-  settings.dt_longest = 30.0;
   if (!section) settings.dt_max = 0.03 * scene.model.step_scale;
   settings.wall_law = scene.floor.contact;
   settings.settle_on_floor = true;
