@@ -38,7 +38,8 @@ void add_overlay(const Comparison& comparison, const std::string& file, const st
   for (const auto& run : comparison.runs) {
     Curve curve{.label = run.name};
     if (const auto* table = find_table(run, file))
-      if (const auto* a = scene::find_column(table->columns, x), *b = scene::find_column(table->columns, y); a && b)
+      if (const auto* a = scene::find_column(table->columns, x), *b = scene::find_column(table->columns, y);
+          a && b)
         curve.x = a->values, curve.y = b->values;
     chart.curves.push_back(std::move(curve));
   }

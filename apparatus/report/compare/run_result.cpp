@@ -85,7 +85,8 @@ void flatten(const scene::Node& node, const std::string& place, std::vector<Entr
 Json read_summary(const fs::path& folder) {
   std::error_code error;
   if (!fs::exists(folder, error)) refuse_result(folder, "there is no such folder");
-  if (!fs::is_directory(folder, error)) refuse_result(folder, "is no folder; compare takes folders of results");
+  if (!fs::is_directory(folder, error))
+    refuse_result(folder, "is no folder; compare takes folders of results");
   std::ifstream stream(folder / "summary.json");
   if (!stream) refuse_result(folder, "holds no result: summary.json is missing");
   try {

@@ -21,7 +21,8 @@ void add_bars(const scene::Chart& chart, const scene::Outcome& outcome, LineChar
 LineChart line_chart(const scene::Chart& chart, const scene::Outcome& outcome) {
   const auto& columns = scene::columns_of(chart, outcome);
   LineChart drawn{.title = chart.title, .x_label = chart.x_label, .y_label = chart.y_label};
-  const auto* over = chart.over.empty() || columns.empty() ? nullptr : scene::find_column(columns, chart.over);
+  const auto* over =
+      chart.over.empty() || columns.empty() ? nullptr : scene::find_column(columns, chart.over);
   const bool several = chart.columns.size() + chart.references.size() > 1;
   for (std::size_t i = 0; i < chart.columns.size(); ++i) {
     Curve curve;

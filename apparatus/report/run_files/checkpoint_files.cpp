@@ -104,9 +104,7 @@ Archive reader(std::FILE* file, std::uint64_t left) {
 }
 
 /// Which program wrote it: a state is bytes as they lie in memory.
-std::string program() {
-  return fmt::format("{} {} {} {}", version, commit, compiler, instructions);
-}
+std::string program() { return fmt::format("{} {} {} {}", version, commit, compiler, instructions); }
 
 [[noreturn]] void refuse_to_resume(const fs::path& folder, const std::string& why) {
   throw scene::InputError(fmt::format("{}: {}; `tremie run` with --force begins anew", folder.string(), why));
@@ -203,7 +201,8 @@ Checkpoint read_checkpoint(const fs::path& folder) {
     archive(begin);
     if (begin == magic) archive(written_by);
     if (written_by != program())
-      refuse_to_resume(folder, fmt::format("the checkpoint is of another version of tremie ({})", written_by));
+      refuse_to_resume(folder,
+                       fmt::format("the checkpoint is of another version of tremie ({})", written_by));
     archive(checkpoint.request, checkpoint.frames_length, checkpoint.frames_sum);
   } catch (const std::length_error&) {
     refuse_to_resume(folder, "the checkpoint is damaged or cut");
