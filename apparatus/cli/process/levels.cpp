@@ -2,8 +2,10 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <string>
 #include <string_view>
 
 #include "apparatus/cli/process/own_file.hpp"
@@ -32,12 +34,24 @@ std::array<Level, 4> levels() {
   return {{{"x86-64-v4", v4}, {"x86-64-v3", v3}, {"x86-64-v2", v2}, {"x86-64", true}}};
 }
 
+/// Ends the program with code 2 where TREMIE_LEVEL names no level.
+void refuse_unknown(std::string_view wanted) {
+  const auto all = levels();
+  if (std::ranges::any_of(all, [&](const Level& level) { return level.name == wanted; })) return;
+  std::string message = "tremie: TREMIE_LEVEL names an unknown level \"" + std::string(wanted) + "\"; allowed:";
+  for (const Level& level : all) message += ' ' + std::string(level.name);
+  message += '\n';
+  (void)!write(STDERR_FILENO, message.data(), message.size());
+  std::exit(2);
+}
+
 }  // namespace
 
 void become_best_level(char** argv) {
   const auto program = own_file();
   const auto folder = program.parent_path().parent_path() / "lib" / "tremie";
   const char* wanted = std::getenv("TREMIE_LEVEL");
+  if (wanted) refuse_unknown(wanted);
   bool allowed = !wanted;
   for (const Level& level : levels()) {
     if (level.name == instructions) return;

@@ -24,6 +24,9 @@ def _processor() -> set[str]:
 def best_core(package: Path) -> Optional[str]:
     """The folder with the core for the best level that this processor has ($TREMIE_LEVEL names the best), if there is one."""
     wanted, has = os.environ.get("TREMIE_LEVEL"), _processor()
+    names = [*LEVELS, "x86-64-v2", "x86-64"]
+    if wanted is not None and wanted not in names:
+        raise ImportError(f'TREMIE_LEVEL names an unknown level "{wanted}"; allowed: {" ".join(names)}')
     allowed = wanted is None
     for level, instructions in LEVELS.items():
         allowed = allowed or level == wanted
