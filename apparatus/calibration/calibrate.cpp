@@ -70,11 +70,11 @@ double log_likelihood_of(const State& s, const Emulated& e, const Prediction& p)
   return log_likelihood(m.value, m.error, p, s.discretisation[e.test][e.reading]);
 }
 
-/// At every point of s.points.
-std::vector<double> log_likelihoods(const State& s) {
+/// At every point of s.points, of all measurements but one.
+std::vector<double> log_likelihoods(const State& s, const Emulated* left_out = nullptr) {
   std::vector<double> sums(s.points.size(), 0.0);
   for (const Emulated& e : s.emulated) {
-    if (!is_measured(s, e) || !e.trained) continue;
+    if (!is_measured(s, e) || !e.trained || &e == left_out) continue;
     for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += log_likelihood_of(s, e, e.predictions[i]);
   }
   return sums;
@@ -222,6 +222,27 @@ void report_readings(State& s) {
   }
 }
 
+/// Each reading as the others forecast it, its own error included.
+void find_contradictions(State& s) {
+  for (const Emulated& e : s.emulated) {
+    if (!is_measured(s, e) || !e.trained) continue;
+    const Measurement& m = reading_of(s, e);
+    const Posterior others = make_posterior(s.points, log_likelihoods(s, &e));
+    auto predictions = e.predictions;
+    const double cells = s.discretisation[e.test][e.reading];
+    for (Prediction& p : predictions) p.variance += cells * cells + m.error * m.error;
+    const auto at = [&](double q) { return mixture_quantile(others, predictions, q); };
+    const Contradiction c{s.lab.tests[e.test].label + "." + m.key,
+                          s.lab.tests[e.test].words,
+                          m.result,
+                          m.value,
+                          at(0.5),
+                          at(0.005),
+                          at(0.995)};
+    if (m.value < c.low || m.value > c.high) s.result.contradictions.push_back(c);
+  }
+}
+
 /// The chance of a chi square of n degrees of freedom above x.
 double chance_above(double x, double n) { return cdf(complement(boost::math::chi_squared(n), x)); }
 
@@ -235,6 +256,11 @@ void report_contradictions(State& s) {
           "the other measurements or lies outside of what the model can do within the ranges",
           r.test, r.words, r.result, r.measured, std::abs(r.deviation), r.best_fit));
   }
+  for (const Contradiction& c : s.result.contradictions)
+    s.result.reasons.push_back(fmt::format(
+        "{} ({}) {} = {:.4g} contradicts the other readings, which forecast {:.4g}, {:.4g} to {:.4g} "
+        "by 99 %",
+        c.reading, c.words, c.result, c.measured, c.forecast, c.low, c.high));
   if (!worst) {
     s.result.reasons.push_back("no measurement could be emulated");
     return;
@@ -292,6 +318,7 @@ void report(State& s) {
                                     [&](const Emulated& e) { return is_measured(s, e) && e.trained; });
   for (Emulated& e : s.emulated)
     if (e.trained) e.error = error_near_posterior(s, e);
+  find_contradictions(s);  // on points all over the ranges, where the others alone may lead
   if (s.lab.unknowns.size() > 2 && emulated) draw_chains(s);
   report_parameters(s);
   report_readings(s);

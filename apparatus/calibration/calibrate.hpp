@@ -34,6 +34,13 @@ struct ReadingReport {
   std::vector<std::array<double, 2>> left_out = {};
 };
 
+/// A reading that the others forecast elsewhere.
+struct Contradiction {
+  std::string reading, words, result;            ///< "measured[1].slump", the test's words, "slump_mm"
+  double measured = 0.0;                         ///< in the unit of the result, as all here
+  double forecast = 0.0, low = 0.0, high = 0.0;  ///< by the other readings: median, ends of the 99 % interval
+};
+
 struct Estimated {
   std::string key, unit;
   double value = 0.0, low = 0.0, high = 0.0;  ///< SI; the median and the ends of the 95 % interval
@@ -49,6 +56,7 @@ struct ForecastReading {
 struct Calibration {
   std::vector<Estimated> parameters;
   std::vector<ReadingReport> readings;
+  std::vector<Contradiction> contradictions;
   std::vector<std::vector<ForecastReading>> forecasts;
   std::vector<Trial> trials;
   Posterior posterior;

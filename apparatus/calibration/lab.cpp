@@ -21,34 +21,70 @@ struct Known {
   std::optional<Dimension> dimension = {};  ///< none: a plain number
   double factor = 1.0;                      ///< from SI to the result's unit
   bool logarithmic = false;                 ///< times
+  bool usual = false;                       ///< what a laboratory measures by the test, and a forecast names
 };
 
-Known known_of(const std::string& result) {
-  const std::string unit = scene::unit_of(result);
-  Known known{.key = result, .result = result};
-  if (unit == "1") return known;
-  known.key.resize(result.size() - unit.size() - 1);
-  known.dimension = unit == "mm" ? Dimension::length : unit == "s" ? Dimension::time : Dimension::torque;
-  known.factor = unit == "mm" ? 1e3 : 1.0;
-  known.logarithmic = unit == "s";
-  return known;
+struct UnitOfReading {
+  std::string_view unit;
+  Dimension dimension;
+  double factor;  ///< from SI
+};
+constexpr UnitOfReading units_of_readings[] = {
+    {"mm", Dimension::length, 1e3},      {"m", Dimension::length, 1.0},  {"s", Dimension::time, 1.0},
+    {"mm/s", Dimension::speed, 1e3},     {"m/s", Dimension::speed, 1.0}, {"Pa", Dimension::pressure, 1.0},
+    {"Pa.s", Dimension::viscosity, 1.0}, {"1/s", Dimension::rate, 1.0},  {"N.m", Dimension::torque, 1.0}};
+
+/// Nothing for a row that has no unit and is not what a laboratory measures: a word, a yes or no.
+std::optional<Known> known_of(const scene::Described& row) {
+  Known known{.key = row.name, .result = row.name, .usual = row.measurable};
+  const std::string unit = scene::unit_of(row.name);
+  if (unit == "1") return row.measurable ? std::optional(known) : std::nullopt;
+  for (const auto& [name, dimension, factor] : units_of_readings)
+    if (unit == name) {
+      known.key.resize(row.name.size() - unit.size() - 1);
+      known.dimension = dimension;
+      known.factor = factor;
+      known.logarithmic = unit == "s";
+      return known;
+    }
+  return std::nullopt;
 }
 
-/// What a laboratory may have measured by an apparatus; empty for one that there is not.
+/// What a laboratory may have measured by an apparatus: its results of one number; empty for one that there is not.
 std::vector<Known> known_readings(const std::string& name) {
   std::vector<Known> known;
   for (const scene::Apparatus& apparatus : scene::all_apparatus())
     if (apparatus.keys.name == name)
-      for (const scene::Described& reading : apparatus.glossary)
-        if (reading.measurable) known.push_back(known_of(reading.name));
+      for (const scene::Described& row : apparatus.glossary)
+        if (row.is_result && row.name.find('.') == std::string::npos)
+          if (const auto reading = known_of(row)) known.push_back(*reading);
   return known;
+}
+
+/// Those that a laboratory usually measures.
+std::vector<Known> usual_readings(const std::string& name) {
+  std::vector<Known> usual;
+  for (const Known& known : known_readings(name))
+    if (known.usual) usual.push_back(known);
+  return usual;
+}
+
+/// Whether the test ends when its concrete rests.
+bool comes_to_rest(const std::string& name) {
+  for (const scene::Apparatus& apparatus : scene::all_apparatus())
+    if (apparatus.keys.name == name)
+      for (const scene::Section& section : apparatus.keys.schema)
+        if (section.name == "test")
+          for (const scene::Key& key : section.keys)
+            if (key.name == "rest_tolerance") return true;
+  return false;
 }
 
 /// The apparatus by which something can be measured.
 std::string measuring_apparatus() {
   std::vector<std::string> names;
   for (const scene::Apparatus& apparatus : scene::all_apparatus())
-    if (!known_readings(apparatus.keys.name).empty()) names.push_back(apparatus.keys.name);
+    if (!usual_readings(apparatus.keys.name).empty()) names.push_back(apparatus.keys.name);
   const std::string last = names.back();
   names.pop_back();
   return fmt::format("{} or {}", fmt::join(names, ", "), last);
@@ -120,8 +156,8 @@ bool is_reading(const std::string& key, const std::string& apparatus) {
 
 std::string readings_text(const std::string& apparatus) {
   std::string text;
-  for (const Known& known : known_readings(apparatus)) text += (text.empty() ? "" : ", ") + known.key;
-  return text;
+  for (const Known& known : usual_readings(apparatus)) text += (text.empty() ? "" : ", ") + known.key;
+  return text + " or another of its results (docs/reference/results.md)";
 }
 
 /// The apparatus and what the test's own keys say, for people.
@@ -144,7 +180,7 @@ Test read_test(const Node& node, const std::string& label, bool measured) {
   const Node* apparatus = scene::find(node, "apparatus");
   if (!apparatus) complain(node, label, "missing key apparatus");
   test.apparatus = text_of(*apparatus, "apparatus");
-  if (readings_text(test.apparatus).empty())
+  if (usual_readings(test.apparatus).empty())
     complain(*apparatus, "apparatus", "must be " + measuring_apparatus());
   for (const auto& [key, value] : table_of(node, label)) {
     if (key == "apparatus" || is_reading(key, test.apparatus)) continue;
@@ -152,10 +188,12 @@ Test read_test(const Node& node, const std::string& label, bool measured) {
     test.overrides.push_back(full + "=" + override_text(value, key));
   }
   test.words = words_of(test);
+  if (comes_to_rest(test.apparatus) && !scene::find(node, "duration") && !scene::find(node, "test.duration"))
+    test.overrides.push_back(until_it_rests);
   for (const Known& known : known_readings(test.apparatus)) {
     if (measured)
       read_measurement(node, known, test);
-    else
+    else if (known.usual)
       test.readings.push_back({known.key, known.result, 0.0, 0.0, known.logarithmic});
   }
   if (test.readings.empty())

@@ -11,6 +11,9 @@
 
 namespace tremie::calibration {
 
+/// What is measured is read when the concrete rests, however long that takes.
+inline constexpr const char* until_it_rests = "test.duration=100000 s";
+
 /// One number read off a test.
 struct Measurement {
   std::string key;                  ///< "spread"

@@ -23,8 +23,13 @@ struct Candidate {
 std::vector<Candidate> candidates() {
   std::vector<Candidate> list;
   for (const char* rest : {"0", "60", "240", "600"})
-    list.push_back(
-        {"slump flow", "slump_flow", {fmt::format("test.rest={} s", rest)}, "spread_mm", "mm", 15.0, 0.0});
+    list.push_back({"slump flow",
+                    "slump_flow",
+                    {fmt::format("test.rest={} s", rest), until_it_rests},
+                    "spread_mm",
+                    "mm",
+                    15.0,
+                    0.0});
   list.push_back({"slump flow", "slump_flow", {"test.rest=0 s"}, "t500_s", "s", 0.2, 0.0});
   list.push_back({"L-box", "l_box", {"model.cell=20 mm"}, "passing_ratio", "", 0.03, 0.0});
   for (const char* rest : {"60", "240"})

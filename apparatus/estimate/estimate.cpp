@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "apparatus/estimate/closed_forms.hpp"
+#include "apparatus/scene/input_error.hpp"
+#include "apparatus/scene/units.hpp"
 
 namespace tremie::estimate {
 namespace {
@@ -33,8 +35,13 @@ Grid grid_of(const SlumpTable& table, double density) {
 /// Minus twice the logarithm of the likelihood, its constant left out.
 double misfit(const SlumpTable& table, const Measured& m, double tau_0, double mu) {
   const TableReading reading = interpolate(table, tau_0, mu, m.density);
-  const double spread_error = std::hypot(m.spread_error, table_spread_error);
-  double sum = std::pow((m.spread - reading.spread) / spread_error, 2);
+  double sum = 0.0;
+  if (m.spread)
+    sum += std::pow(
+        (*m.spread - reading.spread) / std::hypot(m.spread_error, table_spread_error * reading.spread), 2);
+  if (m.slump)
+    sum += std::pow(
+        (*m.slump - reading.slump) / std::hypot(m.slump_error, table_slump_error * table.mould.height), 2);
   if (!m.t500) return sum;
   if (!reading.t500) return INFINITY;
   const double t500_error = std::hypot(m.t500_error, table_t500_error * *reading.t500);
@@ -125,32 +132,57 @@ bool beyond(const std::vector<double>& weights, double best) {
 /// Whether yield stresses that the spread allows lie where the table has no t500: next to its entries that do not reach
 /// 500 mm. The interval would end there, whatever the concrete.
 bool cut_off(const SlumpTable& table, const Measured& m, const Grid& grid, const Marginals& at) {
-  const double mu = grid.mu.at(at.best_mu), error = std::hypot(m.spread_error, table_spread_error);
+  if (!m.spread) return false;
+  const double mu = grid.mu.at(at.best_mu),
+               error = std::hypot(m.spread_error, table_spread_error * *m.spread);
   for (std::size_t i = 0; i < side; ++i) {
     const double tau_0 = grid.tau_0.at((static_cast<double>(i) + 0.5) / side);
     const TableReading reading = interpolate(table, tau_0, mu, m.density);
-    if (!reading.t500 && std::abs(reading.spread - m.spread) < error) return true;
+    if (!reading.t500 && std::abs(reading.spread - *m.spread) < error) return true;
   }
   return false;
 }
 
+/// "this spread and this t500"
+std::string words_of(const Measured& m) {
+  std::string words;
+  for (const auto& [given, name] : {std::pair{m.spread, "spread"}, {m.slump, "slump"}, {m.t500, "t500"}})
+    if (given) words += (words.empty() ? "this " : " and this ") + std::string(name);
+  return words;
+}
+
+/// "a spread of 980 mm lies outside of the table, 210 to 930 mm", or nothing.
+std::string outside(const char* name, const std::optional<double>& measured,
+                    const std::vector<double>& values) {
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  if (!measured || (*measured >= *low && *measured <= *high)) return {};
+  return fmt::format("a {} of {:.0f} mm lies outside of the table, {:.0f} to {:.0f} mm", name,
+                     1e3 * *measured, 1e3 * std::max(0.0, *low), 1e3 * *high);
+}
+
+std::string outside(const SlumpTable& table, const Measured& m) {
+  const std::string spread = outside("spread", m.spread, table.spread);
+  return spread.empty() ? outside("slump", m.slump, table.slump) : spread;
+}
+
+std::string told(double value) { return scene::rounded(value, 3); }
+
 void check(const SlumpTable& table, const Measured& m, const Grid& grid, const Marginals& at,
            MixEstimate& e) {
-  const auto [low, high] = std::minmax_element(table.spread.begin(), table.spread.end());
-  if (m.spread < *low || m.spread > *high)
-    e.reasons.push_back(fmt::format("a spread of {:.0f} mm lies outside of the table, {:.0f} to {:.0f} mm",
-                                    1e3 * m.spread, 1e3 * *low, 1e3 * *high));
+  if (const std::string reason = outside(table, m); !reason.empty())
+    e.reasons.push_back(reason);
   else if (at.least > far_off * far_off)
     e.reasons.push_back(
-        fmt::format("no mix of the table, {:.3g} to {:.3g} Pa and {:.3g} to {:.3g} Pa.s, has this spread and "
-                    "this t500: the nearest is {:.1f} standard errors off",
-                    grid.tau_0.low, grid.tau_0.high, grid.mu.low, grid.mu.high, std::sqrt(at.least)));
+        fmt::format("no mix of the table, {} to {} Pa and {} to {} Pa.s, has {}: the nearest is {:.1f} "
+                    "standard errors off",
+                    told(grid.tau_0.low), told(grid.tau_0.high), told(grid.mu.low), told(grid.mu.high),
+                    words_of(m), std::sqrt(at.least)));
   else if (beyond(at.tau_0, at.best_tau_0))
-    e.reasons.push_back(fmt::format("the yield stress may lie outside of the table, {:.3g} to {:.3g} Pa",
-                                    grid.tau_0.low, grid.tau_0.high));
+    e.reasons.push_back(fmt::format("the yield stress may lie outside of the table, {} to {} Pa",
+                                    told(grid.tau_0.low), told(grid.tau_0.high)));
   else if (m.t500 && beyond(at.mu, at.best_mu))
-    e.reasons.push_back(fmt::format("the viscosity may lie outside of the table, {:.3g} to {:.3g} Pa.s",
-                                    grid.mu.low, grid.mu.high));
+    e.reasons.push_back(fmt::format("the viscosity may lie outside of the table, {} to {} Pa.s",
+                                    told(grid.mu.low), told(grid.mu.high)));
   if (m.density < least_density || m.density > most_density)
     e.reasons.push_back(
         fmt::format("a density of {:.0f} kg/m3 lies outside of what the table serves, {:.0f} to {:.0f} kg/m3",
@@ -166,21 +198,22 @@ static MixEstimate without_t500(const SlumpTable& table, Measured m) {
   e.reasons.push_back(
       fmt::format("t500 of a spread of {:.0f} mm hangs on its last millimetres, and the table ends there: it "
                   "was left out",
-                  1e3 * m.spread));
+                  1e3 * *m.spread));
   return e;
 }
 
 MixEstimate estimate(const SlumpTable& table, const Measured& m) {
   MixEstimate e;
-  e.tau_0_thin_layer = thin_layer_yield_stress(m.spread, m.density);
-  e.tau_0_plug = plug_yield_stress(m.spread, m.density);
+  if (m.spread) {
+    e.tau_0_thin_layer = thin_layer_yield_stress(*m.spread, m.density, table.mould.volume);
+    e.tau_0_plug = plug_yield_stress(*m.spread, m.density, table.mould.volume);
+  }
   const Grid grid = grid_of(table, m.density);
   Marginals at = marginals_of(table, m, grid);
   if (m.t500 && std::isfinite(at.least)) refine(table, m, grid, at);
   if (m.t500 && at.least < far_off * far_off && cut_off(table, m, grid, at)) return without_t500(table, m);
   check(table, m, grid, at, e);
-  const auto [low, high] = std::minmax_element(table.spread.begin(), table.spread.end());
-  if (m.spread < *low || m.spread > *high) return e;
+  if (!outside(table, m).empty()) return e;
   if (!std::isfinite(at.least)) {
     e.reasons.push_back("no mix of the table reaches 500 mm and has this spread");
     return e;
@@ -188,6 +221,19 @@ MixEstimate estimate(const SlumpTable& table, const Measured& m) {
   e.tau_0 = interval_of(at.tau_0, grid.tau_0, m.t500 ? std::optional(at.best_tau_0) : std::nullopt);
   if (m.t500) e.mu = interval_of(at.mu, grid.mu, at.best_mu);
   return e;
+}
+
+void check_readings(const Measured& m, const Mould& mould) {
+  if (!m.spread && !m.slump)
+    throw scene::InputError("spread: is missing, and so is slump; one of them is needed");
+  if (m.spread && *m.spread <= mould.foot)
+    throw scene::InputError(
+        fmt::format("spread: must be more than the cone's {:.0f} mm at its bottom", 1e3 * mould.foot));
+  if (m.slump && *m.slump >= mould.height)
+    throw scene::InputError(
+        fmt::format("slump: must be less than the cone's height, {:.0f} mm", 1e3 * mould.height));
+  if (m.t500 && mould.name != Mould{}.name)
+    throw scene::InputError("t500: is read with the Abrams cone alone");
 }
 
 }  // namespace tremie::estimate

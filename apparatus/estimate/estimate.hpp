@@ -1,6 +1,7 @@
 #pragma once
 
-// Yield stress and plastic viscosity from a slump flow and its t500, by the table.
+// Yield stress and plastic viscosity from what a mould of concrete left at rest, spread, slump or both, and from its t500, by
+// the table.
 
 #include <optional>
 #include <string>
@@ -10,9 +11,12 @@
 
 namespace tremie::estimate {
 
-/// SI; errors are one standard error.
+/// SI; errors are one standard error. Spread or slump, or both.
 struct Measured {
-  double spread = 0.0, spread_error = 0.015;
+  std::optional<double> spread = {};  ///< at rest
+  double spread_error = 0.015;
+  std::optional<double> slump = {};
+  double slump_error = 0.01;
   std::optional<double> t500 = {};
   double t500_error = 0.2;
   double density = 2400.0;
@@ -24,9 +28,13 @@ struct Interval {
 
 struct MixEstimate {
   std::optional<Interval> tau_0, mu;  ///< empty where the table does not reach; mu also without t500
-  double tau_0_thin_layer = 0.0, tau_0_plug = 0.0;  ///< closed forms
-  std::vector<std::string> reasons;                 ///< why it is not to be trusted
+  std::optional<double> tau_0_thin_layer, tau_0_plug;  ///< closed forms, by the spread
+  std::vector<std::string> reasons;                    ///< why it is not to be trusted
 };
+
+/// Throws scene::InputError for a reading that no concrete leaves in this mould, or that is not read with it, and where there
+/// is neither spread nor slump.
+void check_readings(const Measured& measured, const Mould& mould);
 
 /// Every tau_0 and mu of the table is as likely as any other before the measurement, on log scales.
 MixEstimate estimate(const SlumpTable& table, const Measured& measured);

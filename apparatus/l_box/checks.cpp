@@ -7,6 +7,7 @@
 
 #include "apparatus/common/readings.hpp"
 #include "apparatus/l_box/reading.hpp"
+#include "apparatus/run/run_checks.hpp"
 
 namespace tremie::l_box {
 namespace {
@@ -71,6 +72,11 @@ std::string wrong_level(const View& j) {
       stopped_early ? "cells at the channel's end are not full; " : "");
 }
 
+std::string inertia(const View& j) {
+  return experiment::inertia_on_a_cell(j.scene.mix, j.scene.model.law, fastest_front(j.series),
+                                       j.scene.model.cell[1]);
+}
+
 std::string no_number(const View& v) {
   return std::isfinite(v.r.h1) ? std::string{} : "H1 is not a finite number";
 }
@@ -111,8 +117,9 @@ std::optional<double> ratio_change(const std::vector<Sample>& series) {
 }
 
 void add_reasons(const Scene& scene, Outcome& outcome) {
-  scene::add_reasons<View>({inertia_at_the_bars, wide_cells_at_the_bars, few_cells, wrong_level, no_number},
-                           {scene, outcome}, outcome.checks.reasons);
+  scene::add_reasons<View>(
+      {inertia_at_the_bars, wide_cells_at_the_bars, few_cells, wrong_level, inertia, no_number},
+      {scene, outcome}, outcome.checks.reasons);
 }
 
 }  // namespace tremie::l_box

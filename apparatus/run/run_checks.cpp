@@ -94,4 +94,16 @@ TREMIE_CHECKS_IN(Polar)
 TREMIE_CHECKS_IN(ThreeD)
 #endif
 
+std::string inertia_on_a_cell(const Mix& mix, const YieldLaw& law, double speed, double h) {
+  constexpr double most = 10.0;
+  const double viscous = mix.mu + viscosity(law, std::max(speed, 1e-9) / h, 0.0);
+  const double reynolds = mix.density * speed * h / viscous;
+  if (!(reynolds > most)) return {};
+  return fmt::format(
+      "inertia rules the flow: at {:.2g} m/s the Reynolds number of a cell is {:.0f}, more than {:g}, and "
+      "the "
+      "damping of cells and steps decides how far it goes: a smaller model.cell upwards",
+      speed, reynolds, most);
+}
+
 }  // namespace tremie::experiment

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "apparatus/slump_flow/slump_flow.hpp"
+#include "libmpm/constitutive/constants.hpp"
 
 namespace tremie::slump_flow {
 namespace {
@@ -120,6 +121,20 @@ bool near_500(const cone::Scene& scene, const Results& r) {
   return stopped(r) && cone::is_abrams(scene.cone, true) && std::abs(r.spread - 0.5) < 0.014;
 }
 
+/// EN 12350-8's plate.
+constexpr double plate = 0.9;
+
+bool beyond_the_plate(const cone::Scene& scene, const Results& r) {
+  return cone::is_abrams(scene.cone, true) && r.spread > plate;
+}
+
+/// Whether the mould is so small, and its concrete so fluid, that the spread depends on the lift: while the cone rises, what
+/// runs out of it has come to rest already.
+bool hangs_on_the_lift(const cone::Scene& scene) {
+  return cone::scale_of(scene.cone) < 0.6 &&
+         scene.mix.tau_0 < 0.05 * scene.mix.density * tremie::gravity * scene.cone.height;
+}
+
 /// What a reader must know who has no measurement to compare with, or a spread that is hard to read.
 std::vector<std::string> remarks_on(const cone::Scene& scene, const std::optional<Measurement>& measured,
                                     const Results& r) {
@@ -137,6 +152,14 @@ std::vector<std::string> remarks_on(const cone::Scene& scene, const std::optiona
         fmt::format("The destructuration α (here {:.3g}) decides how much of what built up at rest is left "
                     "after the lift. It is seldom measured: see what 0.01 and 1 give.",
                     *alpha));
+  if (beyond_the_plate(scene, r))
+    remarks.push_back(
+        "The spread is wider than the standard's plate of 900 mm: a laboratory would see it run off.");
+  if (hangs_on_the_lift(scene))
+    remarks.push_back(
+        "A small cone's spread depends on its lift (10 Pa, 0.3 Pa·s in the Haegermann cone: 291 mm where it "
+        "is gone at once, 278 at 15 cm/s, 249 at 1 cm/s): "
+        "give test.lift_speed as it was done.");
   if (near_500(scene, r))
     remarks.push_back(
         "The spread ends so near to 500 mm that t500, or whether there is one, hangs on its last "
@@ -183,7 +206,10 @@ const std::vector<Reading<View>>& readings() {
   using S = const cone::Sample&;
   static const auto table = [] {
     Reading<View> spread = cone::spread_row<View>(), t500 = cone::t500_row<View>();
-    spread.remark = [](V v) { return "   " + class_text(v.scene, v.r, v.status); };
+    spread.remark = [](V v) {
+      return "   " + class_text(v.scene, v.r, v.status) +
+             (beyond_the_plate(v.scene, v.r) ? ", wider than the plate of 900 mm" : "");
+    };
     spread.answer = [](V v) { return is_stiff(v) ? std::nullopt : std::optional(std::string()); };
     t500.none = [](V v) {
       return cone::is_abrams(v.scene.cone, true) ? not_reached(v) : std::string("not the Abrams cone");

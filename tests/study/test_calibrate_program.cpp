@@ -83,5 +83,27 @@ TEST(Calibrate, MeasurementsThatContradictEachOtherAreNamed) {
   EXPECT_NE(result.text.find("standard errors"), std::string::npos) << result.text;
 }
 
+// 54 Pa and 35.8 Pa.s spread 537 mm, have 1.9 s to 500 mm and slump some 242 mm: a slump of 150 mm beside them is the one that
+// lies, and the other two do not contradict each other. What it should have been is what it is told to be.
+TEST(Calibrate, TheReadingThatTheOthersForecastElsewhereIsNamed) {
+  const test::TemporaryFolder folder;
+  test::write_file(
+      folder / "LAB.toml",
+      "[[measured]]\napparatus = \"slump_flow\"\nspread = \"537 mm\"\nspread_error = \"15 mm\"\n"
+      "slump = \"150 mm\"\nslump_error = \"10 mm\"\nt400 = \"0.75 s\"\nt400_error = \"0.1 s\"\n" +
+          unknown);
+  const auto result = test::shell("'" TREMIE_PROGRAM "' calibrate LAB.toml --out cal", folder.path());
+  EXPECT_EQ(result.code, 3) << result.text;
+  const auto results = nlohmann::json::parse(test::read_file(folder / "cal/summary.json"))["results"];
+  bool named = false;
+  for (const auto& c : results["contradictions"]) {
+    if (c["reading"] != "measured[0].slump") continue;
+    named = true;
+    EXPECT_NEAR(c["forecast"].get<double>(), 242.0, 6.0);
+    EXPECT_GT(c["ci99"][0], 150.0);
+  }
+  EXPECT_TRUE(named) << results["contradictions"].dump();
+}
+
 }  // namespace
 }  // namespace tremie

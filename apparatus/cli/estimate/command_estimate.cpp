@@ -1,4 +1,4 @@
-// tremie estimate: yield stress and plastic viscosity from a slump flow, in milliseconds.
+// tremie estimate: yield stress and plastic viscosity from a spread or a slump, in milliseconds.
 
 #include <fmt/format.h>
 
@@ -23,20 +23,30 @@ namespace {
 using scene::Dimension;
 
 struct EstimateOptions {
-  std::string spread, t500, density, spread_error, t500_error, chart;
+  std::string cone, spread, slump, t500, density, spread_error, slump_error, t500_error, chart;
   bool json = false;
 };
 
-estimate::Measured measured_of(const EstimateOptions& o) {
+void needs(const char* error, const std::string& given, const char* of, const std::string& value) {
+  if (!given.empty() && value.empty()) throw scene::InputError(fmt::format("{}: goes with {}", error, of));
+}
+
+estimate::Measured measured_of(const EstimateOptions& o, const estimate::Mould& mould) {
   estimate::Measured m;
-  const auto sensible = [](double spread) { return spread > 0.2 && spread < 2.0; };
-  m.spread = *quantity("--spread", o.spread, Dimension::length, sensible);
-  if (m.spread <= 0.2) throw scene::InputError("--spread: must be more than the cone's 200 mm at its bottom");
+  const auto sensible = [&](double length) {
+    return length > 0.2 * mould.height && length < 10.0 * mould.foot;
+  };
+  m.spread = quantity("--spread", o.spread, Dimension::length, sensible);
+  m.slump = quantity("--slump", o.slump, Dimension::length, sensible);
   m.t500 = quantity("--t500", o.t500, Dimension::time);
   m.density = quantity("--density", o.density, Dimension::density).value_or(m.density);
   m.spread_error = quantity("--spread-error", o.spread_error, Dimension::length).value_or(m.spread_error);
+  m.slump_error = quantity("--slump-error", o.slump_error, Dimension::length).value_or(m.slump_error);
   m.t500_error = quantity("--t500-error", o.t500_error, Dimension::time).value_or(m.t500_error);
-  if (!m.t500 && !o.t500_error.empty()) throw scene::InputError("--t500-error: goes with --t500");
+  needs("--spread-error", o.spread_error, "--spread", o.spread);
+  needs("--slump-error", o.slump_error, "--slump", o.slump);
+  needs("--t500-error", o.t500_error, "--t500", o.t500);
+  estimate::check_readings(m, mould);
   return m;
 }
 
@@ -53,13 +63,20 @@ void print_text(const EstimateOptions& o, const estimate::Measured& m, const est
   print_interval("yield stress", e.tau_0, "Pa", "not in the table");
   print_interval("plastic viscosity", e.mu, "Pa.s",
                  o.t500.empty() ? "takes --t500" : "not told by this t500");
-  fmt::print("{:<24} {} Pa (thin layer at rest, Roussel and Coussot)\n", "by the closed forms",
-             scene::rounded(e.tau_0_thin_layer, 3));
-  fmt::print("{:<24} {} Pa (with the plug's normal stress)\n", "", scene::rounded(e.tau_0_plug, 3));
-  fmt::print(
-      "{:<24} 95 %; {:.0f} kg/m3, spread read to {:.3g} mm{} (one standard error), a floor that holds\n",
-      "intervals", m.density, 1e3 * m.spread_error,
-      m.t500 ? fmt::format(" and t500 to {:.3g} s", m.t500_error) : "");
+  if (m.spread) {
+    fmt::print("{:<24} {} Pa (thin layer at rest, Roussel and Coussot)\n", "by the closed forms",
+               scene::rounded(*e.tau_0_thin_layer, 3));
+    fmt::print("{:<24} {} Pa (with the plug's normal stress)\n", "", scene::rounded(*e.tau_0_plug, 3));
+  }
+  std::string read;
+  const auto add = [&](bool given, const char* name, double error, const char* unit) {
+    if (given) read += fmt::format(", {} read to {:.3g} {}", name, error, unit);
+  };
+  add(m.spread.has_value(), "spread", 1e3 * m.spread_error, "mm");
+  add(m.slump.has_value(), "slump", 1e3 * m.slump_error, "mm");
+  add(m.t500.has_value(), "t500", m.t500_error, "s");
+  fmt::print("{:<24} 95 %; {:.0f} kg/m3{} (one standard error), at rest, a floor that holds\n", "intervals",
+             m.density, read);
 }
 
 /// The published mixes of reference_data that have a yield stress and a viscosity.
@@ -108,13 +125,16 @@ void draw_chart(const EstimateOptions& options, const estimate::SlumpTable& tabl
 }
 
 int run_estimate(const EstimateOptions& options) {
-  const auto table = estimate::find_slump_table(scene::data_folders());
-  if (options.spread.empty()) {
-    if (options.chart.empty()) throw scene::InputError("--spread: is missing; without it, --chart alone");
+  const auto table = estimate::find_slump_table(scene::data_folders(), options.cone);
+  if (!options.chart.empty() && options.cone != estimate::Mould{}.name)
+    throw scene::InputError("--chart: is drawn of the Abrams cone alone");
+  if (options.spread.empty() && options.slump.empty()) {
+    if (options.chart.empty())
+      throw scene::InputError("--spread: is missing, and so is --slump; without both, --chart alone");
     draw_chart(options, table, {});
     return done;
   }
-  const auto measured = measured_of(options);
+  const auto measured = measured_of(options, table.mould);
   const auto result = estimate::estimate(table, measured);
   if (!options.chart.empty()) draw_chart(options, estimate::at_density(table, measured.density), result);
   options.json ? fmt::print("{}\n", estimate::estimate_json(result)) : print_text(options, measured, result);
@@ -126,17 +146,23 @@ int run_estimate(const EstimateOptions& options) {
 
 void add_command_estimate(CLI::App& app, int& exit_code) {
   auto o = std::make_shared<EstimateOptions>();
-  Command command(app, "estimate", "Yield stress and plastic viscosity from a slump flow, by a table");
-  command.option("--spread", o->spread, "Slump flow: \"590 mm\"");
+  o->cone = estimate::Mould{}.name;
+  Command command(app, "estimate", "Yield stress and plastic viscosity from a spread or a slump, by a table");
+  command.option("--spread", o->spread, "Spread at rest: \"590 mm\"");
+  command.option("--slump", o->slump, "Slump: \"120 mm\"");
   command.option("--t500", o->t500, "Time to 500 mm from the start of the lift: \"2.5 s\"");
+  command.option("--cone", o->cone, "Mould, of reference_data/cones: \"haegermann\"; \"abrams\" by default");
   command.option("--density", o->density, "\"2400 kg/m3\" by default");
   command.option("--spread-error", o->spread_error, "One standard error, \"15 mm\" by default");
+  command.option("--slump-error", o->slump_error, "One standard error, \"10 mm\" by default");
   command.option("--t500-error", o->t500_error, "One standard error, \"0.2 s\" by default");
   command.option(
       "--chart", o->chart,
       "Draw a rheograph, FILE.svg or FILE.pdf: contours of slump flow and t500; without --spread it alone");
   command.flag("--json", o->json, "Print one JSON object");
   command.example("tremie estimate --spread \"590 mm\" --t500 \"2.5 s\"");
+  command.example("tremie estimate --slump \"120 mm\"");
+  command.example("tremie estimate --cone haegermann --spread \"210 mm\" --spread-error \"3 mm\"");
   command.run([o, &exit_code] { exit_code = run_estimate(*o); });
 }
 

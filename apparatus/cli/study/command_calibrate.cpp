@@ -72,6 +72,17 @@ Json readings_json(const Calibration& c) {
   return list;
 }
 
+Json contradictions_json(const Calibration& c) {
+  Json list = Json::array();
+  for (const auto& x : c.contradictions)
+    list.push_back({{"reading", x.reading},
+                    {"result", x.result},
+                    {"measured", x.measured},
+                    {"forecast", x.forecast},
+                    {"ci99", {x.low, x.high}}});
+  return list;
+}
+
 /// By reading, in the reading's unit; `over_measurement_error` is the largest of their ratios.
 Json emulator_json(const Calibration& c) {
   Json json = Json::object();
@@ -137,6 +148,7 @@ Json results_json(const Lab& lab, const Calibration& c, const std::vector<calibr
           {"next", advice.empty() ? Json(nullptr) : advice_json(lab, advice)},
           {"emulator_error", emulator_json(c)},
           {"readings", readings_json(c)},
+          {"contradictions", contradictions_json(c)},
           {"chi_square", c.chi_square},
           {"posterior_points", c.effective_points},
           {"r_hat", c.r_hat ? Json(*c.r_hat) : Json(nullptr)},

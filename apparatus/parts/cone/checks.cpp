@@ -9,6 +9,7 @@
 #include "apparatus/common/readings.hpp"
 #include "apparatus/parts/cone/cone.hpp"
 #include "apparatus/parts/cone/set_up.hpp"
+#include "apparatus/run/run_checks.hpp"
 
 namespace tremie::cone {
 namespace {
@@ -98,6 +99,17 @@ std::string lifted_by_the_cone(const View& j) {
       1e3 * highest);
 }
 
+double fastest(const std::vector<Sample>& series) {
+  double speed = 0.0;
+  for (const Sample& s : series) speed = std::max(speed, s.max_speed);
+  return speed;
+}
+
+std::string inertia(const View& j) {
+  return experiment::inertia_on_a_cell(j.scene.mix, j.scene.model.law, fastest(j.series),
+                                       j.scene.model.cell[1]);
+}
+
 std::string no_number(const View& v) {
   return std::isfinite(v.r.spread) ? std::string{} : "the spread is not a finite number";
 }
@@ -119,7 +131,7 @@ std::string went_through_the_cone(const View& j) {
 
 void add_reasons(const Scene& scene, Outcome& outcome) {
   scene::add_reasons<View>({too_thin, few_cells, few_points_across, went_through_the_cone,
-                            slow_lift_unverified, narrow_opening, lifted_by_the_cone, no_number},
+                            slow_lift_unverified, narrow_opening, lifted_by_the_cone, inertia, no_number},
                            {scene, outcome}, outcome.checks.reasons);
 }
 

@@ -1,7 +1,12 @@
 #include <fmt/format.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "apparatus/common/shared_keys.hpp"
 #include "apparatus/parts/cone/readings.hpp"
+#include "apparatus/parts/cone/rest_profile.hpp"
+#include "libmpm/constitutive/constants.hpp"
 
 namespace tremie::cone {
 
@@ -39,6 +44,23 @@ Cone cone_of(const Values& values) {
           values.number("cone.height")};
 }
 
+/// Rows of cells that the concrete is thick, on average, where it will rest, in sections: with fewer its spread depends on them.
+constexpr double rows_at_rest = 4.0;
+
+/// The mean depth [m] of what the cone holds where it will rest on a floor that holds it; infinite without a yield stress.
+double depth_at_rest(const Values& values) {
+  const double tau_0 = values.number("mix.yield_stress"), V = volume(cone_of(values));
+  if (tau_0 == 0.0) return INFINITY;
+  const double R = rest_radius(V, tau_0 / (values.number("mix.density") * gravity));
+  return V / (std::numbers::pi * R * R);
+}
+
+/// Rounded down to two digits.
+double rounded_down(double value) {
+  const double per_unit = std::pow(10.0, 1.0 - std::floor(std::log10(value)));
+  return std::floor(value * per_unit) / per_unit;
+}
+
 /// Three dimensions start from cells and points that a desk computer carries; a scene that gives one of the
 /// two is taken at its word. The body stretches across and is pressed flat: four points across a cell become
 /// two, and with two at the start the spread is 6 % too far on any cells (three_d.md). Cells are as large to any cone as
@@ -47,12 +69,17 @@ void settle_model(Values& values) {
   const bool section = values.word("model.space") == "axisymmetric",
              implicit = values.word("model.scheme") == "implicit";
   const double scale = scale_of(cone_of(values));
-  if (section && scale == 1.0) return;
-  const char* note = section ? "the default, for the size of the cone" : "the default in three dimensions";
   std::vector<double> cell = section    ? values.numbers("model.cell")
                              : implicit ? std::vector{0.014, 0.007}
                                         : std::vector{0.015};
   for (double& h : cell) h *= scale;
+  const double most = section && implicit ? depth_at_rest(values) / rows_at_rest : INFINITY;
+  const bool thin = cell.back() > most;
+  if (thin) cell = {cell.front(), rounded_down(most)};
+  if (section && scale == 1.0 && !thin) return;
+  const char* note = !section ? "the default in three dimensions"
+                     : thin   ? "the default, for the depth at rest"
+                              : "the default, for the size of the cone";
   if (!values.given("model.cell")) values.set_numbers("model.cell", cell, Layer::fallback, note);
   if (section) return;
   const std::vector<double> points = implicit ? std::vector{4.0, 2.0} : std::vector{2.0};

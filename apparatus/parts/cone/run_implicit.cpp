@@ -16,6 +16,9 @@ namespace {
 /// is not, or what they leave would keep it from coming to rest.
 constexpr double flowing_tolerance = 4e-3, creeping = 1e-3;  // [1], [m/s]
 
+/// Share of the points that may lie alone before the front of a film that creeps: a long step carries none of them away.
+constexpr double detached_share = 0.005;
+
 /// A step of the creep at the end, as a share of the time that went before: what is left to flow goes like a power of it.
 constexpr double longest_creep_step = 0.05;
 
@@ -42,6 +45,7 @@ Outcome run_implicit_in(const Scene& scene, const scene::Observer& observer) {
             settings.time_left = experiment::without_sliver(left, body.dt * (1.0 + 1e-9));
             settings.fixed_dt = experiment::fixed_step(scene.model, left);
             settings.dt_longest = longest_creep_step * body.time;
+            settings.detached = flows ? 0.0 : detached_share;
             settings.dt_max = std::min(longest, longest_step_beside_the_cone(scene, body.time));
             if constexpr (D == 3)
               settings.admm.tolerance = flows ? flowing_tolerance : StepSettings{}.admm.tolerance;

@@ -18,8 +18,11 @@ namespace tremie::cone {
 
 inline constexpr double standard_t500 = 0.5;  ///< diameter of the t500 circle [m]
 
+/// Cells that are flat for a thin film hold as many more points across.
 inline double spread_of(const Scene& scene, const Points<2>& points) {
-  return spread(points, scene.model.cell[0]);
+  const auto [across, up] = scene.model.cell;
+  const double flat = std::max(1.0, 0.5 * across / up);
+  return spread(points, across, static_cast<std::size_t>(std::lround(least_company * flat)));
 }
 inline double spread_of(const Scene& scene, const Points<3>& points) {
   return spread(points, scene.model.cell[0], is_quarter(scene));

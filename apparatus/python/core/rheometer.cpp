@@ -190,10 +190,12 @@ py::object dict_of(const std::optional<estimate::Interval>& i) {
   return py::dict("value"_a = i->value, "ci95"_a = py::make_tuple(i->low, i->high));
 }
 
-py::dict estimate_mix(const estimate::Measured& measured) {
+/// The same refusals as the command's.
+py::dict estimate_mix(const estimate::Measured& measured, const std::string& cone) {
   using namespace py::literals;
-  const auto e = unlocked(
-      [&] { return estimate::estimate(estimate::find_slump_table(scene::data_folders()), measured); });
+  const auto table = estimate::find_slump_table(scene::data_folders(), cone);
+  estimate::check_readings(measured, table.mould);
+  const auto e = unlocked([&] { return estimate::estimate(table, measured); });
   return py::dict("yield_stress_Pa"_a = dict_of(e.tau_0), "plastic_viscosity_Pa_s"_a = dict_of(e.mu),
                   "yield_stress_thin_layer_law_Pa"_a = e.tau_0_thin_layer,
                   "yield_stress_with_plug_stress_Pa"_a = e.tau_0_plug, "reasons"_a = e.reasons);
@@ -209,8 +211,8 @@ void add_rheometer(py::module_& module) {
       .def(py::init(&thixotropy_of), "A_thix"_a, "alpha"_a, "kinetics"_a, "gamma_c"_a, "exponent"_a,
            "saturation"_a);
   py::class_<estimate::Measured>(module, "Measured")
-      .def(py::init<double, double, Optional, double, double>(), "spread"_a, "spread_error"_a, "t500"_a,
-           "t500_error"_a, "density"_a);
+      .def(py::init<Optional, double, Optional, double, Optional, double, double>(), "spread"_a,
+           "spread_error"_a, "slump"_a, "slump_error"_a, "t500"_a, "t500_error"_a, "density"_a);
   module.def("quantity", &quantity, "name"_a, "text"_a, "si_unit"_a);
   module.def("fit_options", &option_rows);
   module.def("fit", [](bool is_decay, const Numbers& x, const Numbers& torque, const py::dict& values) {
@@ -224,7 +226,7 @@ void add_rheometer(py::module_& module) {
   module.def("torques", &torques, "tau_0"_a, "mu"_a, "omega"_a, "instrument"_a);
   module.def("speeds", &speeds, "tau_0"_a, "mu"_a, "torque"_a, "instrument"_a);
   module.def("flocculation", &flocculation);
-  module.def("estimate", &estimate_mix);
+  module.def("estimate", &estimate_mix, "measured"_a, "cone"_a);
 }
 
 }  // namespace tremie::python

@@ -197,30 +197,35 @@ def flocculation(
 
 
 def estimate(
-    spread: Quantity,
+    spread: Optional[Quantity] = None,
     t500: Optional[Quantity] = None,
     *,
+    slump: Optional[Quantity] = None,
+    cone: str = "abrams",
     density: Quantity = "2400 kg/m3",
     spread_error: Quantity = "15 mm",
+    slump_error: Quantity = "10 mm",
     t500_error: Quantity = "0.2 s",
 ) -> Result:
-    """Yield stress and plastic viscosity from a slump flow [m] and its t500 [s], by a table of direct runs.
+    """Yield stress and plastic viscosity from a spread at rest [m], a slump [m] or both, and t500 [s], by a table of direct
+    runs for each mould (a name from reference_data/cones).
 
     The errors are one standard error each. `.results` has yield_stress_Pa and plastic_viscosity_Pa_s (value, ci95;
-    None where the table does not reach, and the viscosity without t500) and two closed forms."""
-    metres = positive("spread", spread, "m")
-    if not 0.2 < metres < 2.0:
-        raise _tremie.InputError(
-            f"spread: {metres:g} m; must be more than the cone's 200 mm at its bottom and less than 2 m "
-            "(a number is in metres: 0.59, or \"590 mm\")"
-        )
+    None where the table does not reach, and the viscosity without t500) and two closed forms by the spread."""
+    for name, value in (("spread", spread), ("slump", slump)):
+        if value is not None and not 0.0 < positive(name, value, "m") < 2.0:
+            raise _tremie.InputError(
+                f'{name}: {positive(name, value, "m"):g} m; must be less than 2 m (a number is in metres: 0.59, or "590 mm")'
+            )
     measured = _tremie.Measured(
-        spread=metres,
+        spread=_optional("spread", spread, "m"),
         spread_error=positive("spread_error", spread_error, "m"),
+        slump=_optional("slump", slump, "m"),
+        slump_error=positive("slump_error", slump_error, "m"),
         t500=_optional("t500", t500, "s"),
         t500_error=positive("t500_error", t500_error, "s"),
         density=positive("density", density, "kg/m3"),
     )
-    results = _tremie.estimate(measured)
+    results = _tremie.estimate(measured, cone)
     summary = {"apparatus": "estimate", "status": "completed", "checks": {"reasons": results.pop("reasons")}}
     return checked(Result({**summary, "results": results}))
