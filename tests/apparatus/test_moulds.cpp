@@ -58,6 +58,22 @@ TEST(Moulds, CellsAreAsLargeToAnyMould) {
   EXPECT_NEAR(scene_of({"model.space=quarter", "cone=half_abrams"}).model.cell[0], 0.007, 1e-12);
 }
 
+// 8 Pa spread to some 840 mm, 9.9 mm thick on average: half of the default 5 mm a cell, so that the film has four rows. On
+// cells of a quarter that height, half as wide, it ended at 845 mm, on those of 5 mm 19 mm short of that.
+TEST(Moulds, CellsAreFlatForWhatWillBeAThinFilm) {
+  const std::vector<std::string> film{"cone=abrams", "mix.yield_stress=8 Pa"};
+  const auto cell = scene_of(film).model.cell;
+  EXPECT_EQ(cell[0], 0.01);
+  EXPECT_NEAR(cell[1], 0.0023, 0.00025);
+  EXPECT_EQ(
+      scene_of({"cone=abrams", "mix.yield_stress=8 Pa", "model.cell=[\"10 mm\", \"5 mm\"]"}).model.cell[1],
+      0.005);
+  EXPECT_EQ(scene_of({"cone=abrams", "mix.yield_stress=0 Pa"}).model.cell[1],
+            0.005);  // no rest, no depth at rest
+  const auto thinner = scene_of({"cone=haegermann", "mix.yield_stress=3 Pa"}).model.cell;
+  EXPECT_LT(thinner[1], 0.3 * thinner[0]);
+}
+
 // Froude's similarity: lengths by 1/2, times by 1/sqrt 2, stresses by 1/2, viscosities by 1/2^1.5, a bulk modulus by 1/2.
 // Steps of a largest length and a speed of rest that do not scale leave a few tenths of a per cent.
 TEST(Moulds, AHalfConeIsTheWholeOneOnItsScale) {

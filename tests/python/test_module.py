@@ -246,6 +246,14 @@ class Rheometer(Folder):
             self.assertEqual(list(result[name]["ci95"]), said[name]["ci95"])
         with self.assertRaisesRegex(tremie.InputError, "spread: .*units"):
             tremie.estimate("590 bar")
+        said = json.loads(program("estimate", "--slump", "120 mm", "--slump-error", "8 mm", "--json").stdout)["results"]
+        result = tremie.estimate(slump=0.12, slump_error="8 mm")
+        self.assertEqual(list(result["yield_stress_Pa"]["ci95"]), said["yield_stress_Pa"]["ci95"])
+        self.assertIsNone(result["plastic_viscosity_Pa_s"])
+        for wrong, message in (({"cone": "marsh", "spread": 0.2}, "marsh.*has no table; allowed: abrams"), ({}, "is missing"),
+                               ({"slump": "310 mm"}, "slump: must be less than the cone's height")):
+            with self.assertRaisesRegex(tremie.InputError, message):
+                tremie.estimate(**wrong)
 
 
 class Messages(Folder):

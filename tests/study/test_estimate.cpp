@@ -6,6 +6,7 @@
 #include "apparatus/estimate/estimate.hpp"
 #include "apparatus/estimate/rheograph.hpp"
 #include "apparatus/registry/registry.hpp"
+#include "apparatus/scene/input_error.hpp"
 
 namespace tremie::estimate {
 namespace {
@@ -71,6 +72,40 @@ TEST(Estimate, TableMeetsDirectRuns) {
     EXPECT_NEAR(e.tau_0->value, tau_0, 0.08 * tau_0);
     EXPECT_NEAR(e.mu->value, mu, 0.08 * mu);
   }
+}
+
+// A slump alone: runs of two stiff mixes are met within what the interval says, whatever their viscosity.
+TEST(Estimate, SlumpGivesTheYieldStressOfStiffMixes) {
+  for (const auto& [tau_0, mu] : {std::pair{520.0, 40.0}, {1050.0, 130.0}}) {
+    const Measured direct = direct_run(tau_0, mu, 2400.0);
+    Measured m;
+    m.slump = direct.slump;
+    const MixEstimate e = estimate(table(), m);
+    EXPECT_TRUE(e.reasons.empty());
+    ASSERT_TRUE(e.tau_0);
+    EXPECT_NEAR(e.tau_0->value, tau_0, 0.08 * tau_0);
+    EXPECT_LT(e.tau_0->low, tau_0);
+    EXPECT_GT(e.tau_0->high, tau_0);
+    EXPECT_FALSE(e.mu || e.tau_0_thin_layer);
+  }
+}
+
+// Each mould's table against a run of its own, by a mix that lies between its nodes: 0.6 % of the spread is what its cells and
+// its nodes differ by.
+TEST(Estimate, OtherMouldsHaveTablesOfTheirOwn) {
+  const std::filesystem::path data = std::filesystem::path(TREMIE_TABLE).parent_path().parent_path();
+  const auto at = [&](const char* name) { return find_slump_table(std::vector{data}, name); };
+  const auto haegermann = at("haegermann");
+  EXPECT_DOUBLE_EQ(haegermann.mould.foot, 0.1);
+  const Measured direct = direct_run(
+      33.0, 4.0, 2100.0, "[cone]\ntop_radius = \"35 mm\"\nbottom_radius = \"50 mm\"\nheight = \"60 mm\"\n");
+  EXPECT_NEAR(interpolate(haegermann, 33.0, 4.0, 2100.0).spread / *direct.spread, 1.0, 0.006);
+  EXPECT_THROW(at("marsh"), scene::InputError);
+  EXPECT_THROW(check_readings({.spread = 0.09}, haegermann.mould), scene::InputError);  // within the foot
+  EXPECT_THROW(check_readings({.slump = 0.06}, haegermann.mould), scene::InputError);   // all of its height
+  EXPECT_THROW(check_readings({.spread = 0.2, .t500 = 1.0}, haegermann.mould),
+               scene::InputError);  // no such reading
+  EXPECT_THROW(check_readings({}, haegermann.mould), scene::InputError);
 }
 
 // The interval is the measurement's: a fourth of the error makes it markedly narrower.

@@ -32,7 +32,7 @@ std::string too_thin(const View& j) {
   const double R = 0.5 * j.r.spread, depth = volume(j.scene.cone) / (std::numbers::pi * R * R);
   const bool in_space = !in_a_section(j.scene) && is_implicit(j.scene);
   const double rows = slides(j.scene, depth) ? 0.5 : j.scene.mix.tau_0 == 0.0 ? 2.0 : in_space ? 1.5 : 1.2;
-  if (depth >= rows * j.scene.model.cell[1]) return {};
+  if (depth >= rows * j.scene.film_cell) return {};
   return fmt::format(
       "the concrete is thinner than {:g} cells, {:.3g} mm on average: a smaller model.cell upwards", rows,
       1e3 * depth);

@@ -45,6 +45,8 @@ struct Scene {
   std::optional<double> lift_speed = 0.15;  ///< [m/s]; empty: the cone is gone at once
   std::optional<Ring> ring;                 ///< in space alone
   Model model;
+  double film_cell =
+      0.005;  ///< height of the cells of a section once the body creeps, for its depth at rest [m]
   double frame_interval = 0.0;  ///< simulated time between frames [s]; 0: chosen (run/run_loop.hpp)
   int threads = 1;
 };

@@ -44,21 +44,24 @@ Cone cone_of(const Values& values) {
           values.number("cone.height")};
 }
 
-/// Rows of cells that the concrete is thick, on average, where it will rest, in sections: with fewer its spread depends on them.
-constexpr double rows_at_rest = 4.0;
+/// Rows of cells that a film is thick, on average, where it will rest. Six rows leave its spread 1 % short; twelve would have
+/// a point in too few of them when the film begins.
+constexpr double rows_at_rest = 8.0;
 
 /// The mean depth [m] of what the cone holds where it will rest on a floor that holds it; infinite without a yield stress.
-double depth_at_rest(const Values& values) {
-  const double tau_0 = values.number("mix.yield_stress"), V = volume(cone_of(values));
-  if (tau_0 == 0.0) return INFINITY;
-  const double R = rest_radius(V, tau_0 / (values.number("mix.density") * gravity));
+double depth_at_rest(const Scene& scene) {
+  if (scene.mix.tau_0 == 0.0) return INFINITY;
+  const double V = volume(scene.cone), R = rest_radius(V, scene.mix.tau_0 / (scene.mix.density * gravity));
   return V / (std::numbers::pi * R * R);
 }
 
-/// Rounded down to two digits.
-double rounded_down(double value) {
-  const double per_unit = std::pow(10.0, 1.0 - std::floor(std::log10(value)));
-  return std::floor(value * per_unit) / per_unit;
+constexpr double default_cell[] = {0.010, 0.005};  ///< of sections, for the Abrams cone [m]
+
+/// Height of the cells once the body creeps. Cells of a scene's own are as flat, to the default, as they were.
+double film_cell_of(const Scene& scene) {
+  const double up = scene.model.cell[1], to_default = up / (default_cell[1] * scale_of(scene.cone));
+  if (scene.model.space != SpaceKind::axisymmetric || scene.model.scheme != SchemeKind::implicit) return up;
+  return std::min(up, to_default * depth_at_rest(scene) / rows_at_rest);
 }
 
 /// Three dimensions start from cells and points that a desk computer carries; a scene that gives one of the
@@ -73,13 +76,8 @@ void settle_model(Values& values) {
                              : implicit ? std::vector{0.014, 0.007}
                                         : std::vector{0.015};
   for (double& h : cell) h *= scale;
-  const double most = section && implicit ? depth_at_rest(values) / rows_at_rest : INFINITY;
-  const bool thin = cell.back() > most;
-  if (thin) cell = {cell.front(), rounded_down(most)};
-  if (section && scale == 1.0 && !thin) return;
-  const char* note = !section ? "the default in three dimensions"
-                     : thin   ? "the default, for the depth at rest"
-                              : "the default, for the size of the cone";
+  if (section && scale == 1.0) return;
+  const char* note = section ? "the default, for the size of the cone" : "the default in three dimensions";
   if (!values.given("model.cell")) values.set_numbers("model.cell", cell, Layer::fallback, note);
   if (section) return;
   const std::vector<double> points = implicit ? std::vector{4.0, 2.0} : std::vector{2.0};
@@ -133,6 +131,7 @@ Scene read_scene(const Values& values) {
   scene.rest_tolerance = values.number("test.rest_tolerance");
   scene.lift_speed = values.number_unless("test.lift_speed", "instant");
   scene.model = read_model(values);
+  scene.film_cell = film_cell_of(scene);
   scene.frame_interval = read_output(values).frame_interval;
   check_cells(values, scene);
   return scene;

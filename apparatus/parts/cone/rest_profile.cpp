@@ -6,10 +6,11 @@
 namespace tremie::cone {
 
 constexpr double pi = std::numbers::pi;
+const double a = std::sqrt(3.0) * pi / 4.0;
 
 // A disc of height 2 a l, and above it, with s = h - a l, the radius r = R - (s^2 - (a l)^2)/(2 l) from s = a l to r = 0.
 double rest_volume(double l, double R) {
-  const double b = std::sqrt(3.0) * pi / 4.0 * l, top = std::sqrt(b * b + 2.0 * l * R);
+  const double b = a * l, top = std::sqrt(b * b + 2.0 * l * R);
   constexpr int n = 200;  // Simpson; the integrand is a polynomial of degree four
   const double ds = (top - b) / n;
   double sum = 0.0;

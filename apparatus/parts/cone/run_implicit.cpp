@@ -19,8 +19,26 @@ constexpr double flowing_tolerance = 4e-3, creeping = 1e-3;  // [1], [m/s]
 /// Share of the points that may lie alone before the front of a film that creeps: a long step carries none of them away.
 constexpr double detached_share = 0.005;
 
+/// Slower than this, and wider out of the Abrams cone, a section spreads as a film, on flat cells [m/s], [m]. t500 is read on the
+/// cells that the flow began on.
+constexpr double film_spread = 0.52;
+constexpr double film_speed = 5e-3;
+
+/// What a flow has left to gain, as a share of its spread, when points are no longer shifted: in a creep of hours that would
+/// push them out of the front of a film, along the floor.
+constexpr double little_left = 0.01;
+
 /// A step of the creep at the end, as a share of the time that went before: what is left to flow goes like a power of it.
 constexpr double longest_creep_step = 0.05;
+
+/// Puts a section's body on cells of another height; what is kept by cells and nodes is forgotten with them.
+void change_cell_height(double h, ImplicitBody<Axisymmetric>& body) {
+  if (body.grid.axes[1].h == h) return;
+  body.grid.axes[1].h = h;
+  body.grid.cell_map = {};
+  body.wall_nodes.clear();
+}
+void change_cell_height(double, ImplicitBody<ThreeD>&) {}
 
 template <class Geometry>
 Outcome run_implicit_in(const Scene& scene, const scene::Observer& observer) {
@@ -31,10 +49,10 @@ Outcome run_implicit_in(const Scene& scene, const scene::Observer& observer) {
   RigidWall<D> wall;
   if (scene.lift_speed) lifted_wall(scene, settings.wall_gap + settings.cfl * scene.model.cell[0], wall);
 
-  const double longest = settings.dt_max;
+  const double longest = settings.dt_max, time_error = settings.time_error;
   Outcome outcome;
   experiment::EnergyWatch energy(experiment::energy_of<Geometry>(body.points, body.mix.K));
-  bool flows = true, cone_gone = false;
+  bool flows = true, is_film = false, near_rest = false, cone_gone = false;
   const experiment::Flow flow{
       .time = [&] { return body.time; },
       .unfinished = [&] { return experiment::has_time_left(body.time, scene.duration); },
@@ -46,16 +64,26 @@ Outcome run_implicit_in(const Scene& scene, const scene::Observer& observer) {
             settings.fixed_dt = experiment::fixed_step(scene.model, left);
             settings.dt_longest = longest_creep_step * body.time;
             settings.detached = flows ? 0.0 : detached_share;
+            settings.particle_shifting.on = scene.model.particle_shifting && !near_rest;
             settings.dt_max = std::min(longest, longest_step_beside_the_cone(scene, body.time));
             if constexpr (D == 3)
               settings.admm.tolerance = flows ? flowing_tolerance : StepSettings{}.admm.tolerance;
             cone_gone = cone_is_gone(scene, body.time, outcome.series.back());
+            if (is_film) {
+              change_cell_height(scene.film_cell, body);
+              const double before = std::min(scene.model.cell[0], scene.model.cell[1]);
+              settings.time_error = time_error * before / body.grid.cell_size_min();  // as long a way
+            }
           },
       .advance =
           [&](Checks& checks, Cost& cost) {
             const StepReport step =
                 implicit_step(body, scene.model.law, settings, cone_gone ? RigidWall<D>{} : wall);
             flows = step.bulk_speed > creeping;
+            near_rest = body.time > first_look * free_fall_time(scene) &&
+                        gain_left(scene, outcome.series, outcome.series.back().time) < little_left;
+            is_film = is_film || (step.bulk_speed < film_speed && (cone_gone || !scene.lift_speed) &&
+                                  outcome.series.back().spread > film_spread * scale_of(scene.cone));
             experiment::count_step(body, step, checks, cost);
             experiment::watch_fixed_step(body, scene.model, step, checks);
             return step;
@@ -76,7 +104,7 @@ Outcome run_implicit_in(const Scene& scene, const scene::Observer& observer) {
       .tell = [&](bool, Checks& checks, Cost&) { energy.tell(checks); },
       .state =
           [&](Archive& archive) {
-            archive(body, energy, flows, outcome.series, outcome.results.through_the_cone,
+            archive(body, energy, flows, is_film, near_rest, outcome.series, outcome.results.through_the_cone,
                     outcome.results.height_scale);
           }};
   experiment::run_experiment(

@@ -18,11 +18,8 @@ namespace tremie::cone {
 
 inline constexpr double standard_t500 = 0.5;  ///< diameter of the t500 circle [m]
 
-/// Cells that are flat for a thin film hold as many more points across.
 inline double spread_of(const Scene& scene, const Points<2>& points) {
-  const auto [across, up] = scene.model.cell;
-  const double flat = std::max(1.0, 0.5 * across / up);
-  return spread(points, across, static_cast<std::size_t>(std::lround(least_company * flat)));
+  return spread(points, scene.model.cell[0]);
 }
 inline double spread_of(const Scene& scene, const Points<3>& points) {
   return spread(points, scene.model.cell[0], is_quarter(scene));
@@ -125,37 +122,48 @@ inline const Sample* line_at(const std::vector<Sample>& series, double time) {
   return line == series.rend() ? nullptr : &*line;
 }
 
-/// The share of its spread that a flow would still gain, as it went on between 0.8 `time` and `time` [s]. Near rest the excess of
-/// the stress over the yield stress, and with it what is left to flow, goes like t^-n, n the law's flow index: the concrete moves
-/// at n/t times what is left. (A Newtonian fluid, whose reach goes like t^(1/8), never comes near to rest by that.) The rate is
-/// that of the mean distance from the axis, which has no grains; what the front gains beside it is told by the second half of
-/// the time.
+/// How much faster than the mean distance the front has grown since a fifth of the time: both by shares. 1 where neither grew
+/// by more than the front's grains.
+inline double front_over_mean(const Sample& now, const Sample& early) {
+  const double grown = now.reach / early.reach - 1.0;
+  return grown > 2e-3 ? std::clamp((now.spread / early.spread - 1.0) / grown, 1.0, 4.0) : 1.0;
+}
+
+/// The share of its spread that a flow would still gain, as it went on in the second half of `time` [s]. Near rest the excess of
+/// the stress over the yield stress, and with it what is left to flow, goes like t^-n, n the law's flow index: what is left is
+/// what was gained since half the time, over 2^n - 1. (A Newtonian fluid, whose reach goes like t^(1/8), never comes near to rest
+/// by that.) It is told by the mean distance from the axis, which has no grains.
 inline double gain_left(const Scene& scene, const std::vector<Sample>& series, double time) {
-  const Sample *now = line_at(series, time), *before = line_at(series, 0.8 * time),
-               *half = line_at(series, 0.5 * time);
-  if (!now || !half || now == before) return 1.0;
-  const double rate = std::abs(now->reach - before->reach) / (now->time - before->time) / now->reach;
-  const double gained = std::abs(now->reach / half->reach - 1.0);
-  const double front =
-      gained > 1e-3 ? std::clamp((now->spread / half->spread - 1.0) / gained, 1.0, 4.0) : 1.0;
-  return front * rate * time / flow_index(scene.model.law);
+  const Sample *now = line_at(series, time), *half = line_at(series, 0.5 * time),
+               *early = line_at(series, 0.2 * time);
+  if (!early || now == half) return 1.0;
+  const double n = flow_index(scene.model.law);
+  // Steps are long: the line before half the time is older than half.
+  const double shrunk = std::pow(now->time / half->time, n) - 1.0;
+  return front_over_mean(*now, *early) * std::abs(now->reach / half->reach - 1.0) / shrunk;
 }
 
 /// A flow is not looked at before, in free falls from the cone's height, of which 0.25 s is the Abrams cone's.
 inline constexpr double first_look = 2.0;
+
+inline double free_fall_time(const Scene& scene) { return std::sqrt(2.0 * scene.cone.height / gravity); }
 
 /// Since when the concrete, free of the cone, rests: since it was within the scene's tolerance of where it would end [s]; empty
 /// while it would gain more. What has swung back and stands for a moment alone moved a little earlier.
 inline std::optional<double> rests_since(const Scene& scene, const std::vector<Sample>& series) {
   const Sample& now = series.back();
   const double tolerance = scene.rest_tolerance;
-  if (now.time < first_look * std::sqrt(2.0 * scene.cone.height / gravity) || !clear_of_the_cone(scene, now))
-    return std::nullopt;
+  if (now.time < first_look * free_fall_time(scene) || !clear_of_the_cone(scene, now)) return std::nullopt;
   const double left = gain_left(scene, series, now.time);
   if (left > tolerance || gain_left(scene, series, 0.8 * now.time) > 2.0 * tolerance) return std::nullopt;
   const double within = (1.0 - tolerance) * (1.0 + left) * now.reach;
-  for (const Sample& s : series)
-    if (s.reach >= within) return s.time;
+  for (std::size_t i = 0; i < series.size(); ++i) {
+    if (series[i].reach < within) continue;
+    const Sample &after = series[i], &before = series[i > 0 ? i - 1 : 0];
+    const double share =
+        after.reach > before.reach ? (within - before.reach) / (after.reach - before.reach) : 1.0;
+    return before.time + share * (after.time - before.time);
+  }
   return now.time;
 }
 

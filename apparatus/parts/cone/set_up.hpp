@@ -69,8 +69,6 @@ inline StepSettings step_settings(const Scene& scene) {
   // The local error chooses the step once the collapse is over; in three dimensions from short ones on.
   const bool section = scene.model.space == SpaceKind::axisymmetric;
   settings.time_error = (section ? 0.002 : 0.005) * scene.model.step_scale * scene.model.step_scale;
-  // As long a way in cells that are flat for a thin film.
-  settings.time_error *= std::max(1.0, 0.5 * scene.model.cell[0] / scene.model.cell[1]);
   if (!section) settings.dt_max = 0.03 * scene.model.step_scale;
   settings.wall_law = scene.floor.contact;
   settings.settle_on_floor = true;

@@ -8,6 +8,10 @@
 namespace tremie::cone {
 namespace {
 
+/// A point belongs to the outline when this many others are less than half a cell behind it; fewer are
+/// strays.
+constexpr std::size_t min_neighbours = 3;
+
 struct Weighted {
   double value, volume, size;
 };
@@ -45,8 +49,7 @@ double outermost_radius(const Points<D>& points) {
 
 /// How far out the concrete reaches by these points: the outermost value that has company, plus half the size
 /// of its point. Empty where none has.
-std::optional<double> reach_of(std::vector<Weighted>& out, double cell,
-                               std::size_t min_neighbours = least_company) {
+std::optional<double> reach_of(std::vector<Weighted>& out, double cell) {
   // Few are strays, so that a look at the outermost is nearly always enough.
   for (std::size_t n = std::min<std::size_t>(out.size(), 32); n > min_neighbours; n = out.size()) {
     std::partial_sort(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(n), out.end(),
@@ -140,11 +143,11 @@ double mean_distance(const Points<3>& points) { return mean_distance_of(points);
 double spread_of_outermost_point(const Points<2>& points) { return 2.0 * outermost_radius(points); }
 double spread_of_outermost_point(const Points<3>& points) { return 2.0 * outermost_radius(points); }
 
-double spread(const Points<2>& points, double cell, std::size_t company) {
-  return outline<2>(points, cell, [=](const std::vector<Outer<2>>& outer, double) {
+double spread(const Points<2>& points, double cell) {
+  return outline<2>(points, cell, [cell](const std::vector<Outer<2>>& outer, double) {
     std::vector<Weighted> radii;
     for (const Outer<2>& point : outer) radii.push_back({point.at[0], 0.0, point.size});
-    return reach_of(radii, cell, company);
+    return reach_of(radii, cell);
   });
 }
 

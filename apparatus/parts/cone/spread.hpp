@@ -9,12 +9,10 @@ namespace tremie::cone {
 /// Twice the outermost point's radius [m].
 double spread_of_outermost_point(const Points<2>& points);
 
-inline constexpr std::size_t least_company = 3;
-
 /// Diameter of the outline seen from above [m]: twice the radius of the outermost point that is no stray,
-/// plus the size of that point. `cell`: cell size across [m]; a point that has fewer than `company` others less than half
-/// of that behind it is a stray.
-double spread(const Points<2>& points, double cell, std::size_t company = least_company);
+/// plus the size of that point. `cell`: cell size across [m], the scale on which a point far from all others
+/// is a stray.
+double spread(const Points<2>& points, double cell);
 
 /// Height of the concrete at its centre [m]: of the points within `radius` of the axis, likewise robust.
 double centre_height(const Points<2>& points, double radius);
