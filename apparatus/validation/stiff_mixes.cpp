@@ -67,14 +67,19 @@ Section stiff_mixes(const Settings& settings) {
     for (std::size_t i = 0; i < readings.size(); ++i)
       section.comparisons.push_back({fmt::format("{:.0f} Pa, {}", yield_stresses[i], c.name), "mm",
                                      slump_of(c, yield_stresses[i]), slump_error(c),
-                                     300.0 - readings[i].value, readings[i].error});
+                                     300.0 - readings[i].value, readings[i].error, "none: one instrument"});
   std::string closed;
   for (const double tau_0 : yield_stresses)
     closed += fmt::format("{}{:.0f}", closed.empty() ? "" : ", ", uniaxial_slump(tau_0));
   section.findings.push_back(fmt::format(
       "Tremie is near the closed form of a yielding cone (Schowalter and Christensen's balance of weight and "
-      "uniaxial stress, √3 τ0 by von Mises): {} mm. Either stiff concrete is no Bingham material, or the "
-      "rheometer, known to read higher than others, reports too high a yield stress.",
+      "uniaxial stress, √3 τ0 by von Mises): {} mm. Both correlations are of one instrument, the BTRHEOM, "
+      "which is known to read higher than others, and rheometers differ by factors, so that they allow no "
+      "verdict. "
+      "Slumps beside yield stresses of the ICAR and ConTec rheometers are published (Hočevar, Kavčič and "
+      "Bokan-Bosiljkov, Građevinar 65 (2013): 26 concretes; Laskar, Materials Research 12 (2009) 75: 30 "
+      "mixes); their "
+      "tables could not be had for this page.",
       closed));
   return section;
 }

@@ -46,6 +46,8 @@ Section torque_records(
     const Settings& settings);  ///< the site's decay; static yield stress of a paste over rest
 Section stiff_mixes(const Settings& settings);  ///< slump against yield stress, two published correlations
 
+Section slump_pairs(const Settings& settings);  ///< slump over flow of 103 concretes; draws slump_pairs.svg
+
 /// Whether alpha_of_pairs can be computed by this build.
 bool has_calibration();
 

@@ -13,9 +13,8 @@
 
 namespace tremie {
 
-/// How often a step that does not converge is tried, each time over half the time; a long one until it is no longer than
-/// the steps of a flow.
-inline constexpr int most_attempts = 4, most_attempts_of_a_long_step = 20;
+/// How often a step that does not converge is tried, each time over half the time.
+inline constexpr int most_attempts = 4;
 
 namespace detail {
 
@@ -41,11 +40,7 @@ StepReport step_from_grid(ImplicitBody<Geometry>& body, const YieldLaw& law, con
   SolveReport solve;
   double dt = choose_dt(body, settings);
   bool good = false;
-  const auto may_try = [&](int attempt) {
-    return attempt < attempts ||
-           (attempts > 1 && dt > settings.dt_max && attempt < most_attempts_of_a_long_step);
-  };
-  for (int attempt = 0; may_try(attempt) && !good; ++attempt) {
+  for (int attempt = 0; attempt < attempts && !good; ++attempt) {
     if (attempt > 0) Form::guess_again(guess, settings, dt, body), dt *= 0.5;
     pose(body, law, settings, wall, v_old, old_nodes, dt, posed);
     solve = solve_step<Form>(*posed, law, settings, body);

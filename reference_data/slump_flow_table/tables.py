@@ -32,10 +32,10 @@ def nodes(low, high, count):
 
 def grid(mould):
     size = scale(mould)
-    if "abrams" in mould:
-        fine = mould == "abrams"
-        return nodes(6 * size, 3000 * size, 28 if fine else 20), nodes(2 * size**1.5, 500 * size**1.5, 15 if fine else 7)
-    return nodes(6 * size, 3000 * size, 20), nodes(1.5 * size**1.5, 250 * size**1.5, 7)  # more fluid ones are ruled by inertia
+    if mould == "abrams":
+        return nodes(6.5, 2200, 26), nodes(2, 500, 12)
+    least = 2 if "abrams" in mould else 1.5  # of the viscosity: more fluid ones are ruled by inertia
+    return nodes(8 * size, 2200 * size, 18), nodes(least * size**1.5, 250 * size**1.5, 6)
 
 
 def values(numbers, unit):

@@ -79,7 +79,8 @@ TEST_F(Program, AnUnknownLevelOfInstructionsIsRefused) {
   const std::string version = "' --version";
   const Result wrong = shell("TREMIE_LEVEL=v3 '" + tremie_program + version, folder_.path());
   EXPECT_EQ(wrong.code, 2);
-  EXPECT_NE(wrong.text.find("\"v3\"; allowed: x86-64-v4 x86-64-v3 x86-64-v2 x86-64"), std::string::npos) << wrong.text;
+  EXPECT_NE(wrong.text.find("\"v3\"; allowed: x86-64-v4 x86-64-v3 x86-64-v2 x86-64"), std::string::npos)
+      << wrong.text;
   EXPECT_EQ(shell("TREMIE_LEVEL=x86-64-v3 '" + tremie_program + version, folder_.path()).code, 0);
 }
 #endif

@@ -61,7 +61,9 @@ TEST(SlumpFlowChecks, InertiaThatCellsDampIsFlagged) {
   EXPECT_FALSE(
       marked_as("Reynolds number of a cell", {"mix.yield_stress=25 Pa", "mix.plastic_viscosity=3 Pa.s"}));
   // The consistency of a shear-thinning law at the rate of a cell.
-  const Mix mix{.density = 2000.0};
+  Mix mix;
+  mix.density = 2000.0;
+  mix.mu = 0.0;
   const HerschelBulkley thinning{.k = 20.0, .n = 0.5};
   EXPECT_EQ(experiment::inertia_on_a_cell(mix, thinning, 0.5, 0.002), "");
   EXPECT_NE(experiment::inertia_on_a_cell(mix, thinning, 5.0, 0.02), "");

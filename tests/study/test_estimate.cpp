@@ -164,7 +164,7 @@ TEST(Estimate, ASpreadNextTo500MillimetresSaysThatItsT500IsNoUse) {
     EXPECT_FALSE(estimate(table(), {.spread = 0.501, .t500 = t500}).reasons.empty());
   EXPECT_FALSE(estimate(table(), {.spread = 0.51, .t500 = 6.0}).reasons.empty());
   EXPECT_TRUE(estimate(table(), {.spread = 0.501}).reasons.empty());
-  EXPECT_TRUE(estimate(table(), {.spread = 0.54, .t500 = 3.0}).reasons.empty());
+  EXPECT_TRUE(estimate(table(), {.spread = 0.55, .t500 = 3.0}).reasons.empty());
 }
 
 }  // namespace

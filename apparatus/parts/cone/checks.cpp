@@ -32,7 +32,7 @@ std::string too_thin(const View& j) {
   const double R = 0.5 * j.r.spread, depth = volume(j.scene.cone) / (std::numbers::pi * R * R);
   const bool in_space = !in_a_section(j.scene) && is_implicit(j.scene);
   const double rows = slides(j.scene, depth) ? 0.5 : j.scene.mix.tau_0 == 0.0 ? 2.0 : in_space ? 1.5 : 1.2;
-  if (depth >= rows * j.scene.film_cell) return {};
+  if (depth >= rows * j.scene.model.cell[1]) return {};
   return fmt::format(
       "the concrete is thinner than {:g} cells, {:.3g} mm on average: a smaller model.cell upwards", rows,
       1e3 * depth);
@@ -93,6 +93,12 @@ std::string lifted_by_the_cone(const View& j) {
   double highest = 0.0;
   for (const Sample& s : j.series) highest = std::max(highest, s.height);
   if (highest <= 1.05 * j.scene.cone.height + 0.5 * j.scene.model.cell[1]) return {};
+  if (j.scene.cone.bottom_radius < j.scene.cone.top_radius)
+    return fmt::format(
+        "the concrete stood {:.3g} mm high: it did not leave the cone, which is narrower below and lifted "
+        "it: a more "
+        "fluid mix, a faster test.lift_speed, or \"instant\"",
+        1e3 * highest);
   return fmt::format(
       "the concrete stood {:.3g} mm high, higher than the cone that it came from, which lifted it: a smaller "
       "model.cell, or another test.lift_speed",
