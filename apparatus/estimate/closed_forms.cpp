@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "apparatus/parts/cone/rest_profile.hpp"
+#include "apparatus/parts/rest_profile.hpp"
 #include "libmpm/constitutive/constants.hpp"
 
 namespace tremie::estimate {
@@ -17,7 +17,7 @@ double plug_yield_stress(double spread, double density, double volume) {
   double low = 1e-9, high = 1.0;  // l [m]; the volume grows with it
   for (int i = 0; i < 100; ++i) {
     const double middle = std::sqrt(low * high);
-    (cone::rest_volume(middle, 0.5 * spread) < volume ? low : high) = middle;
+    (parts::rest_volume(middle, 0.5 * spread) < volume ? low : high) = middle;
   }
   return low * density * gravity;
 }

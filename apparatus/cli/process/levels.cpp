@@ -38,7 +38,8 @@ std::array<Level, 4> levels() {
 void refuse_unknown(std::string_view wanted) {
   const auto all = levels();
   if (std::ranges::any_of(all, [&](const Level& level) { return level.name == wanted; })) return;
-  std::string message = "tremie: TREMIE_LEVEL names an unknown level \"" + std::string(wanted) + "\"; allowed:";
+  std::string message =
+      "tremie: TREMIE_LEVEL names an unknown level \"" + std::string(wanted) + "\"; allowed:";
   for (const Level& level : all) message += ' ' + std::string(level.name);
   message += '\n';
   (void)!write(STDERR_FILENO, message.data(), message.size());

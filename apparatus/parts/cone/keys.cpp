@@ -5,7 +5,7 @@
 
 #include "apparatus/common/shared_keys.hpp"
 #include "apparatus/parts/cone/readings.hpp"
-#include "apparatus/parts/cone/rest_profile.hpp"
+#include "apparatus/parts/rest_profile.hpp"
 #include "libmpm/constitutive/constants.hpp"
 
 namespace tremie::cone {
@@ -51,7 +51,8 @@ constexpr double rows_at_rest = 8.0;
 /// The mean depth [m] of what the cone holds where it will rest on a floor that holds it; infinite without a yield stress.
 double depth_at_rest(const Scene& scene) {
   if (scene.mix.tau_0 == 0.0) return INFINITY;
-  const double V = volume(scene.cone), R = rest_radius(V, scene.mix.tau_0 / (scene.mix.density * gravity));
+  const double V = volume(scene.cone),
+               R = parts::rest_radius(V, scene.mix.tau_0 / (scene.mix.density * gravity));
   return V / (std::numbers::pi * R * R);
 }
 

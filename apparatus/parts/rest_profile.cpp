@@ -1,9 +1,9 @@
-#include "apparatus/parts/cone/rest_profile.hpp"
+#include "apparatus/parts/rest_profile.hpp"
 
 #include <cmath>
 #include <numbers>
 
-namespace tremie::cone {
+namespace tremie::parts {
 
 constexpr double pi = std::numbers::pi;
 const double a = std::sqrt(3.0) * pi / 4.0;
@@ -31,4 +31,4 @@ double rest_radius(double volume, double l) {
   return high;
 }
 
-}  // namespace tremie::cone
+}  // namespace tremie::parts
