@@ -32,13 +32,13 @@ constexpr double little_left = 0.01;
 constexpr double longest_creep_step = 0.05;
 
 /// Puts a section's body on cells of another height; what is kept by cells and nodes is forgotten with them.
-void change_cell_height(double h, ImplicitBody<Axisymmetric>& body) {
-  if (body.grid.axes[1].h == h) return;
-  body.grid.axes[1].h = h;
+template <class Geometry>
+void change_cell_height(double h, ImplicitBody<Geometry>& body) {
+  if (Geometry::dim == 3 || body.grid.axes[Geometry::up].h == h) return;
+  body.grid.axes[Geometry::up].h = h;
   body.grid.cell_map = {};
   body.wall_nodes.clear();
 }
-void change_cell_height(double, ImplicitBody<ThreeD>&) {}
 
 template <class Geometry>
 Outcome run_implicit_in(const Scene& scene, const scene::Observer& observer) {
