@@ -2,7 +2,7 @@
 """Makes the tables that `tremie estimate` reads, one for each mould: tables.py TREMIE [MOULD...]
 
 A table is a study of slump_exact.toml over a grid. The Abrams cone's is finer; another mould's range is the Abrams cone's by
-its size, with fluids down to those of cement pastes. A run that is not to be trusted has its value from its neighbours along
+its size. A run that is not to be trusted has its value from its neighbours along
 the viscosity, on which a spread at rest hardly depends, and the header counts them."""
 
 import csv

@@ -56,11 +56,11 @@ double depth_at_rest(const Scene& scene) {
   return V / (std::numbers::pi * R * R);
 }
 
-constexpr double default_cell[] = {0.010, 0.005};  ///< of sections, for the Abrams cone [m]
+constexpr double default_height = 0.005;  ///< of a section's cells, for the Abrams cone [m]
 
 /// Height of the cells once the body creeps. Cells of a scene's own are as flat, to the default, as they were.
 double film_cell_of(const Scene& scene) {
-  const double up = scene.model.cell[1], to_default = up / (default_cell[1] * scale_of(scene.cone));
+  const double up = scene.model.cell[1], to_default = up / (default_height * scale_of(scene.cone));
   if (scene.model.space != SpaceKind::axisymmetric || scene.model.scheme != SchemeKind::implicit) return up;
   return std::min(up, to_default * depth_at_rest(scene) / rows_at_rest);
 }
@@ -73,12 +73,12 @@ void settle_model(Values& values) {
   const bool section = values.word("model.space") == "axisymmetric",
              implicit = values.word("model.scheme") == "implicit";
   const double scale = scale_of(cone_of(values));
+  if (section && scale == 1.0) return;
+  const char* note = section ? "the default, for the size of the cone" : "the default in three dimensions";
   std::vector<double> cell = section    ? values.numbers("model.cell")
                              : implicit ? std::vector{0.014, 0.007}
                                         : std::vector{0.015};
   for (double& h : cell) h *= scale;
-  if (section && scale == 1.0) return;
-  const char* note = section ? "the default, for the size of the cone" : "the default in three dimensions";
   if (!values.given("model.cell")) values.set_numbers("model.cell", cell, Layer::fallback, note);
   if (section) return;
   const std::vector<double> points = implicit ? std::vector{4.0, 2.0} : std::vector{2.0};
