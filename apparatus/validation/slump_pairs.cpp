@@ -77,7 +77,7 @@ struct Hypothesis {
 };
 constexpr Hypothesis hypotheses[] = {
     {"Bingham, a floor that holds, 15 cm/s", ""},
-    {"Coulomb's floor, coefficient 0.3", "[floor]\ncontact = \"friction\"\nfriction_coefficient = 0.3\n"},
+    {"Coulomb's floor, coefficient 0.3", "[floor]\ncontact = \"friction\"\ncoefficient = 0.3\n"},
     {"a slow lift, 3 cm/s", "[test]\nlift_speed = \"3 cm/s\"\n"},
     {"Herschel-Bulkley, n = 0.5", nullptr}};
 
