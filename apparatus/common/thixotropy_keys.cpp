@@ -1,5 +1,9 @@
 #include "apparatus/common/thixotropy_keys.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -8,25 +12,48 @@
 namespace tremie::scene {
 namespace {
 
+template <class K>
+bool is_needed(const LawKey<K>& key) {
+  return key.fallback.empty() && !key.optional;
+}
+
 /// The keys that kinetics state, each once with the words of those that have it. Where all have it, it has no condition.
 std::vector<Key> kinetics_keys() {
   std::vector<Key> keys;
   for_each_kinetics([&](const auto& kinetics) {
     for (const auto& stated : kinetics.keys()) {
       Key key = scene_key(stated);
-      key.required = stated.fallback.empty() && !stated.optional;
+      key.required = is_needed(stated);
       key.only_with = Condition{"kinetics", {}};
       auto known = std::find_if(keys.begin(), keys.end(), [&](const Key& k) { return k.name == key.name; });
       if (known == keys.end())
         known = keys.insert(keys.end(), key);
       else if (known->help.find(key.help) == std::string::npos)
-        known->help += "; " + key.help;
+        known->help += fmt::format("; {}: {}", kinetics.word, key.help);
+      known->required = known->required && key.required;
       known->only_with->words.emplace_back(kinetics.word);
     }
   });
   for (Key& key : keys)
     if (key.only_with->words.size() == kinetics_words().size()) key.only_with.reset();
   return keys;
+}
+
+constexpr const char* modes_key = "mix.thixotropy.modes";
+
+void check_modes(const Values& values) {
+  if (!values.has(modes_key)) return;
+  const std::vector<double> numbers = values.numbers(modes_key);
+  if (numbers.size() > 2 * RatePowerKinetics::most_modes)
+    values.fail(modes_key, fmt::format("has {} modes; allowed: at most {}", numbers.size() / 2,
+                                       RatePowerKinetics::most_modes));
+  double sum = 0.0;
+  for (std::size_t i = 0; i < numbers.size(); i += 2) {
+    if (!(numbers[i] > 0.0)) values.fail(modes_key, "has a share of 0; allowed: shares greater than 0");
+    sum += numbers[i];
+  }
+  if (std::abs(sum - 1.0) > 1e-6)
+    values.fail(modes_key, fmt::format("has shares whose sum is {:.6g}; allowed: a sum of 1", sum));
 }
 
 }  // namespace
@@ -54,6 +81,13 @@ Section thixotropy_section() {
   keys.push_back(choice);
   for (const Key& key : of_kinetics)
     if (key.only_with) keys.push_back(key);
+  keys.push_back({.name = "modes",
+                  .kind = Kind::number,
+                  .range = not_negative,
+                  .shape = Shape::pairs,
+                  .only_with = Condition{"kinetics", {std::string(RatePowerKinetics::word)}},
+                  .example = "[[0.6, 1.0], [0.3, 0.1], [0.1, 0.01]]",
+                  .help = "share of lambda and of A_thix, factor on k, of each; one where it is left out"});
   keys.push_back(initial);
   return {.name = "mix.thixotropy",
           .help =
@@ -68,8 +102,13 @@ void settle_thixotropy(Values& values) {
   for_each_kinetics([&](const auto& kinetics) {
     if (kinetics.word != values.word("mix.thixotropy.kinetics")) return;
     for (const auto& key : kinetics.keys())
-      if (key.optional && values.has(key.name) && !values.given(key.name)) values.drop(key.name);
+      if (key.optional && values.has(key.name) && !values.given(key.name))
+        values.drop(key.name);
+      else if (is_needed(key) && !values.has(key.name))
+        values.fail(key.name, fmt::format("missing key with kinetics = \"{}\", like {} = {}", kinetics.word,
+                                          name_of(key.name), key.example));
   });
+  check_modes(values);
   if (values.number("mix.yield_stress") == 0.0)
     values.fail("mix.yield_stress",
                 "is 0 with [mix.thixotropy]: the flocculation state grows by A_thix/tau_0 and has no value; "
@@ -84,6 +123,12 @@ std::optional<Thixotropy> read_thixotropy(const Values& values) {
     if (kinetics.word != values.word("mix.thixotropy.kinetics")) return;
     for (const auto& key : kinetics.keys())
       if (values.has(key.name)) kinetics.*key.member = values.number(key.name);
+    if constexpr (requires { kinetics.modes; })
+      if (values.has(modes_key)) {
+        const std::vector<double> numbers = values.numbers(modes_key);
+        for (std::size_t i = 0; i + 1 < numbers.size(); i += 2)
+          kinetics.modes.push_back({numbers[i], numbers[i + 1]});
+      }
     t.kinetics = kinetics;
   });
   return t;

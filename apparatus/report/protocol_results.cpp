@@ -44,6 +44,26 @@ Json section_json(const SectionReading& s, std::size_t number) {
   return j;
 }
 
+Json saturation_json(const std::optional<Saturation>& s) {
+  if (!s) return nullptr;
+  return {{"static_yield_stress_end_Pa", s->end_stress},
+          {"time_s", s->time},
+          {"relative_scatter", s->scatter},
+          {"chance_of_a_line", s->chance},
+          {"longest_rest_by_the_shorter_Pa", json_of(s->forecast_of_longest)}};
+}
+
+Json breakdown_json(const Breakdown& b) {
+  Json times = Json::array(), modes = Json::array();
+  for (const BreakdownTime& t : b.times)
+    times.push_back({{"section", t.section},
+                     {"speed_rev_per_s", t.omega / two_pi},
+                     {"shear_rate_per_s", t.rate},
+                     {"half_time_s", t.half_time}});
+  for (const BreakdownMode& mode : b.modes) modes.push_back({mode.share, mode.factor});
+  return {{"half_times", times}, {"modes", modes}};
+}
+
 }  // namespace
 
 Json protocol_results(const ProtocolReading& r) {
@@ -56,9 +76,14 @@ Json protocol_results(const ProtocolReading& r) {
   j["structuration"] = {{"rest_s", a.rest},
                         {"static_yield_stress_Pa", a.stress},
                         {"relative_scatter", json_of(a.scatter)},
+                        {"saturation", saturation_json(a.saturation)},
                         {"rate_short_rests_Pa_per_s", json_of(a.early)},
                         {"rate_long_rests_Pa_per_s", json_of(a.late)}};
+  j["breakdown_rate_per_s"] = json_of(r.breakdown.rate);
+  j["rate_exponent"] = json_of(r.breakdown.exponent);
+  j["breakdown"] = breakdown_json(r.breakdown);
   j["notes"] = a.notes;
+  for (const std::string& note : r.breakdown.notes) j["notes"].push_back(note);
   return j;
 }
 

@@ -18,10 +18,12 @@ template <class Geometry>
 void rest(Body<Geometry>& body, double duration) {
   if (!body.mix.thixotropy) return;
   const Thixotropy& t = *body.mix.thixotropy;
-  body.points.lambda.assign(body.points.size(),
-                            flocculation_after_rest(t.initial_flocculation, t, body.mix.tau_0, duration));
+  const double lambda = flocculation_after_rest(t.initial_flocculation, t, body.mix.tau_0, duration);
+  body.points.lambda.assign(body.points.size(), lambda);
   body.points.gamma_dot.assign(body.points.size(), 0.0);
-  body.points.lambda_parts.assign(lambda_parts(t.kinetics), std::vector<double>(body.points.size()));
+  body.points.lambda_parts.clear();
+  for (const double share : part_shares(t.kinetics))
+    body.points.lambda_parts.emplace_back(body.points.size(), share * lambda);
 }
 
 template <int D>

@@ -142,9 +142,23 @@ void read_scalar(const Key& key, const Node& node, Value& into) {
   into.numbers.push_back(*boolean ? 1.0 : 0.0);
 }
 
+Value read_pairs(const Key& key, const Node& node) {
+  const auto fail = [&] { throw Problem("must be an array of pairs, like " + key.example); };
+  Value value{{}, {}, node.origin, {}};
+  const auto* array = std::get_if<Array>(&node.value);
+  if (!array || array->empty()) fail();
+  for (const Node& element : *array) {
+    const auto* pair = std::get_if<Array>(&element.value);
+    if (!pair || pair->size() != 2) fail();
+    for (const Node& number : *pair) read_scalar(key, number, value);
+  }
+  return value;
+}
+
 Value read_value(const Key& key, const Node& node) {
   Value value{{}, {}, node.origin, {}};
   const auto* array = std::get_if<Array>(&node.value);
+  if (key.shape == Shape::pairs) return read_pairs(key, node);
   if (!array) {
     if (key.shape == Shape::list)
       throw Problem("must be an array, like [\"…\", \"…\"], of " + allowed_text(key));

@@ -45,7 +45,8 @@ enum class Kind {
 enum class Shape {
   one,
   one_or_two,  ///< a value, or [across, up]
-  list         ///< an array of at least one
+  list,        ///< an array of at least one
+  pairs        ///< an array of at least one [first, second]
 };
 
 /// Values allowed, SI. The ends belong to it unless `open`.

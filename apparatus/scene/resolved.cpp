@@ -41,6 +41,11 @@ std::string value_text(const Key& key, const Value& value) {
   for (const auto& word : value.words) parts.push_back(quoted(word));
   for (const double number : value.numbers) parts.push_back(scalar_text(key, number));
   if (key.shape == Shape::one || (parts.size() == 1 && key.shape == Shape::one_or_two)) return parts.front();
+  if (key.shape == Shape::pairs) {
+    for (std::size_t i = 0; 2 * i < parts.size(); ++i)
+      parts[i] = fmt::format("[{}, {}]", parts[2 * i], parts[2 * i + 1]);
+    parts.resize(parts.size() / 2);
+  }
   return fmt::format("[{}]", fmt::join(parts, ", "));
 }
 

@@ -29,6 +29,27 @@ inline double flocculation_step(double lambda, const Thixotropy& t, double tau_0
                     t.kinetics);
 }
 
+/// The same where lambda may have parts: part(i) is the place of part i.
+template <class Part>
+double flocculation_step(double lambda, const Thixotropy& t, double tau_0, double gamma_0, double gamma_1,
+                         double dt, const Part& part) {
+  const double build_rate = t.A_thix / tau_0;
+  return std::visit(
+      [&](const auto& k) {
+        if constexpr (requires { k.modes; }) {
+          double sum = 0.0;
+          for (std::size_t i = 0; i < k.modes.size(); ++i) {
+            const double share = k.modes[i].share;
+            part(i) = share * k.of_mode(i).update(part(i) / share, build_rate, gamma_0, gamma_1, dt);
+            sum += part(i);
+          }
+          if (!k.modes.empty()) return sum;
+        }
+        return k.update(lambda, build_rate, gamma_0, gamma_1, dt);
+      },
+      t.kinetics);
+}
+
 /// The same for points side by side: the kinetics' own, or one by one.
 inline f64x8 flocculation_step(const f64x8& lambda, const Thixotropy& t, double tau_0, const f64x8& gamma_0,
                                const f64x8& gamma_1, double dt) {

@@ -10,13 +10,13 @@
 namespace tremie::detail {
 
 /// A step whose shear rate is linear in time, split where it crosses gamma_c: rest(lambda, duration) is lambda after
-/// build-up, flow(lambda, duration, sum) after breakdown, with the sum of the rates at the two ends.
+/// build-up, flow(lambda, duration, g_0, g_1) after breakdown, with the rates at the two ends.
 template <class Rest, class Flow>
 double split_at_gate(double lambda, double gamma_c, double gamma_0, double gamma_1, double dt,
                      const Rest& rest, const Flow& flow) {
   const bool rest_0 = gamma_0 < gamma_c, rest_1 = gamma_1 < gamma_c;
   const auto piece = [&](double value, bool resting, double g0, double g1, double duration) {
-    return resting ? rest(value, duration) : flow(value, duration, g0 + g1);
+    return resting ? rest(value, duration) : flow(value, duration, g0, g1);
   };
   if (rest_0 == rest_1) return piece(lambda, rest_0, gamma_0, gamma_1, dt);
   const double theta = std::clamp((gamma_c - gamma_0) / (gamma_1 - gamma_0), 0.0, 1.0);

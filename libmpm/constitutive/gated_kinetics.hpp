@@ -20,7 +20,6 @@ struct GatedKinetics {
   double gamma_c = 0.1;  ///< critical shear rate of the gate [1/s]
 
   static constexpr std::string_view word = "gated";
-  static constexpr std::size_t state_size = 1;
   static constexpr DecayFitRules decay_fit{};
   static constexpr std::array<LawKey<GatedKinetics>, 2> keys() {
     return {{destructuration_key<GatedKinetics>(),
@@ -40,8 +39,8 @@ struct GatedKinetics {
     return detail::split_at_gate(
         lambda, gamma_c, gamma_0, gamma_1, dt,
         [&](double value, double duration) { return value + build_rate * duration; },
-        [&](double value, double duration, double sum) {
-          return value * detail::decay(0.5 * alpha * duration * sum).end;
+        [&](double value, double duration, double g_0, double g_1) {
+          return value * detail::decay(0.5 * alpha * duration * (g_0 + g_1)).end;
         });
   }
 

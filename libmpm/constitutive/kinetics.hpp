@@ -12,13 +12,15 @@
 
 #include "libmpm/constitutive/gated_kinetics.hpp"
 #include "libmpm/constitutive/power_kinetics.hpp"
+#include "libmpm/constitutive/rate_power_kinetics.hpp"
 #include "libmpm/constitutive/roussel_kinetics.hpp"
 
 namespace tremie {
 
 using Kinetics = std::variant<GatedKinetics,    // the first is the default of a scene
                               RousselKinetics,  //
-                              PowerKinetics>;
+                              PowerKinetics,    //
+                              RatePowerKinetics>;
 
 /// Calls visit(K{}) for all kinetics K of the registry.
 template <class Visit>
@@ -59,9 +61,16 @@ inline std::optional<double> destructuration(const Kinetics& kinetics) {
 inline bool breaks_down(const Kinetics& kinetics) {
   return std::visit([](const auto& k) { return k.breaks_down(); }, kinetics);
 }
-/// The parts of lambda that a point stores besides their sum: none where lambda is the whole state.
-inline std::size_t lambda_parts(const Kinetics& kinetics) {
-  return std::visit([](const auto& k) { return k.state_size > 1 ? k.state_size : 0; }, kinetics);
+/// The shares of the parts of lambda that a point stores besides their sum: none where lambda is the whole state.
+inline std::vector<double> part_shares(const Kinetics& kinetics) {
+  std::vector<double> shares;
+  std::visit(
+      [&](const auto& k) {
+        if constexpr (requires { k.modes; })
+          for (const auto& mode : k.modes) shares.push_back(mode.share);
+      },
+      kinetics);
+  return shares;
 }
 inline DecayFitRules decay_fit(const Kinetics& kinetics) {
   return std::visit([](const auto& k) { return k.decay_fit; }, kinetics);

@@ -22,11 +22,11 @@
 //   word             the word of mix.thixotropy.kinetics and of --kinetics
 //   keys()           the scene keys of their parameters in [mix.thixotropy]. A key that several have is described by
 //                    the first, and its help is that of all, each said once
-//   state_size       the numbers that a point stores: 1, lambda itself; or more, parts whose sum lambda is
-//                    (Points::lambda_parts)
 //   decay_fit        how a fit of a torque's decay treats them
 //
-// and may state simd_update (as update, for points side by side, where one by one is too slow) and
+// and may state modes and of_mode(i), where lambda is a sum of parts that a point stores (Points::lambda_parts): their
+// shares, and the kinetics of a part over its share; simd_update (as update, for points side by side, where one by one is
+// too slow); and
 // update_along(lambda, b, rate, start, gamma_0, gamma_1, dt) (as update, where the rate inside the step is known too).
 
 #include <string_view>
@@ -38,6 +38,7 @@ namespace tremie {
 /// How a fit of a torque's decay treats kinetics.
 struct DecayFitRules {
   bool free_exponent = false;      ///< n is fitted besides alpha
+  bool needs_speeds = false;       ///< one speed does not tell them: read_protocol fits them to several
   bool needs_rest = false;         ///< where no build-up is known they are the same as kinetics before them
   std::string_view contains = {};  ///< the word of the kinetics that they are at n = 1
 };

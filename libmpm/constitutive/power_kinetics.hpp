@@ -14,6 +14,7 @@
 #include <optional>
 #include <utility>
 
+#include "libmpm/constitutive/exponential_decay.hpp"
 #include "libmpm/constitutive/gate.hpp"
 #include "libmpm/constitutive/kinetics_interface.hpp"
 
@@ -40,6 +41,19 @@ inline double power_break(double lambda, const PowerRates& p, double shear) {
   if (!(lambda > 0.0)) return 0.0;
   const double m = p.exponent - 1.0, k = p.alpha * shear * std::pow(lambda, m);
   return m < 1e-9 ? lambda * std::exp(-k) : lambda * std::exp(-std::log1p(m * k) / m);
+}
+
+/// Above a gate, where nothing is built: `sum` of gamma_dot at both ends of a part of the step.
+inline double gated_break(double lambda, const PowerRates& p, double duration, double sum) {
+  if (p.exponent == 1.0) return lambda * decay(0.5 * p.alpha * duration * sum).end;
+  return power_break(lambda, p, 0.5 * duration * sum);
+}
+
+/// n = 1: exact at constant rate, fourth order at a linear rate, second order where the rate is curved.
+inline double linear_step(double lambda, const PowerRates& p, double gamma_0, double gamma_1, double dt) {
+  const double half = 0.5 * p.alpha * dt;
+  const Decay d = decay(half * (gamma_0 + gamma_1) + p.build * p.inverse_saturation * dt);
+  return build_and_break(lambda, p.build, d, half * (gamma_1 - gamma_0) * d.asymmetry, dt);
 }
 
 /// phi_k(z) = int_0^1 e^(z(1-s)) s^(k-1)/(k-1)! ds, which exponential methods weight their stages with.
@@ -84,6 +98,7 @@ inline std::pair<double, double> exponential_rosenbrock(const ConcaveRate& f, do
 /// whatever dt, in parts whose lengths follow the error: 1 where alpha lambda^(n-1) gamma_dot dt is small, tens at 1e6.
 /// Positive, and at most lambda + b dt.
 inline double power_step(double lambda, const PowerRates& p, double gamma_0, double gamma_1, double dt) {
+  if (p.exponent == 1.0) return linear_step(lambda, p, gamma_0, gamma_1, dt);
   constexpr double tolerance = 1e-8;
   constexpr int most = 1000;
   const double m = p.exponent - 1.0, c = p.build * p.inverse_saturation;
@@ -126,7 +141,6 @@ struct PowerKinetics {
   double saturation = std::numeric_limits<double>::infinity();  ///< lambda_max
 
   static constexpr std::string_view word = "power";
-  static constexpr std::size_t state_size = 1;
   static constexpr DecayFitRules decay_fit{.free_exponent = true, .contains = "roussel"};
   static constexpr std::array<LawKey<PowerKinetics>, 4> keys() {
     using K = PowerKinetics;
@@ -134,7 +148,7 @@ struct PowerKinetics {
              {.name = "mix.thixotropy.critical_shear_rate",
               .member = &K::gamma_c,
               .unit = "1/s",
-              .help = "power: no gate where it is left out",
+              .help = "no gate where it is left out",
               .optional = true},
              {"mix.thixotropy.exponent", &K::exponent, "", "", "3.5",
               "n: breakdown by alpha lambda^n gamma_dot", 1.0, 20.0, false},
@@ -159,8 +173,8 @@ struct PowerKinetics {
     return detail::split_at_gate(
         lambda, gamma_c, gamma_0, gamma_1, dt,
         [&](double value, double duration) { return detail::power_build(value, p, duration); },
-        [&](double value, double duration, double sum) {
-          return detail::power_break(value, p, 0.5 * duration * sum);
+        [&](double value, double duration, double g_0, double g_1) {
+          return detail::gated_break(value, p, duration, g_0 + g_1);
         });
   }
 

@@ -18,7 +18,6 @@ struct RousselKinetics {
   double alpha = 0.01;  ///< destructuration parameter
 
   static constexpr std::string_view word = "roussel";
-  static constexpr std::size_t state_size = 1;
   static constexpr DecayFitRules decay_fit{.needs_rest = true};  // without build-up it is the gated equation
   static constexpr std::array<LawKey<RousselKinetics>, 1> keys() {
     return {destructuration_key<RousselKinetics>()};

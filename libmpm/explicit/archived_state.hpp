@@ -43,7 +43,7 @@ void visit(Archive& archive, ExplicitState<Geometry>& state) {
 /// The body's points are those on the tiles; as many parts of lambda as the scene's kinetics have.
 template <class Geometry>
 void visit_explicit(Archive& archive, Body<Geometry>& body, ExplicitState<Geometry>& state) {
-  if (const auto& t = body.mix.thixotropy) state.points.lambda_parts.resize(lambda_parts(t->kinetics));
+  if (const auto& t = body.mix.thixotropy) state.points.lambda_parts.resize(part_shares(t->kinetics).size());
   archive(body.time, body.dt, state);
   if (archive.reads()) write_back(state, body);
 }

@@ -45,7 +45,8 @@ void update_flocculation(const ImplicitBody<Geometry>& body, double dt, Points<G
 #pragma omp parallel for schedule(static)
   for (std::size_t p = 0; p < points.size(); ++p)
     points.lambda[p] = flocculation_step(points.lambda[p], *body.mix.thixotropy, body.mix.tau_0,
-                                         points.gamma_dot[p], gamma_dot[p], dt);
+                                         points.gamma_dot[p], gamma_dot[p], dt,
+                                         [&](std::size_t i) -> double& { return points.lambda_parts[i][p]; });
   points.gamma_dot.swap(gamma_dot);
 }
 

@@ -305,7 +305,7 @@ std::vector<DecayFit> fit_candidates(const Readings& r, FitInput in) {
   for_each_kinetics([&](const auto& k) {
     in.kinetics = k;
     // without a rest nothing is known to build up, and Roussel's equation is the gated one
-    if (k.decay_fit.needs_rest && !in.rest) return;
+    if (k.decay_fit.needs_speeds || (k.decay_fit.needs_rest && !in.rest)) return;
     if (r.size() <= 2u + !in.tau_0 + !in.mu + k.decay_fit.free_exponent) return;
     try {
       fits.push_back(fit_decay(r, in));

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "rheometer/fits/fit.hpp"
+#include "rheometer/protocol/breakdown.hpp"
 #include "rheometer/records/sections.hpp"
 
 namespace tremie {
@@ -24,10 +25,10 @@ struct StartUpReading {
 
 /// The shape of a decay behind its peak, without a material: T_end + C e^(-t/t_0) against T_end + C (1 + t/t_0)^(-m).
 struct DecayShape {
-  double peak_torque = 0.0, end_torque = 0.0;  ///< [N m]
-  std::optional<double> half_time;             ///< from the peak to half of its torque [s]
-  std::optional<double> exponential_scatter;   ///< relative
-  std::optional<double> power_scatter, power_m;
+  double peak_torque = 0.0, end_torque = 0.0;              ///< [N m]
+  std::optional<double> half_time;                         ///< from the peak to half of its torque [s]
+  std::optional<double> exponential_scatter;               ///< relative
+  std::optional<double> power_scatter, power_m, power_t0;  ///< t_0 [s]
 };
 
 struct SectionReading {
@@ -46,13 +47,15 @@ struct Structuration {
   std::optional<ParameterEstimate> A_thix, at_no_rest;  ///< [Pa/s], [Pa]
   std::optional<double> scatter;      ///< of the peaks about the line, relative to their mean
   std::optional<double> early, late;  ///< slope between the two shortest and the two longest rests [Pa/s]
-  std::vector<double> rest, stress;   ///< what was used [s], [Pa]
+  std::optional<Saturation> saturation;
+  std::vector<double> rest, stress;  ///< what was used [s], [Pa]
   std::vector<std::string> notes;
 };
 
 struct ProtocolReading {
   std::vector<SectionReading> sections;
   Structuration structuration;
+  Breakdown breakdown;
   std::vector<std::string> reasons;  ///< why a section is not to be trusted, with its number
 };
 

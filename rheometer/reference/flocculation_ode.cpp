@@ -22,6 +22,8 @@ struct Problem {
   Kinetics kinetics;
   double build_rate = 0.0;
   bool flowing = true;  ///< gated alone
+  std::vector<BreakdownMode> modes = kinetics_equations::modes_of(kinetics);
+  std::vector<Kinetics> of_parts = {};  ///< which y, lambda_i over its share, follow
 
   double gamma_dot(double t) const { return piece->rate(std::clamp(t, 0.0, piece->duration)); }
   bool gated() const { return gate(kinetics).has_value(); }
@@ -30,16 +32,20 @@ struct Problem {
 
 int right_hand_side(sunrealtype t, N_Vector y, N_Vector ydot, void* user) {
   const Problem& p = *static_cast<const Problem*>(user);
-  values(ydot)[0] =
-      kinetics_equations::rate_of_lambda(p.kinetics, p.build_rate, values(y)[0], p.gamma_dot(t), p.flowing);
+  for (std::size_t i = 0; i < p.of_parts.size(); ++i)
+    values(ydot)[i] = kinetics_equations::rate_of_lambda(p.of_parts[i], p.build_rate, values(y)[i],
+                                                         p.gamma_dot(t), p.flowing);
   return 0;
 }
 
 int jacobian(sunrealtype t, N_Vector y, N_Vector, SUNMatrix J, void* user, N_Vector, N_Vector, N_Vector) {
   const Problem& p = *static_cast<const Problem*>(user);
-  const auto d =
-      kinetics_equations::derivatives_of(p.kinetics, p.build_rate, values(y)[0], p.gamma_dot(t), p.flowing);
-  SUNDenseMatrix_Data(J)[0] = d.build_by_lambda - d.k * d.broken_by_lambda;
+  SUNMatZero(J);
+  for (std::size_t i = 0; i < p.of_parts.size(); ++i) {
+    const auto d = kinetics_equations::derivatives_of(p.of_parts[i], p.build_rate, values(y)[i],
+                                                      p.gamma_dot(t), p.flowing);
+    SUNDenseMatrix_Column(J, static_cast<sunindextype>(i))[i] = d.build_by_lambda - d.k * d.broken_by_lambda;
+  }
   return 0;
 }
 
@@ -57,23 +63,27 @@ bool flows_at_start(const Problem& p) {
 }
 
 /// lambda relaxes on the time 1/(alpha gamma_dot), times lambda^(1-n)/n with a power; a piece that is much longer than this is stiff.
-int method_for(const Problem& p, double lambda, OdeMethod wanted) {
+int method_for(const Problem& p, std::span<const double> y, OdeMethod wanted) {
   if (wanted != OdeMethod::automatic) return wanted == OdeMethod::bdf ? CV_BDF : CV_ADAMS;
   double fastest = 0.0;
   for (int i = 0; i <= 64; ++i) fastest = std::max(fastest, p.gamma_dot(p.piece->duration * i / 64.0));
-  const auto d = kinetics_equations::derivatives_of(p.kinetics, p.build_rate, lambda, fastest, true);
-  return d.k * d.broken_by_lambda * p.piece->duration > 100.0 ? CV_BDF : CV_ADAMS;
+  for (std::size_t i = 0; i < p.of_parts.size(); ++i) {
+    const auto d = kinetics_equations::derivatives_of(p.of_parts[i], p.build_rate, y[i], fastest, true);
+    if (d.k * d.broken_by_lambda * p.piece->duration > 100.0) return CV_BDF;
+  }
+  return CV_ADAMS;
 }
 
 class Integrator {
  public:
-  Integrator(Problem& problem, double lambda, const OdeOptions& options)
-      : y_(1, context_),
-        J_(SUNDenseMatrix(1, 1, context_.get)),
+  Integrator(Problem& problem, std::span<const double> start, const OdeOptions& options)
+      : y_(start.size(), context_),
+        J_(SUNDenseMatrix(static_cast<sunindextype>(start.size()), static_cast<sunindextype>(start.size()),
+                          context_.get)),
         solver_(SUNLinSol_Dense(y_.get, J_.get, context_.get)),
         problem_(problem) {
-    values(y_.get)[0] = lambda;
-    method_ = method_for(problem, lambda, options.method);
+    std::copy(start.begin(), start.end(), values(y_.get).begin());
+    method_ = method_for(problem, start, options.method);
     memory_.reset(CVodeCreate(method_, context_.get));
     void* m = memory_.get();
     if (!m) throw std::bad_alloc();
@@ -92,8 +102,8 @@ class Integrator {
     }
   }
 
-  /// Advances to the time t of the piece, a gate crossing at a time.
-  double advance(double t, OdeResult& result) {
+  /// Advances to the time t of the piece, a gate crossing at a time; the parts of lambda over their shares.
+  std::span<const double> advance(double t, OdeResult& result) {
     double reached = 0.0;
     while (now_ < t) {
       sundials_ok(CVodeSetStopTime(memory_.get(), t), "CVodeSetStopTime");
@@ -104,7 +114,7 @@ class Integrator {
       pass_gate(result);
     }
     now_ = t;
-    return values(y_.get)[0];
+    return values(y_.get);
   }
 
   void add_statistics(OdeResult& result) {
@@ -164,7 +174,15 @@ OdeResult flocculation_ode(std::span<const ShearPiece> history, const Thixotropy
   OdeResult result;
   result.lambda.reserve(times.size());
   Problem problem{nullptr, thixotropy.kinetics, thixotropy.A_thix / tau_0};
-  double lambda = lambda_0, start = 0.0;
+  for (const BreakdownMode& mode : problem.modes)
+    problem.of_parts.push_back(kinetics_equations::of_part(thixotropy.kinetics, mode));
+  const auto lambda_of = [&](std::span<const double> y) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < y.size(); ++i) sum += problem.modes[i].share * y[i];
+    return sum;
+  };
+  std::vector<double> lambda(problem.modes.size(), lambda_0);
+  double start = 0.0;
   std::size_t next = 0;
   for (const ShearPiece& piece : history) {
     problem.piece = &piece;
@@ -173,9 +191,10 @@ OdeResult flocculation_ode(std::span<const ShearPiece> history, const Thixotropy
     const bool last = &piece == &history.back();
     while (next < times.size() && (last || times[next] < start + piece.duration)) {
       const double local = std::clamp(times[next++] - start, 0.0, piece.duration);
-      result.lambda.push_back(integrator.advance(local, result));
+      result.lambda.push_back(lambda_of(integrator.advance(local, result)));
     }
-    lambda = integrator.advance(piece.duration, result);
+    const std::span<const double> end_of_piece = integrator.advance(piece.duration, result);
+    lambda.assign(end_of_piece.begin(), end_of_piece.end());
     integrator.add_statistics(result);
     start += piece.duration;
   }

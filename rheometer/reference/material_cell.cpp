@@ -27,8 +27,10 @@ long steps_in(const MaterialCell& cell, const ShearSegment& s, double total) {
 class Run {
  public:
   Run(const MaterialCell& cell, const YieldLaw& law) : cell_(cell), law_(law) {
-    if (const auto& t = cell.mix.thixotropy)
-      lambda_ = flocculation_after_rest(t->initial_flocculation, *t, cell.mix.tau_0, cell.rest);
+    const auto& t = cell.mix.thixotropy;
+    if (!t) return;
+    lambda_ = flocculation_after_rest(t->initial_flocculation, *t, cell.mix.tau_0, cell.rest);
+    for (const double share : part_shares(t->kinetics)) parts_.push_back(share * lambda_);
   }
 
   CellResult operator()() {
@@ -51,7 +53,8 @@ class Run {
       return k == n ? s.to : s.from + (s.to - s.from) * static_cast<double>(k) / static_cast<double>(n);
     };
     if (const auto& t = cell_.mix.thixotropy)
-      lambda_ = flocculation_step(lambda_, *t, cell_.mix.tau_0, rate(i - 1), rate(i), dt);
+      lambda_ = flocculation_step(lambda_, *t, cell_.mix.tau_0, rate(i - 1), rate(i), dt,
+                                  [&](std::size_t part) -> double& { return parts_[part]; });
     add(i == n ? start + s.duration : start + static_cast<double>(i) * dt, rate(i));
     ++result_.steps;
   }
@@ -97,6 +100,7 @@ class Run {
   const MaterialCell& cell_;
   const YieldLaw& law_;
   double lambda_ = 0.0;
+  std::vector<double> parts_;  ///< of lambda_, where it has any
   std::vector<double> stress_limit_;
   CellResult result_;
 };

@@ -189,6 +189,8 @@ void check(const CouetteFlow& flow) {
     throw std::invalid_argument("the yield stress and the plastic viscosity must be greater than 0");
   if (!flow.omega_of_time && !positive(flow.omega))
     throw std::invalid_argument("the speed must be greater than 0");
+  if (!part_shares(flow.thixotropy.kinetics).empty())
+    throw std::invalid_argument("the Couette reference takes kinetics of one time, without modes");
   kinetics_equations::check(flow.thixotropy, flow.thixotropy.initial_flocculation);
 }
 

@@ -71,6 +71,17 @@ void print_protocol(const ProtocolReading& r) {
   fmt::print("{:<22} the pre-shear, read as a decay too\n", "*");
   print_estimate("A_thix of the peaks", r.structuration.A_thix, "Pa/s");
   print_estimate("static, without rest", r.structuration.at_no_rest, "Pa");
+  if (const auto& s = r.structuration.saturation)
+    fmt::print(
+        "{:<22} {:.4g} Pa less what is left of it after {:.3g} s ({:.2g} % scatter; the line has {:.2g} %)\n",
+        "static, saturating", s->end_stress, s->time, 100.0 * s->scatter,
+        100.0 * r.structuration.scatter.value_or(0.0));
+  print_estimate("breakdown rate k", r.breakdown.rate, "1/s");
+  print_estimate("rate exponent a", r.breakdown.exponent, "");
+  for (const BreakdownTime& t : r.breakdown.times)
+    fmt::print("{:<22} section {}, {:.3g} 1/s: half of the excess lost after {:.3g} s\n", "", t.section,
+               t.rate, t.half_time);
+  for (const auto& note : r.breakdown.notes) fmt::print("{:<22} {}\n", "note", note);
   for (const auto& note : r.structuration.notes) fmt::print("{:<22} {}\n", "note", note);
 }
 

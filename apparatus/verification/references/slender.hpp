@@ -56,7 +56,7 @@ inline SlenderFlow slender_flow(double across, double up) {
   SlenderFlow flow;
   const auto march = [&](double until) {
     while (body.time < until - 1e-9) {
-      settings.dt_max = std::min(StepSettings{}.dt_max, until - body.time);
+      settings.time_left = until - body.time;
       flow.unconverged += !implicit_step(body, ExactBingham{}, settings).converged;
     }
   };
