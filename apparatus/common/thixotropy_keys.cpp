@@ -68,7 +68,11 @@ Section thixotropy_section() {
   const Key choice{.name = "kinetics",
                    .kind = Kind::choice,
                    .words = kinetics_words(),
-                   .fallback = kinetics_words().front()};
+                   .fallback = std::string(RatePowerKinetics::word),
+                   .implied_by = {{"preset", std::string(GatedKinetics::word)},
+                                  {"mix.thixotropy.breakdown_rate", std::string(RatePowerKinetics::word)},
+                                  {"mix.thixotropy.destructuration", std::string(GatedKinetics::word)}},
+                   .help = "by the keys that are given; see docs/theory/flocculation.md"};
   const Key initial{.name = "initial_flocculation",
                     .kind = Kind::number,
                     .range = not_negative,

@@ -182,6 +182,7 @@ class Checker {
     visit(document, "", "");
     for (const auto& [name, problem] : missing_) report(document.origin, name, problem);
     add_sections_that_are_always_there(document.origin);
+    for (const auto& [name, origin] : values_.sections) choose_implied(name);
     for (const auto& [name, origin] : std::map(values_.sections)) complete(name, origin);
     drop_what_does_not_apply();
     if (problems_.empty()) return std::move(values_);
@@ -268,6 +269,22 @@ class Checker {
            fmt::format("unknown key; {} Allowed {}: {}", hint, where, join(allowed, "")));
   }
 
+  /// Words that other keys of the scene imply, where it gives none.
+  void choose_implied(const std::string& place) {
+    for (const Key& key : find_section(schema_, place.substr(0, place.find('[')))->keys) {
+      if (values_.has(dotted(place, key.name)) || reported(dotted(place, key.name))) continue;
+      const std::pair<std::string, std::string>* chosen = nullptr;
+      for (const auto& implied : key.implied_by)
+        if (values_.has(implied.first) &&
+            (!chosen || values_.layer(implied.first) > values_.layer(chosen->first)))
+          chosen = &implied;
+      if (!chosen) continue;
+      Value value{{}, {chosen->second}, {}, "by " + chosen->first};
+      value.origin.layer = Layer::fallback;
+      values_.entries[dotted(place, key.name)] = value;
+    }
+  }
+
   /// Defaults, and keys that are missing, in one section that is there.
   void complete(const std::string& place, const Origin& origin) {
     const std::string name = place.substr(0, place.find('['));
@@ -337,7 +354,10 @@ class Checker {
         const std::string why =
             fmt::format("has no meaning with {} = \"{}\"; it goes with {} = {}", key.only_with->key,
                         decider.words.front(), key.only_with->key, join(key.only_with->words));
-        if (given.layer != Layer::fallback && given.layer >= decider.origin.layer)
+        const Section& section = *find_section(schema_, place.substr(0, place.find('[')));
+        const bool implied = decider.origin.layer == Layer::fallback &&
+                             !find_key(section, key.only_with->key)->implied_by.empty();
+        if (!implied && given.layer != Layer::fallback && given.layer >= decider.origin.layer)
           report(given, full, why);
         else if (given.layer > Layer::preset)
           values_.notes.push_back(fmt::format("{}: {} {}", describe(given), full, why));

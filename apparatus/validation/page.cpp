@@ -49,8 +49,8 @@ std::string head(const std::vector<Section>& sections, double wall_seconds) {
     }
   return fmt::format(
       "# Validation\n\nWhat was measured, and in the last table two published correlations, beside what "
-      "Tremie predicts. `tremie verify --validation` remakes this page ({:.0f} s here), `validation.csv` and "
-      "the input of its calibrations.\n\n**{} of {} met, {} missed, {} without a verdict.** ± is half of a "
+      "Tremie predicts. `tremie verify --validation` remakes this page ({:.0f} s here), its charts and "
+      "`validation.csv`.\n\n**{} of {} met, {} missed, {} without a verdict.** ± is half of a "
       "95 % interval; met: the unrounded difference is within both (root of the sum of squares). A wide "
       "interval is met easily, and shows no more than that.\n\n",
       wall_seconds, met, met + missed + open, missed, open);
@@ -79,7 +79,7 @@ std::string verdict(const Comparison& c) {
 
 std::vector<Section> all_sections(const Settings& settings) {
   std::vector<Section> sections;
-  for (const auto make : {paper_mixes, alpha_of_pairs, torque_records, slump_pairs, stiff_mixes}) {
+  for (const auto make : {paper_mixes, breakdown_of_pairs, torque_records, slump_pairs, stiff_mixes}) {
     sections.push_back(make(settings));
     if (settings.say) settings.say(sections.back().title);
   }

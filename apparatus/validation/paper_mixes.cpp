@@ -47,10 +47,11 @@ Section paper_mixes(const Settings& settings) {
                   "Everything as the paper prints it, α = 0.01 and its friction coefficients as well; cone "
                   "at 15 cm/s. Nothing is fitted."};
   std::vector<Ask> asked;
+  const std::vector<std::string> as_printed{"mix.thixotropy.kinetics=gated"};
   for (const Floor& floor : {Floor{"no slip", false}, Floor{"friction", true}})
     for (const PaperMix& mix : paper_mix)
       for (const bool rested : {false, true}) {
-        asked.push_back({scene_of(mix, rested, floor.friction), "spread_mm"});
+        asked.push_back({scene_of(mix, rested, floor.friction), "spread_mm", as_printed});
         section.comparisons.push_back(
             {fmt::format("{} {}, {}", mix.name, rested ? "rested" : "fresh", floor.words), "mm",
              rested ? mix.rested : mix.fresh, paper_tolerance});

@@ -12,6 +12,8 @@ namespace tremie::validation {
 struct Ask {
   std::string scene;   ///< TOML
   std::string result;  ///< "spread_mm"
+  std::vector<std::string> overrides = {};
+  bool with_error = true;
 };
 
 struct Reading {

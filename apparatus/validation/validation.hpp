@@ -40,16 +40,13 @@ struct Settings {
 struct Interrupted {};
 
 Section paper_mixes(const Settings& settings);  ///< Mixes A to C fresh and rested, the paper's parameters
-Section alpha_of_pairs(
-    const Settings& settings);  ///< alpha from two mixes, forecast of the third; needs OpenTURNS
+/// The exponent of the shear rate in the breakdown from two mixes, forecast of the third; draws breakdown.svg.
+Section breakdown_of_pairs(const Settings& settings);
 Section torque_records(
     const Settings& settings);  ///< the site's decay; static yield stress of a paste over rest
 Section stiff_mixes(const Settings& settings);  ///< slump against yield stress, two published correlations
 
 Section slump_pairs(const Settings& settings);  ///< slump over flow of 103 concretes; draws slump_pairs.svg
-
-/// Whether alpha_of_pairs can be computed by this build.
-bool has_calibration();
 
 /// All of them, in the page's order.
 std::vector<Section> all_sections(const Settings& settings);

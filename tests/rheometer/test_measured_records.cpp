@@ -67,6 +67,13 @@ TEST(MeasuredRecord, ThePasteIsReadSectionBySection) {
   EXPECT_FALSE(r.sections.front().fit->alpha.has_value());
   EXPECT_EQ(r.structuration.rest.size(), 5u);
   EXPECT_GT(*r.structuration.early, *r.structuration.late);
+  // Peaks saturate: the one after 480 s, 1463 Pa, within 307 Pa by the shorter rests.
+  ASSERT_TRUE(r.structuration.saturation && r.structuration.saturation->forecast_of_longest);
+  EXPECT_NEAR(*r.structuration.saturation->forecast_of_longest, 1463.0, 307.0);
+  EXPECT_LT(r.structuration.saturation->chance, 0.01);
+  // Speeds differ by 346, half times by some 1.6: far from a = 1, breakdown by strain.
+  ASSERT_TRUE(r.breakdown.exponent && r.breakdown.exponent->ci95);
+  EXPECT_LT(r.breakdown.exponent->ci95->high, 0.5);
 }
 
 TEST(MeasuredRecord, StepsRampsAndAClockThatStartsAgain) {

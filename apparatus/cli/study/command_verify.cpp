@@ -99,8 +99,6 @@ nlohmann::ordered_json summary_of_sections(const std::vector<validation::Section
 /// A measurement that is missed is a finding of the page, not a fault of the run.
 int validate(const VerifyOptions& options) {
   if (!options.cases.empty()) throw scene::InputError("verify: --validation has no cases");
-  if (!validation::has_calibration())
-    throw scene::InputError("verify: --validation calibrates, which needs libopenturns-dev at the build");
   report::RunFolder folder(options.out.empty() ? "runs/validation" : options.out, options.force);
   FILE* const screen = options.json ? stderr : stdout;
   stop_on_interrupt();

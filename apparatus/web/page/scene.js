@@ -18,7 +18,8 @@ const fields = [
   {key: "density", word: "density", symbol: "ρ", unit: "kg/m3", low: 1800, high: 2800, least: 500, most: 5000},
   {key: "rest", word: "rest before the lift", symbol: "t", unit: "s", low: 0, high: 1200, least: 0},
   {key: "structuration_rate", word: "structuration rate", symbol: "A_thix", unit: "Pa/s", low: 0, high: 5, least: 0},
-  {key: "destructuration", word: "destructuration", symbol: "α", unit: "", low: 0.001, high: 1, log: true, least: 0},
+  {key: "breakdown_rate", word: "breakdown rate", symbol: "k", unit: "1/s", low: 0.01, high: 10, log: true, least: 0},
+  {key: "rate_exponent", word: "rate exponent", symbol: "a", unit: "", low: 0, high: 1, least: 0, most: 1},
   {
     key: "lift",
     word: "lift of the cone",
@@ -47,7 +48,8 @@ function concreteOf(name) {
     density: mix.density ?? 2400,
     rest: 0,
     structuration_rate: mix.structuration_rate,
-    destructuration: mix.destructuration,
+    breakdown_rate: mix.breakdown_rate,
+    rate_exponent: mix.rate_exponent,
     lift: 15,
     duration: 30
   };
@@ -73,7 +75,7 @@ function wrongTogether({yield_stress, structuration_rate}) {
 
 /// The bundled mix whose values the concrete has, whatever its rest and lift; "" for one of its own.
 function mixOf(concrete) {
-  const own = ["yield_stress", "plastic_viscosity", "density", "structuration_rate", "destructuration"];
+  const own = ["yield_stress", "plastic_viscosity", "density", "structuration_rate", "breakdown_rate", "rate_exponent"];
   return Object.keys(mixes).find((name) => own.every((key) => concreteOf(name)[key] === concrete[key])) ?? "";
 }
 
@@ -97,7 +99,7 @@ function mixLines(c) {
   lines.push(`plastic_viscosity = "${c.plastic_viscosity} Pa.s"`);
   if (c.structuration_rate > 0) {
     lines.push("", "[mix.thixotropy]", `structuration_rate = "${c.structuration_rate} Pa/s"`);
-    lines.push(`destructuration    = ${c.destructuration}`);
+    lines.push(`breakdown_rate     = "${c.breakdown_rate} 1/s"`, `rate_exponent      = ${c.rate_exponent}`);
   }
   return lines;
 }
