@@ -289,6 +289,32 @@ void add_cell(std::vector<Extreme>& all) {
                }});
 }
 
+void add_rate_power(std::vector<Extreme>& all) {
+  const auto add = [&](const std::string& name, std::vector<std::string> overrides) {
+    overrides.insert(overrides.end(),
+                     {"mix.thixotropy.kinetics=rate_power", "mix.thixotropy.initial_flocculation=5",
+                      "mix.thixotropy.structuration_rate=1.3 Pa/s"});
+    all.push_back({.family = "cell: breakdown by a power of the rate",
+                   .name = name,
+                   .scene = cell_scene,
+                   .overrides = std::move(overrides),
+                   .against = [](const scene::Outcome& o) {
+                     return against_cell(o, (6.0 + 1.3 * 20.0 / 54.0) * 54.0, 35.8, 10.0);
+                   }});
+  };
+  for (const double k : {0.0, 1e-6, 1e6})
+    for (const double a : {0.0, 0.03, 1.0})
+      for (const char* others :
+           {"", "critical_shear_rate=1e-6 1/s", "critical_shear_rate=100 1/s", "saturation=0.5"}) {
+        std::vector<std::string> overrides{set("mix.thixotropy.breakdown_rate", k, "1/s"),
+                                           set("mix.thixotropy.rate_exponent", a, "")};
+        if (*others) overrides.push_back(fmt::format("mix.thixotropy.{}", others));
+        add(fmt::format("k = {:g} 1/s, a = {:g} {}", k, a, others), overrides);
+      }
+  for (const char* modes : {"[[0.5, 1e-9], [0.5, 1e9]]", "[[0.25, 1], [0.25, 1], [0.25, 1], [0.25, 1]]"})
+    add(fmt::format("modes {}", modes), {fmt::format("mix.thixotropy.modes={}", modes)});
+}
+
 scene::Outcome run_scene(const Extreme& extreme, double limit, bool& too_slow) {
   const auto scene = scene::read_text(extreme.scene, extreme.name, extreme.overrides, /*command*/ "");
   std::atomic<bool> stop{false};
@@ -314,6 +340,7 @@ std::vector<Extreme> extremes() {
   add_space(all);
   add_vane(all);
   add_cell(all);
+  add_rate_power(all);
   return all;
 }
 

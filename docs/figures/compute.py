@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What the figures of docs/paper_page.md show, computed by the program: compute.py PROGRAM. Writes errors.csv and alpha.csv here, ../rheograph.svg."""
+"""What the figures of docs/paper_page.md show, computed by the program: compute.py PROGRAM. Writes errors.csv here, ../rheograph.svg."""
 import csv, json, pathlib, subprocess, sys, tempfile
 
 program, here = str(pathlib.Path(sys.argv[1]).resolve()), pathlib.Path(__file__).resolve().parent
@@ -45,18 +45,5 @@ def errors():
     write("errors.csv", ["program", "mix", "cells", "error", "cpu_low_s", "cpu_high_s"], rows)
 
 
-def alpha():
-    """Spread after 240 s of rest over alpha, and the fresh one, each mix on the floor that its fresh spread asks for (validation.md)."""
-    rows = []
-    for mix, coefficient in (("a", 0.21), ("b", 0.37), ("c", 0.33)):
-        floor = ["floor.contact=friction", f"floor.coefficient={coefficient}"]
-        fresh, _ = run(f"slump_flow_mix_{mix}.toml", *floor)
-        for value in (0.01, 0.03, 0.1, 0.3, 0.6, 1, 2, 4, 8, 16):
-            rested, _ = run(f"slump_flow_mix_{mix}_rest240.toml", f"mix.thixotropy.destructuration={value}", *floor)
-            rows.append([mix.upper(), value, f"{fresh:.1f}", f"{rested:.1f}"])
-    write("alpha.csv", ["mix", "alpha", "fresh_mm", "rested_mm"], rows)
-
-
 errors()
-alpha()
 subprocess.run([program, "estimate", "--chart", str(here.parent / "rheograph.svg")], check=True)

@@ -51,24 +51,3 @@ set yrange [0:2700]
 plot x with lines lc 8 dt 2 title "predicted as measured", \
      table("^torque,.paste") using 4:6:5:7 with xyerrorbars pt 7 lc 4 title "static yield stress of a paste, from shorter rests"
 unset multiplot
-
-reset
-set datafile separator ","
-set terminal svg size 900,480 font "sans,13" background "white"
-set grid lc "#dddddd"
-set output "alpha.svg"
-set logscale x
-set xlabel "α"
-set ylabel "spread lost by 240 s of rest / mm"
-set xrange [0.008:20]
-set yrange [-40:200]
-set key top right
-lost(mix) = sprintf("< grep '^%s,' alpha.csv", mix)
-set object rectangle from 1.1, -40 to 17, 200 behind fillcolor rgb "#eeeeee" fillstyle solid noborder
-set object rectangle from 0.008, 15 to 20, 20 behind fillcolor rgb "#bbccee" fillstyle solid noborder
-set arrow from 3.6, -40 to 3.6, 200 nohead dt 3 lc 8
-set label "calibrated: 3.6 [1.1, 17]" at 1.25, -28
-set label "measured: 15 to 20 mm, ± 42 each" at 0.009, 8
-plot lost("A") using 2:($3-$4) with linespoints pt 7 lc 1 title "Mix A", \
-     lost("B") using 2:($3-$4) with linespoints pt 7 lc 2 title "Mix B", \
-     lost("C") using 2:($3-$4) with linespoints pt 7 lc 7 title "Mix C"

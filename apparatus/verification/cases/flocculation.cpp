@@ -112,6 +112,20 @@ Case flocculation_case(Depth depth) {
       history_problem("smooth_rate", "Smooth rate, 5 (1 − cos t/2) 1/s for 20 s", smooth, depth));
   const double order = observed_order(result.problems.back().series[0]);
   result.problems.back().bounds = {{.what = "update: order", .value = order, .limit = 1.9, .at_least = true}};
+  const ShearPiece above_rest = {.duration = 20.0,
+                                 .rate = [](double t) { return 5.0 * (1.1 - std::cos(0.5 * t)); }};
+  const study::Case by_time{.name = "rate_power",
+                            .title = "",
+                            .history = {above_rest},
+                            .thixotropy = {1.3, RatePowerKinetics{0.26, 0.2}},
+                            .times = every_second(20.0)};
+  result.problems.push_back(history_problem(
+      "rate_power", "Breakdown by a power of the rate, 5 (1.1 − cos t/2) 1/s for 20 s", by_time, depth));
+  result.problems.back().equation = "dλ/dt = A_thix/τ0 − k γ̇(t)^a λ, k = 0.26 1/s, a = 0.2";
+  result.problems.back().bounds = {{.what = "update: order",
+                                    .value = observed_order(result.problems.back().series[0]),
+                                    .limit = 1.9,
+                                    .at_least = true}};
   const ShearPiece up = {.duration = 10.0, .rate = [](double t) { return 0.5 * t; }};
   const ShearPiece down = {.duration = 10.0, .rate = [](double t) { return 5.0 - 0.5 * t; }};
   const study::Case gate{.name = "gate",
