@@ -85,6 +85,8 @@ Json fit_results(const FitResult& r) {
   for (const FitParameter& p : fit_parameters())
     if (!p.member) j[p.key] = json_of(value_of(r, p));
   j["exponent"] = json_of(r.exponent);
+  j["breakdown_rate_per_s"] = json_of(r.breakdown_rate);
+  j["rate_exponent"] = nullptr;  // one speed does not tell it
   j["models"] = candidates_json(r);
   j["choice"] = r.choice;
   j["notes"] = r.notes;

@@ -90,6 +90,8 @@ struct FitResult {
   RecordKind kind = RecordKind::flow_curve;
   std::string model;                          ///< kinetics or law: "power", "bingham"
   std::optional<ParameterEstimate> exponent;  ///< n of the power kinetics
+  /// k gamma_dot^a of the rate_power kinetics at the record's shear rates, in place of alpha [1/s]
+  std::optional<ParameterEstimate> breakdown_rate;
   /// Parameters that the law of a flow curve alone has, by their names: "consistency".
   std::map<std::string, std::optional<ParameterEstimate>> of_law;
   std::vector<Candidate> candidates;

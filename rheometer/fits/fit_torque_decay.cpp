@@ -163,6 +163,8 @@ void report_parameters(const Readings& r, const Identified& identified, const Fi
                                    power ? -std::log(lambda_0) * alpha : 0.0};
     result.alpha = identified(alpha, gradient, std::max(alpha, 1.0 / (rate * r.x.back())));
   }
+  const bool by_time = decay_fit(in.kinetics).needs_speeds;
+  if (by_time) std::swap(result.alpha, result.breakdown_rate);
   if (power) result.exponent = identified(n, {0, 0, 0, 0, 1}, n);
   if (in.rest)
     result.A_thix = identified(lambda_0 * tau_0 / *in.rest, {lambda_0 / *in.rest, 0, tau_0 / *in.rest, 0, 0},
@@ -174,7 +176,15 @@ void report_parameters(const Readings& r, const Identified& identified, const Fi
   note(result.mu, "plastic_viscosity",
        " at one speed together with the others; --plastic-viscosity gives it");
   note(result.lambda_0, "flocculation_start", "");
-  note(result.alpha, "alpha", "");
+  if (by_time)
+    note(result.breakdown_rate, "breakdown_rate", "");
+  else
+    note(result.alpha, "alpha", "");
+  if (by_time)
+    result.notes.push_back(
+        "rate_exponent: one speed does not tell it; breakdown_rate is k gamma_dot^a at this one. tremie fit "
+        "--protocol "
+        "takes decays at two speeds");
   if (power) note(result.exponent, "exponent", "");
   if (in.rest)
     note(result.A_thix, "structuration_rate", "");

@@ -29,6 +29,8 @@ const std::vector<FitParameter>& fit_parameters() {
         {"flocculation_start", "", "flocculation_start", "flocculation at start", "λ at the start", "lambda",
          &FitResult::lambda_0},
         {"alpha", "", "alpha", "alpha", "α", "alpha", &FitResult::alpha},
+        {"breakdown_rate", "1/s", "breakdown_rate_per_s", "breakdown rate", "breakdown rate at this speed",
+         "k", &FitResult::breakdown_rate},
         {"exponent", "", "exponent", "exponent n", "exponent of the kinetics", "n", &FitResult::exponent},
         {"structuration_rate", "Pa/s", "structuration_rate_Pa_per_s", "A_thix", "A_thix", "A_thix",
          &FitResult::A_thix}};
@@ -52,7 +54,11 @@ std::vector<FitParameter> parameters_of(const FitResult& fit) {
     for (const LawParameter& p : law->parameters) rows.push_back(p.row);
   else
     std::copy_if(fit_parameters().begin(), fit_parameters().end(), std::back_inserter(rows),
-                 [](const auto& p) { return p.member && p.member != &FitResult::exponent; });
+                 [&](const auto& p) {
+                   const auto other =
+                       fit.model == RatePowerKinetics::word ? &FitResult::alpha : &FitResult::breakdown_rate;
+                   return p.member && p.member != &FitResult::exponent && p.member != other;
+                 });
   return rows;
 }
 

@@ -36,10 +36,12 @@ TEST(SceneReader, DefaultsAreTheDocumentedOnes) {
   EXPECT_EQ(s.mix.density, 2400.0);
   EXPECT_EQ(s.mix.K, 1e6);
   EXPECT_EQ(s.mix.thixotropy->A_thix, 1.3);
-  EXPECT_EQ(destructuration(s.mix.thixotropy->kinetics), 0.01);
-  const auto* gated = std::get_if<GatedKinetics>(&s.mix.thixotropy->kinetics);
-  ASSERT_TRUE(gated);
-  EXPECT_EQ(gated->gamma_c, 0.1);
+  const auto* kinetics = std::get_if<RatePowerKinetics>(&s.mix.thixotropy->kinetics);
+  ASSERT_TRUE(kinetics);
+  EXPECT_EQ(kinetics->breakdown, 0.26);
+  EXPECT_EQ(kinetics->rate_exponent, 0.2);
+  EXPECT_FALSE(kinetics->gate());
+  EXPECT_EQ(kinetics->exponent, 1.0);
   EXPECT_EQ(s.rest, 0.0);
   EXPECT_EQ(s.duration, 30.0);
   EXPECT_EQ(s.lift_speed, 0.15);
@@ -50,6 +52,37 @@ TEST(SceneReader, DefaultsAreTheDocumentedOnes) {
   EXPECT_EQ(s.model.points_per_cell, (std::array{4, 4}));
   EXPECT_FALSE(s.model.time_step.has_value());
   EXPECT_FALSE(slump(read_text(mix_a, "a.toml")).mix.thixotropy.has_value());
+}
+
+/// The kinetics that a scene with these keys in [mix.thixotropy] has.
+std::string kinetics_of(const std::string& keys, const std::vector<std::string>& overrides = {}) {
+  return std::string(
+      word(slump(read_text(thixotropic + keys, "a.toml", overrides)).mix.thixotropy->kinetics));
+}
+
+TEST(SceneReader, KineticsFollowFromTheirKeys) {
+  EXPECT_EQ(kinetics_of(""), "rate_power");
+  EXPECT_EQ(kinetics_of("destructuration = 0.03\n"), "gated");
+  EXPECT_EQ(kinetics_of("destructuration = 0.03\nbreakdown_rate = \"1 1/s\"\n"), "rate_power");
+  EXPECT_EQ(kinetics_of("breakdown_rate = \"1 1/s\"\n", {"mix.thixotropy.destructuration=0.03"}), "gated");
+  EXPECT_EQ(kinetics_of("breakdown_rate = \"1 1/s\"\n", {"mix.thixotropy.kinetics=roussel"}), "roussel");
+  EXPECT_EQ(kinetics_of("", {"preset=paper"}), "gated");
+  // Who names kinetics and gives another's key in one place contradicts himself.
+  EXPECT_TRUE(says(complaint(thixotropic + "kinetics = \"roussel\"\nrate_exponent = 0.2\n"),
+                   {"bad.toml:8", "rate_exponent", "has no meaning with kinetics = \"roussel\""}));
+  EXPECT_TRUE(says(complaint(thixotropic + "kinetics = \"power\"\n"), {"exponent", "missing key"}));
+}
+
+TEST(SceneReader, ModesAreSharesAndFactors) {
+  const auto modes = [](const std::string& value) {
+    return complaint(thixotropic + "modes = " + value + "\n");
+  };
+  EXPECT_EQ(modes("[[0.6, 1.0], [0.4, 0.1]]"), "");
+  EXPECT_TRUE(says(modes("[[0.6, 1.0], [0.6, 0.1]]"), {"modes", "sum is 1.2"}));
+  EXPECT_TRUE(says(modes("[[0.0, 1.0], [1.0, 0.1]]"), {"modes", "greater than 0"}));
+  EXPECT_TRUE(says(modes("[0.6, 1.0]"), {"modes", "array of pairs"}));
+  EXPECT_TRUE(
+      says(modes("[[0.1,1],[0.1,1],[0.1,1],[0.1,1],[0.1,1],[0.1,1],[0.4,1]]"), {"modes", "at most 6"}));
 }
 
 TEST(SceneReader, EverySceneOfTheTreeIsValid) {
