@@ -273,7 +273,11 @@ Lab read_lab(const std::filesystem::path& file) {
   read_unknowns(document, lab);
   read_tests(document, "forecast", lab);
   // Every test's scene is read once, at the middle of the ranges, before anything is run.
-  for (const Test& test : lab.tests) scene_at(lab, test, std::vector<double>(lab.unknowns.size(), 0.5));
+  lab.files.push_back(file);
+  for (const Test& test : lab.tests) {
+    const auto scene = scene_at(lab, test, std::vector<double>(lab.unknowns.size(), 0.5));
+    lab.files.insert(lab.files.end(), scene.files.begin(), scene.files.end());
+  }
   return lab;
 }
 

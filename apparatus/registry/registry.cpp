@@ -27,6 +27,7 @@ Scene build(Loaded loaded) {
   if (loaded.values.has("output.frames")) scene.output = read_output(loaded.values);
   scene.resolved = write_resolved(loaded.schema, loaded.values);
   scene.notes = loaded.values.notes;
+  scene.files = loaded.files;
   for (const auto& [key, value] : loaded.values.entries)
     if (loaded.values.given(key)) scene.places[key] = describe(value.origin);
   return scene;

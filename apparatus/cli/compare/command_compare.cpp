@@ -74,7 +74,9 @@ int run_comparison(const CompareOptions& options) {
   const Stopwatch watch;
   const auto comparison = report::compare(options.folders);
   const HeldInterrupts held;  // outlives the folder
-  report::RunFolder folder(options.out, options.force);
+  report::RunFolder folder(
+      options.out, options.force,
+      std::vector<std::filesystem::path>(options.folders.begin(), options.folders.end()));
   write(comparison, options, watch, folder.staging());
   folder.publish();
   const auto reasons = report::comparison_reasons(comparison);

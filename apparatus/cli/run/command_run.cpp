@@ -68,7 +68,7 @@ int threads_for(const scene::Scene& scene, const RunOptions& options) {
 }
 
 report::RunFolder folder_of(const RunOptions& options, const scene::Scene& scene) {
-  return {options.out.empty() ? "runs/" + scene.name : options.out, options.force};
+  return {options.out.empty() ? "runs/" + scene.name : options.out, options.force, scene.files};
 }
 
 int run_cell(const RunOptions& options) {

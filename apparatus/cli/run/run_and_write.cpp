@@ -96,6 +96,17 @@ scene::Outcome run_and_write(const scene::Scene& scene, const report::RunRequest
   return outcome;
 }
 
+/// Of the interrupted run the checkpoint alone stays, for `tremie resume`.
+int leave_finished_result(const report::RunFolder& folder, Screen screen) {
+  if (screen == Screen::one_json_object) print_json_of(folder.staging());
+  std::error_code error;
+  const bool goes_on = std::filesystem::exists(folder.checkpoint() / "state", error);
+  const std::string target = folder.target().string();
+  fmt::print(stderr, "interrupted: {} keeps its earlier result{}\n", target,
+             goes_on ? "; tremie resume " + target + " goes on" : "");
+  return interrupted;
+}
+
 }  // namespace
 
 /// The relative accuracy that was asked for: "1 %".
@@ -114,6 +125,8 @@ int run_and_publish(const scene::Scene& scene, const report::RunRequest& request
                     report::RunFolder& folder, const std::optional<report::Checkpoint>& from) {
   std::vector<std::string> notes;
   const auto outcome = run_and_write(scene, request, screen != Screen::everything, folder, from, notes);
+  if (outcome.status == Status::interrupted && folder.holds_finished_result())
+    return leave_finished_result(folder, screen);
   folder.publish();
   if (outcome.status != Status::interrupted) report::remove_checkpoint(folder.target() / "checkpoint");
   print_reasons(outcome);

@@ -204,7 +204,7 @@ int stopped() {
 int run_calibration(const CalibrateOptions& options) {
   const Stopwatch watch;
   const Lab lab = calibration::read_lab(options.file);
-  report::RunFolder folder(options.out.empty() ? "runs/" + lab.name : options.out, options.force);
+  report::RunFolder folder(options.out.empty() ? "runs/" + lab.name : options.out, options.force, lab.files);
   stop_on_interrupt();
   calibration::Settings settings;
   settings.jobs =

@@ -101,7 +101,8 @@ int run_fit(const Given& o) {
   const Files files = files_of(fits, o);
   const std::string name = std::filesystem::path(o.data.front()).stem().string();
   const HeldInterrupts held;  // outlives the folder
-  report::RunFolder folder(o.out.empty() ? "runs/" + name : o.out, o.force);
+  report::RunFolder folder(o.out.empty() ? "runs/" + name : o.out, o.force,
+                           std::vector<std::filesystem::path>(o.data.begin(), o.data.end()));
   scene::Outcome outcome;
   outcome.apparatus = "fit";
   outcome.checks.reasons = fits.reasons;

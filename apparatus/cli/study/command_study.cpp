@@ -1,11 +1,8 @@
 // tremie study STUDY.toml: many runs of a scene, its keys changed by a design.
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -17,9 +14,11 @@
 #include "apparatus/cli/process/own_file.hpp"
 #include "apparatus/cli/process/stop_signals.hpp"
 #include "apparatus/cli/program.hpp"
+#include "apparatus/cli/study/study_folder.hpp"
 #include "apparatus/cli/study/study_progress.hpp"
 #include "apparatus/report/process.hpp"
 #include "apparatus/report/rheometer_files.hpp"
+#include "apparatus/report/run_files/own_files.hpp"
 #include "apparatus/run/machine/stopwatch.hpp"
 #include "apparatus/scene/input_error.hpp"
 #include "apparatus/study/page/study_page.hpp"
@@ -51,49 +50,6 @@ struct Job {
   fs::path folder;
   std::string fingerprint;
 };
-
-// --- folder ---------------------------------------------------------------------------------------------
-
-bool is_study_folder(const fs::path& folder) { return fs::exists(folder / "design.csv"); }
-
-void refuse(const fs::path& folder, const std::string& why) {
-  throw scene::InputError(fmt::format("--out {}: {}", folder.string(), why));
-}
-
-void remove_earlier_study(const fs::path& folder) {
-  for (const char* name : {"design.csv", "study.csv", "study.h5", "report.html", "summary.json",
-                           "journal.jsonl", "study.sbatch", "Snakefile", "study.sh", "parallel.log"})
-    fs::remove(folder / name);
-  fs::remove_all(folder / "rows");
-}
-
-void make_folder(const Job& job, const StudyOptions& options) {
-  const bool filled = fs::is_directory(job.folder) && !fs::is_empty(job.folder);
-  if (fs::exists(job.folder) && !fs::is_directory(job.folder)) refuse(job.folder, "is no folder");
-  const bool goes_on = options.resume || options.collect || options.row >= 0;
-  if (filled && !is_study_folder(job.folder)) refuse(job.folder, "holds files that are no study");
-  if (filled && !goes_on && !options.force)
-    refuse(job.folder, "holds a study; --resume goes on with it, --force starts over");
-  if (filled && !goes_on) remove_earlier_study(job.folder);
-  std::error_code error;
-  fs::create_directories(job.folder, error);
-  if (error) refuse(job.folder, "cannot be written: " + error.message());
-}
-
-/// Written once; where it is there it must be this study's. Many rows may start at once.
-void write_design(const Job& job) {
-  const fs::path file = job.folder / "design.csv";
-  const std::string csv = study::design_csv(job.definition, job.design);
-  if (!fs::exists(file)) {
-    const fs::path part = job.folder / fmt::format(".design.{}.part", getpid());
-    io::write_text(part, csv);
-    fs::rename(part, file);
-    return;
-  }
-  std::ifstream stream(file, std::ios::binary);
-  if (std::string(std::istreambuf_iterator<char>(stream), {}) != csv)
-    refuse(job.folder, "its design.csv is another study's; --force starts over");
-}
 
 // --- rows -----------------------------------------------------------------------------------------------
 
@@ -157,6 +113,7 @@ int finish(const Job& job, const StudyOptions& options, const study::RowFiles& f
   study::write_whole(job.folder / "report.html",
                      study::study_html(job.definition, job.design, collected, indices, note, reasons,
                                        "tremie study " + options.file));
+  finish_study_folder(job.folder);
   for (const auto& reason : reasons) fmt::print(stderr, "not to be trusted: {}\n", reason);
   if (options.json) print_result_as_json(job.folder);
   if (!options.quiet) {
@@ -180,8 +137,8 @@ int run_here(const Job& job, const StudyOptions& options) {
   there.insert(there.end(), files.rows.begin(), files.rows.end());
   stop_on_interrupt();
   if (!options.collect && !run_rows(job, options, journal, there)) {
-    fmt::print(stderr, "interrupted; tremie study {} --out {} --resume goes on\n", options.file,
-               job.folder.string());
+    fmt::print(stderr, "interrupted; tremie study {} --out {} --resume goes on{}\n", options.file,
+               job.folder.string(), where_the_earlier_is(job.folder));
     return interrupted;
   }
   return finish(job, options, files, journal.rows(), watch);
@@ -209,6 +166,7 @@ int hand_to_engine(const Job& job, const StudyOptions& options) {
       study::engine_script(engine, own_file().parent_path() / "tremie", fs::absolute(options.file),
                            job.folder, job.design.size(), jobs_of(options));
   io::write_text(script.file, script.text);
+  report::mark_like(script.file, job.folder / "design.csv");
   const std::string line = fmt::format("{}", fmt::join(script.start, " "));
   if (!options.submit) {
     if (!options.quiet) fmt::print("run             {}\n", line);
@@ -237,15 +195,12 @@ int run_study(const StudyOptions& options) {
   Job job;
   job.definition = study::read_definition(options.file);
   job.design = study::make_design(job.definition);
-  job.folder =
-      fs::absolute(options.out.empty() ? "runs/" + job.definition.name : options.out).lexically_normal();
+  job.folder = report::resolved_folder(options.out.empty() ? "runs/" + job.definition.name : options.out);
   job.fingerprint = study::fingerprint(job.definition, job.design);
-  if (options.collect && !is_study_folder(job.folder)) refuse(job.folder, "holds no study");
-  if (options.row >= 0 && !options.out.empty() && fs::exists(job.folder) && !fs::is_empty(job.folder) &&
-      !is_study_folder(job.folder) && !fs::exists(job.folder / "rows"))
-    refuse(job.folder, "holds files that are no study");
-  make_folder(job, options);
-  write_design(job);
+  if (options.collect && !is_study_folder(job.folder)) report::refuse_folder(job.folder, "holds no study");
+  const bool goes_on = options.resume || options.collect || options.row >= 0;
+  make_study_folder(job.folder, goes_on, options.force);
+  write_design(job.folder, study::design_csv(job.definition, job.design));
   if (options.row >= 0) return run_one_row(job, options);
   if (!options.engine.empty()) return hand_to_engine(job, options);
   return run_here(job, options);
