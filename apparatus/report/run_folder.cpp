@@ -15,7 +15,7 @@
 #include <thread>
 #include <vector>
 
-#include "apparatus/report/run_files/own_files.hpp"
+#include "apparatus/report/folder/own_files.hpp"
 #include "apparatus/scene/input_error.hpp"
 #include "libmpm/io/write_error.hpp"
 

@@ -16,7 +16,7 @@ struct Resumed {};
 class RunFolder {
  public:
   /// Throws scene::InputError where the folder holds something or an unfinished run and `replace` is false, where it
-  /// holds one of the `inputs` or anything else that is not Tremie's (run_files/own_files.hpp), where another process
+  /// holds one of the `inputs` or anything else that is not Tremie's (folder/own_files.hpp), where another process
   /// writes there, or where it cannot be written.
   RunFolder(const std::filesystem::path& folder, bool replace,
             const std::vector<std::filesystem::path>& inputs = {});

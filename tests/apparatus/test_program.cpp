@@ -135,6 +135,20 @@ TEST_F(Program, OutputThatIsLostIsAFault) {
   EXPECT_EQ(tremie("check quick.toml > /dev/full").code, 1);
 }
 
+// A message that nobody can read changes no exit code; it once ended the program with 134.
+TEST_F(Program, ClosedAndFullStreamsKeepTheExitCode) {
+  test::write_file(folder_ / "bad.toml", "apparatus = \"slump_flow\"\nmix = \"nix\"\n");
+  for (const auto& [arguments, code] :
+       std::vector<std::pair<std::string, int>>{{"run quick.toml --out a --force", 0},
+                                                {"run bad.toml", 2},
+                                                {"check bad.toml", 2},
+                                                {"new nix", 2},
+                                                {"rum", 2}}) {
+    for (const char* streams : {" 2>&-", " 2>/dev/full", " >&-", " >/dev/full", " >&- 2>&-"})
+      EXPECT_EQ(tremie(arguments + streams).code, code) << arguments << streams;
+  }
+}
+
 TEST_F(Program, WhatASchemeCannotRunIsToldWithItsPlace) {
   test::write_file(
       folder_ / "bad.toml",

@@ -10,6 +10,7 @@
 #include "apparatus/cli/options/command.hpp"
 #include "apparatus/cli/options/json_option.hpp"
 #include "apparatus/cli/process/brief_spin.hpp"
+#include "apparatus/cli/process/say.hpp"
 #include "apparatus/cli/process/stop_signals.hpp"
 #include "apparatus/cli/run/run_and_write.hpp"
 #include "apparatus/registry/cost_estimate.hpp"
@@ -37,8 +38,8 @@ scene::Scene with_cells_for(const scene::Scene& scene, const RunOptions& options
   auto overrides = options.overrides;
   overrides.push_back(scene::cells_override(scene, choice.factor));
   if (!options.quiet && !options.json)
-    fmt::print("accuracy        {} wants {}, about {:.1f} s of CPU\n", options.accuracy, overrides.back(),
-               choice.cpu);
+    say("accuracy        {} wants {}, about {:.1f} s of CPU\n", options.accuracy, overrides.back(),
+        choice.cpu);
   std::fflush(stdout);
   return scene::read(options.scene, overrides);
 }
@@ -58,8 +59,8 @@ void check_threads(int threads) {
     throw scene::InputError(fmt::format("--threads {}: this machine has {} processors; allowed: at most {}",
                                         threads, processors, std::max(64, 4 * processors)));
   if (threads > processors)
-    fmt::print(stderr, "note: --threads {} on {} processors: slower than --threads {}\n", threads, processors,
-               processors);
+    say(stderr, "note: --threads {} on {} processors: slower than --threads {}\n", threads, processors,
+        processors);
 }
 
 int threads_for(const scene::Scene& scene, const RunOptions& options) {

@@ -7,6 +7,7 @@
 
 #include "apparatus/cli/commands.hpp"
 #include "apparatus/cli/options/json_option.hpp"
+#include "apparatus/cli/process/say.hpp"
 #include "apparatus/cli/process/stop_signals.hpp"
 #include "apparatus/cli/progress.hpp"
 #include "apparatus/cli/run/keeper.hpp"
@@ -23,22 +24,22 @@ int exit_code_of(const scene::Outcome& outcome) {
 }
 
 void print_outcome(const scene::Scene& scene, const scene::Outcome& outcome) {
-  for (const auto& line : outcome.lines) fmt::print("{}\n", line);
+  for (const auto& line : outcome.lines) say("{}\n", line);
   if (const std::string line = report::measured_line(outcome); !line.empty())
-    fmt::print("measured        {}\n", line);
-  for (const auto& line : scene::error_lines(scene, outcome)) fmt::print("error           {}\n", line);
+    say("measured        {}\n", line);
+  for (const auto& line : scene::error_lines(scene, outcome)) say("error           {}\n", line);
   if (!outcome.has_points) return;
   const Checks& c = outcome.checks;
-  fmt::print("checks          volume {:+.3g} %, mass {:.1e}, {} unconverged steps, {} points lost\n",
-             100.0 * c.volume_change, c.mass_error, c.unconverged_steps, c.points_lost);
+  say("checks          volume {:+.3g} %, mass {:.1e}, {} unconverged steps, {} points lost\n",
+      100.0 * c.volume_change, c.mass_error, c.unconverged_steps, c.points_lost);
   const Cost& cost = outcome.cost;
-  fmt::print("cost            {:.2f} s of CPU, {:.2f} s by the clock, {} steps, {} points, {:.0f} MB\n",
-             cost.cpu, cost.wall, cost.steps, cost.points, static_cast<double>(cost.peak_rss_bytes) / 1e6);
-  if (outcome.status == Status::interrupted) fmt::print("interrupted at {:.2f} s\n", cost.simulated);
+  say("cost            {:.2f} s of CPU, {:.2f} s by the clock, {} steps, {} points, {:.0f} MB\n", cost.cpu,
+      cost.wall, cost.steps, cost.points, static_cast<double>(cost.peak_rss_bytes) / 1e6);
+  if (outcome.status == Status::interrupted) say("interrupted at {:.2f} s\n", cost.simulated);
 }
 
 void print_reasons(const scene::Outcome& outcome) {
-  for (const auto& reason : outcome.checks.reasons) fmt::print(stderr, "not to be trusted: {}\n", reason);
+  for (const auto& reason : outcome.checks.reasons) say(stderr, "not to be trusted: {}\n", reason);
 }
 
 /// An accuracy that was not reached is said.
@@ -102,8 +103,8 @@ int leave_finished_result(const report::RunFolder& folder, Screen screen) {
   std::error_code error;
   const bool goes_on = std::filesystem::exists(folder.checkpoint() / "state", error);
   const std::string target = folder.target().string();
-  fmt::print(stderr, "interrupted: {} keeps its earlier result{}\n", target,
-             goes_on ? "; tremie resume " + target + " goes on" : "");
+  say(stderr, "interrupted: {} keeps its earlier result{}\n", target,
+      goes_on ? "; tremie resume " + target + " goes on" : "");
   return interrupted;
 }
 
@@ -134,10 +135,10 @@ int run_and_publish(const scene::Scene& scene, const report::RunRequest& request
   if (screen == Screen::everything) {
     print_outcome(scene, outcome);
     const int width = outcome.has_points ? 15 : 20;  // as wide as the words before its lines
-    for (const auto& note : notes) fmt::print("{:<{}} {}\n", "note", width, note);
-    fmt::print("{:<{}} {}\n", "written to", width, folder.target().string());
+    for (const auto& note : notes) say("{:<{}} {}\n", "note", width, note);
+    say("{:<{}} {}\n", "written to", width, folder.target().string());
     if (outcome.status == Status::interrupted && scene.output.checkpoint_interval)
-      fmt::print("to go on        tremie resume {}\n", folder.target().string());
+      say("to go on        tremie resume {}\n", folder.target().string());
   }
   return exit_code_of(outcome);
 }

@@ -12,6 +12,7 @@
 #include "apparatus/cli/fit/fit_protocol.hpp"
 #include "apparatus/cli/options/command.hpp"
 #include "apparatus/cli/options/json_option.hpp"
+#include "apparatus/cli/process/say.hpp"
 #include "apparatus/cli/program.hpp"
 #include "apparatus/cli/study/fit_csv.hpp"
 #include "apparatus/report/fit_input.hpp"
@@ -113,12 +114,12 @@ int run_fit(const Given& o) {
   summary["input"] = report::fit_input(options, o.data);
   io::write_text(folder.staging() / "summary.json", summary.dump(2) + "\n");
   folder.publish();
-  for (const auto& reason : fits.reasons) fmt::print(stderr, "not to be trusted: {}\n", reason);
+  for (const auto& reason : fits.reasons) say(stderr, "not to be trusted: {}\n", reason);
   if (o.json) {
     print_result_as_json(folder.target());
   } else if (!o.quiet) {
     print_fits(fits, o.data);
-    fmt::print("{:<22} {}\n", "written to", folder.target().string());
+    say("{:<22} {}\n", "written to", folder.target().string());
   }
   return fits.reasons.empty() ? done : not_to_be_trusted;
 }

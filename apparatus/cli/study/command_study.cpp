@@ -12,13 +12,14 @@
 #include "apparatus/cli/options/command.hpp"
 #include "apparatus/cli/options/json_option.hpp"
 #include "apparatus/cli/process/own_file.hpp"
+#include "apparatus/cli/process/say.hpp"
 #include "apparatus/cli/process/stop_signals.hpp"
 #include "apparatus/cli/program.hpp"
 #include "apparatus/cli/study/study_folder.hpp"
 #include "apparatus/cli/study/study_progress.hpp"
+#include "apparatus/report/folder/own_files.hpp"
 #include "apparatus/report/process.hpp"
 #include "apparatus/report/rheometer_files.hpp"
-#include "apparatus/report/run_files/own_files.hpp"
 #include "apparatus/run/machine/stopwatch.hpp"
 #include "apparatus/scene/input_error.hpp"
 #include "apparatus/study/page/study_page.hpp"
@@ -114,13 +115,13 @@ int finish(const Job& job, const StudyOptions& options, const study::RowFiles& f
                      study::study_html(job.definition, job.design, collected, indices, note, reasons,
                                        "tremie study " + options.file));
   finish_study_folder(job.folder);
-  for (const auto& reason : reasons) fmt::print(stderr, "not to be trusted: {}\n", reason);
+  for (const auto& reason : reasons) say(stderr, "not to be trusted: {}\n", reason);
   if (options.json) print_result_as_json(job.folder);
   if (!options.quiet) {
     if (const std::size_t moving = study::moving_rows(collected); moving > 0)
-      fmt::print("note            in {} of {} runs the concrete still moved at the end (test.duration)\n",
-                 moving, collected.rows.size());
-    fmt::print("written to      {}\n", job.folder.string());
+      say("note            in {} of {} runs the concrete still moved at the end (test.duration)\n", moving,
+          collected.rows.size());
+    say("written to      {}\n", job.folder.string());
   }
   return reasons.empty() ? done : not_to_be_trusted;
 }
@@ -137,8 +138,8 @@ int run_here(const Job& job, const StudyOptions& options) {
   there.insert(there.end(), files.rows.begin(), files.rows.end());
   stop_on_interrupt();
   if (!options.collect && !run_rows(job, options, journal, there)) {
-    fmt::print(stderr, "interrupted; tremie study {} --out {} --resume goes on{}\n", options.file,
-               job.folder.string(), where_the_earlier_is(job.folder));
+    say(stderr, "interrupted; tremie study {} --out {} --resume goes on{}\n", options.file,
+        job.folder.string(), where_the_earlier_is(job.folder));
     return interrupted;
   }
   return finish(job, options, files, journal.rows(), watch);
@@ -154,7 +155,7 @@ int run_one_row(const Job& job, const StudyOptions& options) {
   const Row row =
       study::run_row(job.definition, index, study::overrides_of(job.definition, job.design[index]));
   study::write_row_file(job.folder, job.fingerprint, row);
-  for (const auto& reason : row.reasons) fmt::print(stderr, "row {} not to be trusted: {}\n", index, reason);
+  for (const auto& reason : row.reasons) say(stderr, "row {} not to be trusted: {}\n", index, reason);
   return done;
 }
 
@@ -166,10 +167,10 @@ int hand_to_engine(const Job& job, const StudyOptions& options) {
       study::engine_script(engine, own_file().parent_path() / "tremie", fs::absolute(options.file),
                            job.folder, job.design.size(), jobs_of(options));
   io::write_text(script.file, script.text);
-  report::mark_like(script.file, job.folder / "design.csv");
+  report::mark_own_file(script.file);
   const std::string line = fmt::format("{}", fmt::join(script.start, " "));
   if (!options.submit) {
-    if (!options.quiet) fmt::print("run             {}\n", line);
+    if (!options.quiet) say("run             {}\n", line);
     return done;
   }
   const auto program = report::find_program(script.start.front());
@@ -179,7 +180,7 @@ int hand_to_engine(const Job& job, const StudyOptions& options) {
   const std::vector<std::string> arguments(script.start.begin() + 1, script.start.end());
   const auto code = report::run_program(program, arguments, job.folder, 1e9);
   if (code == 0) return done;
-  fmt::print(stderr, "tremie study: {} ended with {}\n", line, code ? fmt::format("{}", *code) : "a signal");
+  say(stderr, "tremie study: {} ended with {}\n", line, code ? fmt::format("{}", *code) : "a signal");
   return code == not_to_be_trusted ? not_to_be_trusted : fault;
 }
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "apparatus/report/run_files/own_files.hpp"
+#include "apparatus/report/folder/own_files.hpp"
 #include "libmpm/io/write_error.hpp"
 
 namespace tremie::cli {
@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Files that bear the design's time of change, which marks them as Tremie's.
+/// Files that are marked as Tremie's when they are written.
 constexpr const char* marked[] = {"design.csv",   "study.csv",    "study.h5",  "report.html",
                                   "summary.json", "study.sbatch", "Snakefile", "study.sh"};
 
@@ -34,7 +34,7 @@ bool is_own(const fs::path& folder, const fs::path& name) {
   if (name == "journal.jsonl" || name.parent_path() == "rows")
     return begins_with(file, R"({"tremie_study":)");
   if (name == "parallel.log") return begins_with(file, "Seq\tHost\tStarttime");
-  return report::is_marked_like(file, folder / "design.csv");
+  return report::is_marked(file);
 }
 
 /// The names that a study writes and that are there.
@@ -49,22 +49,13 @@ std::vector<fs::path> names_there(const fs::path& folder) {
   return names;
 }
 
-/// A design of somebody's own has no study beside it.
-bool has_begun(const std::vector<fs::path>& names) {
-  return std::any_of(names.begin(), names.end(), [](const fs::path& name) {
-    return name == "journal.jsonl" || name.parent_path() == "rows" || name == "study.sbatch" ||
-           name == "Snakefile" || name == "study.sh";
-  });
-}
-
 fs::path earlier_in(const fs::path& folder) { return folder / ".earlier"; }
 
 void remove_earlier(const fs::path& folder) {
   const fs::path earlier = earlier_in(folder);
   std::error_code ignored;
   for (const fs::path& name : names_there(earlier))
-    if (is_own(earlier, name) && name != "design.csv") fs::remove(earlier / name, ignored);
-  fs::remove(earlier / "design.csv", ignored);
+    if (is_own(earlier, name)) fs::remove(earlier / name, ignored);
   fs::remove(earlier / "rows", ignored);
   fs::remove(earlier, ignored);
 }
@@ -75,7 +66,6 @@ void give_way(const fs::path& folder) {
   std::vector<std::string> foreign;
   for (const fs::path& name : names)
     if (!is_own(folder, name)) foreign.push_back(name.string());
-  if (foreign.empty() && !has_begun(names)) foreign.push_back("design.csv");
   if (!foreign.empty())
     report::refuse_folder(folder,
                           fmt::format("holds files that are not Tremie's, or were changed since ({}): not "
@@ -115,6 +105,7 @@ void write_design(const fs::path& folder, const std::string& design) {
   if (!fs::exists(file)) {
     const fs::path part = folder / fmt::format(".design.{}.part", getpid());
     io::write_text(part, design);
+    report::mark_own_file(part);
     fs::rename(part, file);
     return;
   }
@@ -124,11 +115,8 @@ void write_design(const fs::path& folder, const std::string& design) {
 }
 
 void finish_study_folder(const fs::path& folder) {
-  // The results' time, not the design's: snakemake takes a table that is older than its rows for out of date.
-  for (const char* name : {"study.sbatch", "Snakefile", "study.sh"})
-    if (is_own(folder, name)) report::mark_like(folder / name, folder / "study.csv");
-  for (const char* name : {"design.csv", "study.h5", "report.html", "summary.json"})
-    report::mark_like(folder / name, folder / "study.csv");
+  for (const char* name : {"study.csv", "study.h5", "report.html", "summary.json"})
+    report::mark_own_file(folder / name);
   remove_earlier(folder);
 }
 

@@ -1,7 +1,8 @@
 #pragma once
 
-// Which files of a folder are Tremie's: what a command may replace there. All files of a result bear one time of
-// change, that of its summary; a file of another name or another time was put there, or changed, by others.
+// Which files of a folder are Tremie's: what a command may replace there. The time of change of a file that Tremie wrote
+// ends with a mark; a file of another name or without the mark was put there, or changed, by others. A file system or
+// an archive of whole seconds loses the mark: what lies there is not replaced.
 
 #include <filesystem>
 #include <string>
@@ -19,12 +20,12 @@ std::filesystem::path resolved_folder(const std::filesystem::path& folder);
 /// Throws where the folder is, or holds, a file or folder that the command reads.
 void refuse_inputs(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& inputs);
 
-/// Gives all files of a finished result the same time of change.
+/// Marks a file.
+void mark_own_file(const std::filesystem::path& file);
+/// Marks all files of a finished result.
 void mark_own_files(const std::filesystem::path& folder);
-/// Gives one file the time of change of another.
-void mark_like(const std::filesystem::path& file, const std::filesystem::path& reference);
-/// Whether it is a file, and no link, that bears the other's time.
-bool is_marked_like(const std::filesystem::path& file, const std::filesystem::path& reference);
+/// Whether it is a file, no link, and as Tremie left it.
+bool is_marked(const std::filesystem::path& file);
 
 /// The files in a result's folder that are not Tremie's, or no longer as Tremie wrote them: "notes.txt", "sub/".
 std::vector<std::string> foreign_files(const std::filesystem::path& folder);

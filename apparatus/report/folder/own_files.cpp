@@ -1,6 +1,9 @@
-#include "apparatus/report/run_files/own_files.hpp"
+#include "apparatus/report/folder/own_files.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <time.h>
 
 #include <algorithm>
 #include <functional>
@@ -12,20 +15,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* summaries[] = {"summary.json", "VERIFICATION.md", "VALIDATION.md"};
-constexpr const char* top_files[] = {"scene.toml", "mix.toml", "results.h5", "frames.pvd", "shape.png"};
+/// The nanoseconds that mark a time of change: whole microseconds, which a disk shared with Windows keeps, too.
+constexpr long mark = 271'828'000;
 
-bool is_there(const fs::path& path) {
-  std::error_code error;
-  return fs::exists(fs::symlink_status(path, error));
-}
-
-/// The file whose time the others bear; empty where there is no result.
-fs::path summary_in(const fs::path& folder) {
-  for (const char* name : summaries)
-    if (is_there(folder / name)) return folder / name;
-  return {};
-}
+constexpr const char* top_files[] = {"summary.json", "VERIFICATION.md", "VALIDATION.md", "scene.toml",
+                                     "mix.toml",     "results.h5",      "frames.pvd",    "shape.png"};
 
 bool is_word(std::string_view text) {
   return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
@@ -41,7 +35,6 @@ bool is_name_of_ours(const fs::path& name) {
   if (parent == "checkpoint") return file == "frames" || file == "state" || file == "state.part";
   if (!parent.empty()) return false;
   const auto is = [&](const char* known) { return file == known; };
-  if (std::any_of(std::begin(summaries), std::end(summaries), is)) return true;
   if (std::any_of(std::begin(top_files), std::end(top_files), is)) return true;
   if (ending == ".html") return stem.starts_with("report");
   if (ending == ".toml") return stem.starts_with("lab_");
@@ -102,28 +95,29 @@ void refuse_inputs(const fs::path& folder, const std::vector<fs::path>& inputs) 
   }
 }
 
+void mark_own_file(const fs::path& file) {
+  timespec now = {};
+  clock_gettime(CLOCK_REALTIME, &now);
+  // Not before now: a make program takes a table that is older than its rows for out of date.
+  const timespec time{now.tv_sec + (now.tv_nsec > mark ? 1 : 0), mark}, both[] = {time, time};
+  utimensat(AT_FDCWD, file.c_str(), both, AT_SYMLINK_NOFOLLOW);
+}
+
 void mark_own_files(const fs::path& folder) {
-  const fs::path summary = summary_in(folder);
-  for_each_entry(folder, [&](const fs::path& name, bool) { mark_like(folder / name, summary); });
+  for_each_entry(folder, [&](const fs::path& name, bool is_folder) {
+    if (!is_folder) mark_own_file(folder / name);
+  });
 }
 
-void mark_like(const fs::path& file, const fs::path& reference) {
-  std::error_code error;
-  const auto time = fs::last_write_time(reference, error);
-  if (!error) fs::last_write_time(file, time, error);
-}
-
-bool is_marked_like(const fs::path& file, const fs::path& reference) {
-  std::error_code error;
-  return fs::is_regular_file(fs::symlink_status(file, error)) &&
-         fs::last_write_time(file, error) == fs::last_write_time(reference, error) && !error;
+bool is_marked(const fs::path& file) {
+  struct stat status = {};
+  return lstat(file.c_str(), &status) == 0 && S_ISREG(status.st_mode) && status.st_mtim.tv_nsec == mark;
 }
 
 std::vector<std::string> foreign_files(const fs::path& folder) {
-  const fs::path summary = summary_in(folder);
   std::vector<std::string> names;
   for_each_entry(folder, [&](const fs::path& name, bool is_folder) {
-    if (is_folder || summary.empty() || !is_name_of_ours(name) || !is_marked_like(folder / name, summary))
+    if (is_folder || !is_name_of_ours(name) || !is_marked(folder / name))
       names.push_back(name.string() + (is_folder ? "/" : ""));
   });
   std::sort(names.begin(), names.end());
