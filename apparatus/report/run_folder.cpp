@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* ours = ".tremie";          ///< marks a folder that results are written into
+constexpr const char* ours = list_of_own_files;  ///< empty, it marks a folder that results are written into
 constexpr const char* complete = ".publishing";  ///< all is written, and some of it already in its place
 
 std::string hidden_name(const fs::path& target) {
@@ -34,6 +34,12 @@ std::string hidden_name(const fs::path& target) {
 bool is_there(const fs::path& path) {
   std::error_code error;
   return fs::exists(path, error);
+}
+
+/// Whether a process writes there, or has left it.
+bool is_staging(const fs::path& folder) {
+  std::error_code error;
+  return fs::is_regular_file(folder / ours, error) && fs::is_empty(folder / ours, error);
 }
 
 /// Holds nothing, or nothing but what a run writes into on its way there.
@@ -130,7 +136,7 @@ void move_rest(const fs::path& staging, const fs::path& target) {
     return (a == "summary.json") < (b == "summary.json");
   });
   for (const fs::path& name : names)
-    if (name != complete && name != ours) fs::rename(staging / name, target / name);
+    if (name != complete) fs::rename(staging / name, target / name);
   fs::remove_all(staging);
 }
 
@@ -159,7 +165,7 @@ void clear_remains(const fs::path& parent, const fs::path& own) {
   for (const auto& entry : fs::directory_iterator(parent, ignored)) {
     const fs::path& part = entry.path();
     const std::string name = part.filename().string();
-    if (part == own || !name.starts_with('.') || !name.ends_with(".part") || !is_there(part / ours)) continue;
+    if (part == own || !name.starts_with('.') || !name.ends_with(".part") || !is_staging(part)) continue;
     int file = -1;
     if (lock_folder(part, file) == Lock::held && is_named(file, part) && !is_there(part / "checkpoint/state"))
       fs::remove_all(part, ignored);
@@ -239,7 +245,7 @@ void RunFolder::make_staging() {
 /// A folder of the staging's name that bears no mark of Tremie's is none, or the earlier result of a process that was
 /// killed when its own was in place.
 void RunFolder::refuse_foreign_staging() {
-  if (!is_there(staging_) || is_there(staging_ / ours)) return;
+  if (!is_there(staging_) || is_staging(staging_)) return;
   remove_own_files(staging_);
   std::error_code error;
   if (is_there(staging_) && !fs::is_empty(staging_, error))
@@ -301,7 +307,6 @@ void RunFolder::move_inside() {
 
 /// By one rename, or one exchange with an earlier result: at no moment is there none.
 void RunFolder::put_in_place() {
-  fs::remove(staging_ / ours);
   if (!is_there(target_)) return fs::rename(staging_, target_);
   if (renameat2(AT_FDCWD, staging_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) == 0)
     return remove_earlier(staging_, target_);
@@ -320,7 +325,6 @@ void RunFolder::refuse_what_came_meanwhile() {
   const bool filled = is_there(target_) && !is_free(target_);
   if (!filled || (replace_ && !inside_ && changed_files(target_).empty())) return;
   published_ = true;
-  fs::remove(staging_ / ours);
   throw io::WriteError(fmt::format("{}: was filled by others meanwhile; the result lies in {}",
                                    target_.string(), staging_.string()));
 }
@@ -329,7 +333,7 @@ void RunFolder::publish() try {
   if (lock_ >= 0 && !is_named(lock_, staging_))
     throw io::WriteError(
         fmt::format("{}: was removed while the result was written into it", staging_.string()));
-  mark_own_files(staging_);
+  list_all_as_own(staging_);
   refuse_what_came_meanwhile();
   inside_ ? move_inside() : put_in_place();
   published_ = true;

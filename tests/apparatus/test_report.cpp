@@ -328,7 +328,9 @@ TEST(RunFolder, AnEarlierResultIsReplacedOnlyWhenAsked) {
 TEST(RunFolder, AnEmptyFolderIsFilled) {
   const test::TemporaryFolder folder;
   publish(folder.path(), "1", false);
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 2);
+  for (const char* name : {"scene.toml", "summary.json", ".tremie"})
+    EXPECT_TRUE(std::filesystem::exists(folder / name)) << name;
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 3);
 }
 
 TEST(RunFolder, WhatIsNoResultIsNeverReplaced) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <fstream>
 #include <memory>
 
 #include "apparatus/cli/commands.hpp"
@@ -12,7 +13,6 @@
 #include "apparatus/estimate/estimate.hpp"
 #include "apparatus/estimate/estimate_json.hpp"
 #include "apparatus/estimate/rheograph.hpp"
-#include "apparatus/report/folder/own_files.hpp"
 #include "apparatus/report/process.hpp"
 #include "apparatus/scene/document.hpp"
 #include "apparatus/scene/input_error.hpp"
@@ -105,6 +105,17 @@ std::vector<estimate::NamedMix> published_mixes() {
   return mixes;
 }
 
+/// Whether a file is an SVG that was drawn here.
+bool is_rheograph(const std::filesystem::path& file) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(std::filesystem::symlink_status(file, error))) return false;
+  std::ifstream stream(file, std::ios::binary);
+  std::string begin(400, '\0');
+  stream.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  return begin.starts_with("<svg") &&
+         begin.find("Slump flow and t500 of fresh concrete") != std::string::npos;
+}
+
 /// SVG, or PDF by rsvg-convert.
 void draw_chart(const EstimateOptions& options, const estimate::SlumpTable& table,
                 const std::optional<estimate::MixEstimate>& result) {
@@ -120,19 +131,17 @@ void draw_chart(const EstimateOptions& options, const estimate::SlumpTable& tabl
         "--chart: a PDF takes rsvg-convert (librsvg2-bin), which is not installed here; a file.svg "
         "takes nothing");
   std::error_code error;
-  if (fs::exists(fs::symlink_status(file, error)) && !report::is_marked(file))
-    throw scene::InputError(
-        fmt::format("--chart: {} is there and is no chart of Tremie's, or was changed since: not replaced",
-                    file.string()));
+  if (fs::exists(fs::symlink_status(file, error)) && !is_rheograph(file))
+    throw scene::InputError(fmt::format(
+        "--chart: {} is there already, and is no SVG of this command: not replaced", file.string()));
   const fs::path svg =
       pdf ? file.parent_path() / fmt::format(".{}.{}.svg", file.filename().string(), getpid()) : file;
   io::write_text(svg, estimate::rheograph_svg(table, published_mixes(), result));
-  if (!pdf) return report::mark_own_file(file);
+  if (!pdf) return;
   const auto code = report::run_program(
       converter, {"--format=pdf", "--output=" + file.string(), svg.string()}, file.parent_path());
   fs::remove(svg);
   if (code != 0) throw std::runtime_error("rsvg-convert failed: the chart is missing or not complete");
-  report::mark_own_file(file);
 }
 
 int run_estimate(const EstimateOptions& options) {

@@ -167,7 +167,7 @@ int hand_to_engine(const Job& job, const StudyOptions& options) {
       study::engine_script(engine, own_file().parent_path() / "tremie", fs::absolute(options.file),
                            job.folder, job.design.size(), jobs_of(options));
   io::write_text(script.file, script.text);
-  report::mark_own_file(script.file);
+  report::list_as_own(job.folder, {script.file.filename()});
   const std::string line = fmt::format("{}", fmt::join(script.start, " "));
   if (!options.submit) {
     if (!options.quiet) say("run             {}\n", line);

@@ -17,8 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Files that are marked as Tremie's when they are written.
-constexpr const char* marked[] = {"design.csv",   "study.csv",    "study.h5",  "report.html",
+/// Files that are listed as Tremie's when they are written.
+constexpr const char* listed[] = {"design.csv",   "study.csv",    "study.h5",  "report.html",
                                   "summary.json", "study.sbatch", "Snakefile", "study.sh"};
 
 bool begins_with(const fs::path& file, std::string_view text) {
@@ -34,13 +34,13 @@ bool is_own(const fs::path& folder, const fs::path& name) {
   if (name == "journal.jsonl" || name.parent_path() == "rows")
     return begins_with(file, R"({"tremie_study":)");
   if (name == "parallel.log") return begins_with(file, "Seq\tHost\tStarttime");
-  return report::is_marked(file);
+  return report::is_own_file(folder, name);
 }
 
 /// The names that a study writes and that are there.
 std::vector<fs::path> names_there(const fs::path& folder) {
   std::vector<fs::path> names{"journal.jsonl", "parallel.log"};
-  names.insert(names.end(), std::begin(marked), std::end(marked));
+  names.insert(names.end(), std::begin(listed), std::end(listed));
   std::error_code error;
   std::erase_if(names,
                 [&](const fs::path& name) { return !fs::exists(fs::symlink_status(folder / name, error)); });
@@ -57,7 +57,7 @@ void remove_earlier(const fs::path& folder) {
   for (const fs::path& name : names_there(earlier))
     if (is_own(earlier, name)) fs::remove(earlier / name, ignored);
   fs::remove(earlier / "rows", ignored);
-  fs::remove(earlier, ignored);
+  report::remove_own_files(earlier);
 }
 
 /// An unfinished study goes; a finished one is put aside.
@@ -75,11 +75,13 @@ void give_way(const fs::path& folder) {
   if (finished) {
     remove_earlier(folder);
     fs::create_directories(earlier_in(folder) / "rows");
+    fs::copy_file(folder / report::list_of_own_files, earlier_in(folder) / report::list_of_own_files);
   }
   for (const fs::path& name : names)
     finished ? fs::rename(folder / name, earlier_in(folder) / name) : void(fs::remove(folder / name));
   std::error_code ignored;
   fs::remove(folder / "rows", ignored);
+  fs::remove(folder / report::list_of_own_files, ignored);
 }
 
 }  // namespace
@@ -105,8 +107,8 @@ void write_design(const fs::path& folder, const std::string& design) {
   if (!fs::exists(file)) {
     const fs::path part = folder / fmt::format(".design.{}.part", getpid());
     io::write_text(part, design);
-    report::mark_own_file(part);
     fs::rename(part, file);
+    report::list_as_own(folder, {"design.csv"});
     return;
   }
   std::ifstream stream(file, std::ios::binary);
@@ -115,8 +117,7 @@ void write_design(const fs::path& folder, const std::string& design) {
 }
 
 void finish_study_folder(const fs::path& folder) {
-  for (const char* name : {"study.csv", "study.h5", "report.html", "summary.json"})
-    report::mark_own_file(folder / name);
+  report::list_as_own(folder, {"study.csv", "study.h5", "report.html", "summary.json"});
   remove_earlier(folder);
 }
 

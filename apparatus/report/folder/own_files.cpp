@@ -1,62 +1,72 @@
 #include "apparatus/report/folder/own_files.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <time.h>
+#include <zlib.h>
 
 #include <algorithm>
-#include <functional>
+#include <fstream>
+#include <map>
+#include <sstream>
 
 #include "apparatus/scene/input_error.hpp"
+#include "libmpm/io/write_error.hpp"
 
 namespace tremie::report {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// The nanoseconds that mark a time of change: whole microseconds, which a disk shared with Windows keeps, too.
-constexpr long mark = 271'828'000;
+/// By name: "SIZE SUM" of a file.
+using List = std::map<std::string, std::string>;
 
-constexpr const char* top_files[] = {"summary.json", "VERIFICATION.md", "VALIDATION.md", "scene.toml",
-                                     "mix.toml",     "results.h5",      "frames.pvd",    "shape.png"};
-
-bool is_word(std::string_view text) {
-  return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
-  });
+List list_in(const fs::path& folder) {
+  List list;
+  std::ifstream stream(folder / list_of_own_files, std::ios::binary);
+  std::string size, sum, name;
+  while (stream >> size >> sum && std::getline(stream.ignore(), name)) list[name] = size + " " + sum;
+  return list;
 }
 
-/// Names that results have: tables and charts have those of their apparatus.
-bool is_name_of_ours(const fs::path& name) {
-  const fs::path parent = name.parent_path(), file = name.filename();
-  const std::string stem = file.stem().string(), ending = file.extension().string();
-  if (parent == "frames") return stem.starts_with("frame_") && ending == ".vtp";
-  if (parent == "checkpoint") return file == "frames" || file == "state" || file == "state.part";
-  if (!parent.empty()) return false;
-  const auto is = [&](const char* known) { return file == known; };
-  if (std::any_of(std::begin(top_files), std::end(top_files), is)) return true;
-  if (ending == ".html") return stem.starts_with("report");
-  if (ending == ".toml") return stem.starts_with("lab_");
-  return (ending == ".csv" || ending == ".svg") && is_word(stem);
-}
-
-bool is_folder_of_ours(const fs::path& name) { return name == "frames" || name == "checkpoint"; }
-
-/// Calls `use` with each file, link and empty or foreign folder, by its name in the folder.
-void for_each_entry(const fs::path& folder,
-                    const std::function<void(const fs::path& name, bool is_folder)>& use) {
+/// Size and sum of the first megabyte: frames and checkpoints may be large. Empty for what is no file, or a link.
+std::string state_of(const fs::path& file) {
   std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    const fs::path name = entry.path().filename();
-    const bool is_folder = entry.is_directory(error) && !entry.is_symlink(error);
-    if (!is_folder || !is_folder_of_ours(name)) {
-      use(name, is_folder);
+  if (!fs::is_regular_file(fs::symlink_status(file, error))) return {};
+  std::ifstream stream(file, std::ios::binary);
+  std::string begin(1 << 20, '\0');
+  stream.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  const auto n = static_cast<std::size_t>(stream.gcount());
+  return fmt::format("{} {:08x}", fs::file_size(file, error),
+                     crc32_z(0, reinterpret_cast<const Bytef*>(begin.data()), n));
+}
+
+/// The topmost names in a folder that hold no listed file, and the files below the others: by their name in the folder,
+/// a folder's with a stroke at its end.
+void gather(const fs::path& folder, const fs::path& below, const List& list,
+            std::vector<std::string>& names) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder / below, error)) {
+    const fs::path name = below / entry.path().filename();
+    if (name == list_of_own_files) continue;
+    if (!entry.is_directory(error) || entry.is_symlink(error)) {
+      names.push_back(name.string());
       continue;
     }
-    for (const auto& below : fs::directory_iterator(entry.path(), error))
-      use(name / below.path().filename(), below.is_directory(error) && !below.is_symlink(error));
+    const std::string as_folder = name.string() + "/";
+    const auto first = list.lower_bound(as_folder);
+    if (first != list.end() && first->first.starts_with(as_folder))
+      gather(folder, name, list, names);
+    else
+      names.push_back(as_folder);
   }
+}
+
+void write_list(const fs::path& folder, const List& list) {
+  std::string text;
+  for (const auto& [name, state] : list) text += fmt::format("{} {}\n", state, name);
+  const fs::path file = folder / list_of_own_files,
+                 part = folder / (std::string(list_of_own_files) + ".part");
+  io::write_text(part, text);
+  fs::rename(part, file);
 }
 
 bool lies_in(const fs::path& path, const fs::path& folder) {
@@ -95,38 +105,43 @@ void refuse_inputs(const fs::path& folder, const std::vector<fs::path>& inputs) 
   }
 }
 
-void mark_own_file(const fs::path& file) {
-  timespec now = {};
-  clock_gettime(CLOCK_REALTIME, &now);
-  // Not before now: a make program takes a table that is older than its rows for out of date.
-  const timespec time{now.tv_sec + (now.tv_nsec > mark ? 1 : 0), mark}, both[] = {time, time};
-  utimensat(AT_FDCWD, file.c_str(), both, AT_SYMLINK_NOFOLLOW);
+void list_as_own(const fs::path& folder, const std::vector<fs::path>& names) {
+  List list = list_in(folder);
+  for (const fs::path& name : names) list[name.string()] = state_of(folder / name);
+  write_list(folder, list);
 }
 
-void mark_own_files(const fs::path& folder) {
-  for_each_entry(folder, [&](const fs::path& name, bool is_folder) {
-    if (!is_folder) mark_own_file(folder / name);
-  });
+void list_all_as_own(const fs::path& folder) {
+  List list;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    const std::string name = entry.path().lexically_relative(folder).string();
+    if (entry.is_regular_file() && name != list_of_own_files) list[name] = state_of(entry.path());
+  }
+  write_list(folder, list);
 }
 
-bool is_marked(const fs::path& file) {
-  struct stat status = {};
-  return lstat(file.c_str(), &status) == 0 && S_ISREG(status.st_mode) && status.st_mtim.tv_nsec == mark;
+bool is_own_file(const fs::path& folder, const fs::path& name) {
+  const List list = list_in(folder);
+  const auto listed = list.find(name.string());
+  return listed != list.end() && listed->second == state_of(folder / name);
 }
 
 std::vector<std::string> foreign_files(const fs::path& folder) {
+  const List list = list_in(folder);
   std::vector<std::string> names;
-  for_each_entry(folder, [&](const fs::path& name, bool is_folder) {
-    if (is_folder || !is_name_of_ours(name) || !is_marked(folder / name))
-      names.push_back(name.string() + (is_folder ? "/" : ""));
+  gather(folder, "", list, names);
+  std::erase_if(names, [&](const std::string& name) {
+    const auto listed = list.find(name);
+    return listed != list.end() && listed->second == state_of(folder / name);
   });
   std::sort(names.begin(), names.end());
   return names;
 }
 
 std::vector<std::string> changed_files(const fs::path& folder) {
+  const List list = list_in(folder);
   auto names = foreign_files(folder);
-  std::erase_if(names, [](const std::string& name) { return !is_name_of_ours(name); });
+  std::erase_if(names, [&](const std::string& name) { return !list.contains(name); });
   return names;
 }
 
@@ -138,15 +153,14 @@ std::string short_list(const std::vector<std::string>& names) {
 }
 
 void remove_own_files(const fs::path& folder) {
-  const auto foreign = foreign_files(folder);
+  const List list = list_in(folder);
   std::error_code ignored;
-  std::vector<fs::path> own;
-  for_each_entry(folder, [&](const fs::path& name, bool is_folder) {
-    if (!std::binary_search(foreign.begin(), foreign.end(), name.string() + (is_folder ? "/" : "")))
-      own.push_back(name);
-  });
-  for (const fs::path& name : own) fs::remove(folder / name, ignored);
-  for (const char* below : {"frames", "checkpoint"}) fs::remove(folder / below, ignored);  // where empty
+  for (const auto& [name, state] : list)
+    if (state == state_of(folder / name)) fs::remove(folder / name, ignored);
+  for (auto [name, ignore] : list)
+    for (fs::path part = fs::path(name).parent_path(); !part.empty(); part = part.parent_path())
+      fs::remove(folder / part, ignored);  // where it is empty
+  fs::remove(folder / list_of_own_files, ignored);
   fs::remove(folder, ignored);
 }
 
