@@ -261,8 +261,8 @@ Lab read_lab(const std::filesystem::path& file) {
   for (const auto& [key, node] : table_of(document, file.string()))
     if (std::find(allowed.begin(), allowed.end(), key) == allowed.end())
       complain(node, key,
-               fmt::format("unknown key; allowed: {} (nearest: {})", fmt::join(allowed, ", "),
-                           scene::nearest(key, allowed)));
+               fmt::format("unknown key; allowed: {}{}", fmt::join(allowed, ", "),
+                           scene::nearest_in_brackets(key, allowed, "")));
   Lab lab;
   lab.name = file.stem().string();
   lab.file = file;

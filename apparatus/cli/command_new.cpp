@@ -19,8 +19,8 @@ std::string template_of(const std::string& name) {
     if (apparatus.keys.name == name) return scene::write_template(apparatus.keys);
     known.push_back(apparatus.keys.name);
   }
-  throw scene::InputError(fmt::format("new: \"{}\" is not available; did you mean \"{}\"? Available: {}",
-                                      name, scene::nearest(name, known), fmt::join(known, ", ")));
+  throw scene::InputError(fmt::format("new: \"{}\" is not available{} Available: {}", name,
+                                      scene::did_you_mean(name, known), fmt::join(known, ", ")));
 }
 
 }  // namespace

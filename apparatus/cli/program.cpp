@@ -30,7 +30,7 @@ std::string joined(const std::vector<std::string>& words) {
 /// What an argument that is not known could have been.
 std::string unknown(const std::string& what, const std::string& given,
                     const std::vector<std::string>& known) {
-  return fmt::format("{} \"{}\"; did you mean \"{}\"? Allowed: {}", what, given, scene::nearest(given, known),
+  return fmt::format("{} \"{}\"{} Allowed: {}", what, given, scene::did_you_mean(given, known),
                      joined(known));
 }
 

@@ -193,6 +193,14 @@ fs::path find_checkpoint(const fs::path& folder) {
   return {};
 }
 
+void refuse_where_another_goes_on(const fs::path& folder, const fs::path& checkpoint) {
+  const fs::path target = resolved_folder(folder), hidden = hidden_name(target);
+  for (const fs::path& part : {target.parent_path() / hidden, target / hidden})
+    if (is_staging(part)) refuse_what_another_writes(target, part);
+  if (find_checkpoint(folder) != checkpoint)
+    refuse_folder(target, "another process has gone on with its run meanwhile");
+}
+
 RunFolder::RunFolder(const fs::path& folder, bool replace, const std::vector<fs::path>& inputs)
     : target_(resolved_folder(folder)), replace_(replace) {
   finish_publishing(target_);

@@ -83,6 +83,19 @@ void judge_volume(double at_start, Checks& checks) {
                   100.0 * checks.volume_change, 100.0 * most));
 }
 
+void judge_squeeze(const Squeeze& squeeze, const Mix& mix, Checks& checks) {
+  constexpr double most = 0.15, good = 0.01;
+  if (!(std::abs(squeeze.most) > most)) return;
+  // What is asked for is linear in 1/K, by the logarithm that the pressure is of.
+  const double share = std::abs(std::log1p(squeeze.most));
+  checks.reasons.push_back(
+      fmt::format("the concrete is too soft: its volume changed by {:+.2g} % at {:.3g} s, more than {:g} % "
+                  "by its weight{}: a "
+                  "larger mix.bulk_modulus ({:.2g} Pa now; {:.1g} Pa keeps it to 1 %)",
+                  100.0 * squeeze.most, squeeze.at, 100.0 * most,
+                  squeeze.collapsed() ? "; the run ends there" : "", mix.K, mix.K * share / good));
+}
+
 #define TREMIE_CHECKS_IN(Geometry)                                                                 \
   template void watch_fixed_step(const Body<Geometry>&, const Model&, const StepReport&, Checks&); \
   template void judge(const Body<Geometry>&, double, Checks&, Cost&);

@@ -35,10 +35,10 @@ fs::path file_of(const FromFile& from, const std::string& name, const Origin& or
     if (fs::is_regular_file(file, error)) return file;
   }
   const auto known = names_in(from.folder);
-  throw InputError(fmt::format(
-      "{0}: {1}: there is no {1} \"{2}\"; did you mean \"{3}\"? Allowed: {4}, a path to a .toml file, "
-      "or a table [{1}]",
-      describe(origin), from.section, name, nearest(name, known), quoted_list(known)));
+  throw InputError(
+      fmt::format("{0}: {1}: there is no {1} \"{2}\"{3} Allowed: {4}, a path to a .toml file, "
+                  "or a table [{1}]",
+                  describe(origin), from.section, name, did_you_mean(name, known), quoted_list(known)));
 }
 
 /// Replaces `mix = "mix_a"` by that file's [mix], and so on. Returns the files.
@@ -112,8 +112,8 @@ std::string unknown_at_top(const Node& document, std::span<const ApparatusKeys> 
   std::string lines;
   for (const Member& member : std::get<Table>(document.value))
     if (std::find(allowed.begin(), allowed.end(), member.key) == allowed.end())
-      lines += fmt::format("{}: {}: unknown key; did you mean \"{}\"?\n", describe(member.node.origin),
-                           member.key, nearest(member.key, allowed));
+      lines += fmt::format("{}: {}: unknown key{}\n", describe(member.node.origin), member.key,
+                           did_you_mean(member.key, allowed));
   return lines;
 }
 
@@ -135,8 +135,8 @@ const ApparatusKeys& apparatus_of(const Node& document, const std::string& file,
   if (found != known.end())
     throw InputError(fmt::format("{}: apparatus: a scene of \"{}\" is run by `tremie {} {}`",
                                  describe(node->origin), given, found->command, file));
-  throw InputError(fmt::format("{}: apparatus: \"{}\" is not allowed; allowed: {} (nearest: \"{}\")",
-                               describe(node->origin), given, quoted_list(allowed), nearest(given, allowed)));
+  throw InputError(fmt::format("{}: apparatus: \"{}\" is not allowed; allowed: {}{}", describe(node->origin),
+                               given, quoted_list(allowed), nearest_in_brackets(given, allowed)));
 }
 
 /// What to say of a scene without a mix; nothing where it has one.

@@ -58,6 +58,11 @@ void check_threads(int threads) {
   if (threads > std::max(64, 4 * processors))
     throw scene::InputError(fmt::format("--threads {}: this machine has {} processors; allowed: at most {}",
                                         threads, processors, std::max(64, 4 * processors)));
+}
+
+/// Said once the program has started anew, if it does.
+void note_threads(int threads) {
+  const int processors = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   if (threads > processors)
     say(stderr, "note: --threads {} on {} processors: slower than --threads {}\n", threads, processors,
         processors);
@@ -74,6 +79,7 @@ report::RunFolder folder_of(const RunOptions& options, const scene::Scene& scene
 
 int run_cell(const RunOptions& options) {
   const auto scene = scene::read(options.scene, options.overrides, "cell");
+  say_notes(scene, screen_of(options.quiet, options.json));
   const HeldInterrupts held;  // outlives the folder
   report::RunFolder folder = folder_of(options, scene);
   return run_and_publish(
@@ -86,8 +92,10 @@ int run_scene(const RunOptions& options) {
   if (!options.accuracy.empty()) accuracy_of(options.accuracy);
   const int threads = threads_for(scene, options);
   spin_briefly(threads);
+  if (!options.quiet) note_threads(options.threads);
   report::RunFolder folder = folder_of(options, scene);
   stop_on_interrupt();
+  say_notes(scene, screen_of(options.quiet, options.json));
   if (!options.accuracy.empty()) scene = with_cells_for(scene, options);
   if (!options.force) scene::check_cost(scene, threads);
   scene::set_threads(scene, threads);

@@ -122,6 +122,13 @@ double accuracy_of(const std::string& text) {
   return 0.01 * percent;
 }
 
+void say_notes(const scene::Scene& scene, Screen screen) {
+  if (screen == Screen::nothing) return;
+  std::FILE* const stream = screen == Screen::one_json_object ? stderr : stdout;
+  for (const auto& note : scene.notes) say(stream, "{:<15} {}\n", "note", note);
+  std::fflush(stream);
+}
+
 int run_and_publish(const scene::Scene& scene, const report::RunRequest& request, Screen screen,
                     report::RunFolder& folder, const std::optional<report::Checkpoint>& from) {
   std::vector<std::string> notes;
