@@ -199,7 +199,7 @@ int parse_and_run(int argc, char** argv, const std::function<void(CLI::App&, int
 int run_program(int argc, char** argv, const std::function<void(CLI::App&, int&)>& add) {
   secure_streams();
   try {
-    return exit_code_once_printed(parse_and_run(argc, argv, add));
+    return exit_code_once_printed(parse_and_run(argc, argv, add), fault);
   } catch (const scene::InputError& error) {
     say(stderr, "{}\n", message(error.what()));
     return bad_input;

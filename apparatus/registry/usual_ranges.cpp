@@ -124,9 +124,12 @@ std::string softness(const Values& values) {
     const double K = values.number("mix.bulk_modulus"), h = values.number(height);
     const double weight = values.number("mix.density") * gravity * h, lost = -std::expm1(-weight / K);
     if (!(lost > most)) return {};
-    return fmt::format("mix.bulk_modulus: {:.3g} Pa is soft: the weight of {:.3g} m of concrete, {:.3g} Pa, takes {:.2g} "
-                       "% of the volume at its foot; {:.1g} Pa: 1 %",
-                       K, h, weight, 100.0 * lost, 100.0 * weight);
+    return fmt::format(
+        "mix.bulk_modulus: {} kPa is soft: {} m of concrete weigh {} kPa, which takes {:.2g} % of the volume "
+        "at the foot; "
+        "{} kPa: 1 %",
+        rounded(1e-3 * K, 3), rounded(h, 3), rounded(1e-3 * weight, 3), 100.0 * lost,
+        rounded(0.1 * weight, 1));
   }
   return {};
 }

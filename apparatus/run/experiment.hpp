@@ -57,7 +57,7 @@ void run_experiment(const Flow& flow, Body<Geometry>& body,
   if (record.series.empty()) record.series.emplace_back();  // the first step failed
   if (flow.tell) flow.tell(stopped_at.has_value(), record.checks, record.cost);
   judge(body, start_mass, record.checks, record.cost);
-  judge_squeeze(squeeze, body.mix, record.checks);
+  judge_squeeze(squeeze, body.mix, 2.0 * start_height, record.checks);
   if (showing.from_start) judge_volume(start_volume_change, record.checks);
   record.checks.stood_still = showing.from_start && mean_height(body.points) > 0.99 * start_height;
   finish(stopped_at);

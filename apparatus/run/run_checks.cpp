@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "apparatus/run/step_settings.hpp"
+#include "apparatus/scene/units.hpp"
 #include "libmpm/implicit/step_size.hpp"
 
 namespace tremie::experiment {
@@ -83,17 +85,15 @@ void judge_volume(double at_start, Checks& checks) {
                   100.0 * checks.volume_change, 100.0 * most));
 }
 
-void judge_squeeze(const Squeeze& squeeze, const Mix& mix, Checks& checks) {
-  constexpr double most = 0.15, good = 0.01;
+void judge_squeeze(const Squeeze& squeeze, const Mix& mix, double height, Checks& checks) {
+  constexpr double most = 0.15;
   if (!(std::abs(squeeze.most) > most)) return;
-  // What is asked for is linear in 1/K, by the logarithm that the pressure is of.
-  const double share = std::abs(std::log1p(squeeze.most));
-  checks.reasons.push_back(
-      fmt::format("the concrete is too soft: its volume changed by {:+.2g} % at {:.3g} s, more than {:g} % "
-                  "by its weight{}: a "
-                  "larger mix.bulk_modulus ({:.2g} Pa now; {:.1g} Pa keeps it to 1 %)",
-                  100.0 * squeeze.most, squeeze.at, 100.0 * most,
-                  squeeze.collapsed() ? "; the run ends there" : "", mix.K, mix.K * share / good));
+  checks.reasons.push_back(fmt::format(
+      "the concrete is too soft: its volume changed by {:+.3g} % at {:.3g} s, more than {:g} %, under its "
+      "weight{}: a "
+      "larger mix.bulk_modulus ({} kPa now; {} kPa keeps it to 1 %)",
+      100.0 * squeeze.most, squeeze.at, 100.0 * most, squeeze.collapsed() ? "; the run ends there" : "",
+      scene::rounded(1e-3 * mix.K, 3), scene::rounded(0.1 * mix.density * gravity * height, 1)));
 }
 
 #define TREMIE_CHECKS_IN(Geometry)                                                                 \

@@ -46,8 +46,9 @@ struct Squeeze {
   bool collapsed() const { return most < -0.7 || most > 1.0; }
 };
 
-/// A slump flow's spread is 3 % too large at 12 %, the paper's explicit preset, 5 % at 20 %, 21 % at 60 %.
-void judge_squeeze(const Squeeze& squeeze, const Mix& mix, Checks& checks);
+/// `height` of the body [m]. A slump flow's spread is 3 % too large at 12 %, the paper's explicit preset, 5 % at 20 %, 21 %
+/// at 60 %.
+void judge_squeeze(const Squeeze& squeeze, const Mix& mix, double height, Checks& checks);
 
 /// Why a flow whose fastest speed [m/s] was this is not to be trusted on cells of height h [m]: where inertia outweighs the
 /// viscous stress on a cell, rho speed h/mu above 10, the damping of grid and steps decides how far it goes. (Slump flows of

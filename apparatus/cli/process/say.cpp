@@ -7,8 +7,6 @@
 #include <cerrno>
 #include <cstring>
 
-#include "apparatus/cli/commands.hpp"
-
 namespace tremie::cli {
 namespace {
 
@@ -47,13 +45,13 @@ void answer(const std::string& text) {
   write_text_to(stdout, text);
 }
 
-int exit_code_once_printed(int exit_code) {
+int exit_code_once_printed(int exit_code, int fault) {
   errno = 0;
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return exit_code;
   if (trouble == 0) trouble = errno;
   if (has_answered && trouble == EPIPE) return exit_code;
   say(stderr, "tremie: the standard output cannot be written: {}\n", std::strerror(trouble));
-  return has_answered && exit_code == done ? static_cast<int>(fault) : exit_code;
+  return has_answered && exit_code == 0 ? fault : exit_code;
 }
 
 }  // namespace tremie::cli
