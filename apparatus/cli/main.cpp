@@ -9,6 +9,7 @@
 #include "apparatus/cli/hand_over.hpp"
 #include "apparatus/cli/options/command.hpp"
 #include "apparatus/cli/process/levels.hpp"
+#include "apparatus/cli/process/say.hpp"
 #include "apparatus/cli/program.hpp"
 
 namespace {
@@ -42,6 +43,7 @@ void name_study_commands(CLI::App& app) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  secure_streams();
   become_best_level(argv);
   return_large_blocks();
   if (argc > 1 && is_study_command(argv[1])) return hand_over(argv);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "apparatus/cli/fit/fit_output.hpp"
+#include "apparatus/cli/process/say.hpp"
 #include "apparatus/scene/units.hpp"
 #include "libmpm/constitutive/constants.hpp"
 #include "rheometer/fits/flow_law.hpp"
@@ -56,33 +57,31 @@ std::string summary_line(const SectionReading& s) {
 }  // namespace
 
 void print_protocol(const ProtocolReading& r) {
-  fmt::print("{:>3} {:<16} {:>11} {:>9} {:>10} {:>8}  {}\n", "", "section", "lines", "from s", "rev/s",
-             "rest s", "reading");
+  say("{:>3} {:<16} {:>11} {:>9} {:>10} {:>8}  {}\n", "", "section", "lines", "from s", "rev/s", "rest s",
+      "reading");
   for (std::size_t i = 0; i < r.sections.size(); ++i) {
     const SectionReading& s = r.sections[i];
     if (s.section.kind == SectionKind::rest && i + 1 < r.sections.size()) continue;  // named by what follows
     const std::string kind = std::string(name_of(s.section.kind)) + (s.section.pre_shear ? " *" : "");
-    fmt::print("{:>3} {:<16} {:>11} {:>9.5g} {:>10.4g} {:>8}  {}\n", i + 1, kind,
-               fmt::format("{}-{}", s.first_line, s.last_line), s.start, s.section.omega / two_pi,
-               s.section.rest_before > 0.0 ? fmt::format("{:.4g}", s.section.rest_before) : "",
-               summary_line(s));
-    for (const auto& note : s.notes) fmt::print("{:<22} {}\n", "", note);
+    say("{:>3} {:<16} {:>11} {:>9.5g} {:>10.4g} {:>8}  {}\n", i + 1, kind,
+        fmt::format("{}-{}", s.first_line, s.last_line), s.start, s.section.omega / two_pi,
+        s.section.rest_before > 0.0 ? fmt::format("{:.4g}", s.section.rest_before) : "", summary_line(s));
+    for (const auto& note : s.notes) say("{:<22} {}\n", "", note);
   }
-  fmt::print("{:<22} the pre-shear, read as a decay too\n", "*");
+  say("{:<22} the pre-shear, read as a decay too\n", "*");
   print_estimate("A_thix of the peaks", r.structuration.A_thix, "Pa/s");
   print_estimate("static, without rest", r.structuration.at_no_rest, "Pa");
   if (const auto& s = r.structuration.saturation)
-    fmt::print(
-        "{:<22} {:.4g} Pa less what is left of it after {:.3g} s ({:.2g} % scatter; the line has {:.2g} %)\n",
+    say("{:<22} {:.4g} Pa less what is left of it after {:.3g} s ({:.2g} % scatter; the line has {:.2g} %)\n",
         "static, saturating", s->end_stress, s->time, 100.0 * s->scatter,
         100.0 * r.structuration.scatter.value_or(0.0));
   print_estimate("breakdown rate k", r.breakdown.rate, "1/s");
   print_estimate("rate exponent a", r.breakdown.exponent, "");
   for (const BreakdownTime& t : r.breakdown.times)
-    fmt::print("{:<22} section {}, {:.3g} 1/s: half of the excess lost after {:.3g} s\n", "", t.section,
-               t.rate, t.half_time);
-  for (const auto& note : r.breakdown.notes) fmt::print("{:<22} {}\n", "note", note);
-  for (const auto& note : r.structuration.notes) fmt::print("{:<22} {}\n", "note", note);
+    say("{:<22} section {}, {:.3g} 1/s: half of the excess lost after {:.3g} s\n", "", t.section, t.rate,
+        t.half_time);
+  for (const auto& note : r.breakdown.notes) say("{:<22} {}\n", "note", note);
+  for (const auto& note : r.structuration.notes) say("{:<22} {}\n", "note", note);
 }
 
 }  // namespace tremie::cli
