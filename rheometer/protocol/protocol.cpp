@@ -11,52 +11,6 @@ namespace tremie {
 
 namespace {
 
-/// The row of the largest torque while the vane gathers speed or up to a tenth of the section.
-std::size_t peak_of(const ProtocolRecord& r, const Section& s) {
-  std::size_t peak = s.begin;
-  const std::size_t limit = s.begin + std::max<std::size_t>(3, (s.end - s.begin) / 10);
-  for (std::size_t i = s.begin; i < std::min(limit, s.end); ++i)
-    if (r.torque[i] > r.torque[peak]) peak = i;
-  return peak;
-}
-
-TorqueRecord decay_of(const ProtocolRecord& r, const Section& s) {
-  TorqueRecord d;
-  d.kind = RecordKind::torque_decay;
-  const std::size_t peak = peak_of(r, s);
-  for (std::size_t i = peak; i < s.end; ++i) {
-    d.time.push_back(r.time[i] - r.time[peak]);
-    d.torque.push_back(r.torque[i]);
-    d.line.push_back(r.line[i]);
-  }
-  return d;
-}
-
-/// Rows of a ramp; of steps the mean of the last half of each.
-TorqueRecord flow_curve_of(const ProtocolRecord& r, const Section& s) {
-  TorqueRecord c;
-  c.kind = RecordKind::flow_curve;
-  const auto add = [&](double omega, double torque, long line) {
-    c.omega.push_back(omega);
-    c.torque.push_back(torque);
-    c.line.push_back(line);
-  };
-  if (!s.stepped) {
-    for (std::size_t i = s.begin; i < s.end; ++i) add(r.omega[i], r.torque[i], r.line[i]);
-    return c;
-  }
-  for (std::size_t from = s.begin, to = from; from < s.end; from = to) {
-    for (to = from + 1; to < s.end && std::abs(r.omega[to] / r.omega[from] - 1.0) <= 0.03; ++to) {
-    }
-    if (to - from < 3) continue;
-    double omega = 0.0, torque = 0.0, n = 0.0;
-    for (std::size_t i = from + (to - from) / 2; i < to; ++i)
-      omega += r.omega[i], torque += r.torque[i], n += 1.0;
-    add(omega / n, torque / n, r.line[from]);
-  }
-  return c;
-}
-
 void read_fit(const TorqueRecord& record, const FitInput& input, SectionReading& reading) {
   try {
     reading.fit = fit(record, input);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "rheometer/records/instrument_export.hpp"
 #include "rheometer/records/torque_record.hpp"
 
 namespace tremie {
@@ -223,10 +222,58 @@ std::vector<Section> find_sections(const ProtocolRecord& r) {
   return sections;
 }
 
-ProtocolRecord parse_protocol_record(std::string_view bytes, const std::string& name, double torque_offset) {
-  const std::string text = decoded_text(bytes, name);
-  const auto plain = plain_export(text, name);
-  const NumberTable table = parse_number_table(plain ? plain->text : text, name, torque_quantities());
+std::size_t peak_of(const ProtocolRecord& r, const Section& s) {
+  std::size_t peak = s.begin;
+  const std::size_t limit = s.begin + std::max<std::size_t>(3, (s.end - s.begin) / 10);
+  for (std::size_t i = s.begin; i < std::min(limit, s.end); ++i)
+    if (r.torque[i] > r.torque[peak]) peak = i;
+  return peak;
+}
+
+TorqueRecord decay_of(const ProtocolRecord& r, const Section& s) {
+  TorqueRecord d;
+  d.kind = RecordKind::torque_decay;
+  d.speed = s.omega;
+  d.rest = s.rest_before;
+  d.sheared_evenly = r.sheared_evenly;
+  const std::size_t peak = peak_of(r, s);
+  for (std::size_t i = peak; i < s.end; ++i) {
+    d.time.push_back(r.time[i] - r.time[peak]);
+    d.torque.push_back(r.torque[i]);
+    d.line.push_back(r.line[i]);
+  }
+  return d;
+}
+
+TorqueRecord flow_curve_of(const ProtocolRecord& r, const Section& s) {
+  TorqueRecord c;
+  c.kind = RecordKind::flow_curve;
+  c.sheared_evenly = r.sheared_evenly;
+  const auto add = [&](double omega, double torque, long line) {
+    c.omega.push_back(omega);
+    c.torque.push_back(torque);
+    c.line.push_back(line);
+  };
+  if (!s.stepped) {
+    for (std::size_t i = s.begin; i < s.end; ++i) add(r.omega[i], r.torque[i], r.line[i]);
+    return c;
+  }
+  for (std::size_t from = s.begin, to = from; from < s.end; from = to) {
+    for (to = from + 1; to < s.end && std::abs(r.omega[to] / r.omega[from] - 1.0) <= 0.03; ++to) {
+    }
+    if (to - from < 3) continue;
+    double omega = 0.0, torque = 0.0, n = 0.0;
+    for (std::size_t i = from + (to - from) / 2; i < to; ++i)
+      omega += r.omega[i], torque += r.torque[i], n += 1.0;
+    add(omega / n, torque / n, r.line[from]);
+  }
+  return c;
+}
+
+ProtocolRecord parse_protocol_record(std::string_view bytes, const std::string& name, double torque_offset,
+                                     const ReadOptions& options) {
+  bool sheared_evenly = false;
+  const NumberTable table = torque_table(bytes, name, torque_offset, options, sheared_evenly);
   for (std::size_t q = 0; q < 3; ++q)
     if (table.position[q] == 0)
       throw RecordError(at_position(name, std::max(1L, table.header_line), 1,
@@ -234,8 +281,8 @@ ProtocolRecord parse_protocol_record(std::string_view bytes, const std::string& 
                                         std::string(torque_quantities()[q].name)));
   if (table.line.empty()) throw RecordError(at_position(name, table.header_line, 1, "a header without rows"));
   ProtocolRecord record = protocol_of(table);
-  if (plain) record.understood = plain->understood;
-  for (double& torque : record.torque) torque -= torque_offset;
+  record.understood = table.understood;
+  record.sheared_evenly = sheared_evenly;
   const double fastest = highest(record.omega, 0, record.omega.size());
   for (std::size_t i = 0; i < record.torque.size(); ++i)
     if (record.torque[i] < 0.0 && record.omega[i] > 5e-4 * fastest)

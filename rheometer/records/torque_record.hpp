@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "rheometer/records/table.hpp"
+
 namespace tremie {
 
 enum class RecordKind { flow_curve, torque_decay };
@@ -20,6 +22,8 @@ struct TorqueRecord {
   std::vector<double> torque;           ///< [N m], >= 0
   std::vector<long> line;               ///< of the file, from 1
   double speed = 0.0;                   ///< of a torque decay whose file has it [rad/s]; 0: not there
+  double rest = 0.0;                    ///< before a torque decay, where the file has it [s]; 0: not there
+  bool sheared_evenly = false;          ///< speed and torque are those of evenly_sheared() (instrument.hpp)
   std::vector<std::string> understood;  ///< how an instrument's export was read, a sentence each
 };
 
@@ -28,17 +32,22 @@ struct RecordError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Reads a record from text. An instrument's export (instrument_export.hpp) is taken as it is; of one that has time,
-/// speed and torque the first section of constant speed is the decay. The header names the columns and their units: speed_rev_per_s, speed_rpm,
-/// speed_rad_per_s, time_s, time_ms, time_min, torque_N_m, torque_mN_m, ..., also as "torque (mN·m)"; other
-/// columns are left out. Separator comma, semicolon or tab; with the last two a decimal comma too. Lines from
-/// # on are comments; a byte-order mark is skipped. `name` is the file's, for messages. Throws RecordError
-/// for anything else: no rows, a text for a number, too few columns, an unknown unit, a negative torque or
-/// speed, time that runs backwards. `torque_offset` [N m] of the unloaded instrument is taken off first.
-TorqueRecord parse_torque_record(std::string_view text, const std::string& name, double torque_offset = 0.0);
+/// Reads a record from text (table.hpp): torques over speeds, over time, or both, or what the instrument made of them,
+/// shear stresses over shear rates. Of one that has time and speed the first section of constant speed is the decay, and
+/// where there is none the first flow curve is it. `name` is the file's, for messages. Throws RecordError for anything
+/// else: no rows, a text for a number, an unknown unit, a negative torque or speed, time that runs backwards.
+/// `torque_offset` [N m] of the unloaded instrument is taken off first.
+TorqueRecord parse_torque_record(std::string_view text, const std::string& name, double torque_offset = 0.0,
+                                 const ReadOptions& options = {});
 
 /// The same from a file. Throws RecordError too where it cannot be read.
-TorqueRecord read_torque_record(const std::string& path, double torque_offset = 0.0);
+TorqueRecord read_torque_record(const std::string& path, double torque_offset = 0.0,
+                                const ReadOptions& options = {});
+
+/// The table of a torque record with time, speed and torque in the first three columns; `sheared_evenly` where shear
+/// rates and stresses stand for them. Throws RecordError as above.
+NumberTable torque_table(std::string_view text, const std::string& name, double torque_offset,
+                         const ReadOptions& options, bool& sheared_evenly);
 
 /// The text of a file. Throws RecordError where it cannot be read.
 std::string read_text_file(const std::string& path);
