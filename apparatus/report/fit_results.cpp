@@ -125,6 +125,7 @@ Json fit_results(const RecordFits& fits, const std::vector<std::string>& records
               : fits.fits.size() > 1 ? replicates_json(fits, records)
                                      : fit_results(fits.fits.front());
   if (fits.protocol) json["understood"] = fits.protocol->record.understood;
+  json["geometry"] = {{"words", fits.geometry}, {"default", fits.default_geometry}};
   json["ends"] = {{"correction", fits.options.ends}, {"factor", fits.end_factor}};
   if (fits.fits.size() == 1) json["ends"]["moves"] = moves_json(fits.moves);
   if (!fits.protocol) json["blades"] = {{"correction", fits.options.blades}};

@@ -107,6 +107,7 @@ struct FitResult {
   long readings = 0;                 ///< used
   double scatter = 0.0;              ///< relative standard deviation of a reading about the fit
   double correlation = 0.0;          ///< of successive residuals
+  bool sheared_evenly = false;       ///< speeds and torques are those of evenly_sheared() (instrument.hpp)
   bool law_in_doubt = false;         ///< another law describes the readings far better: a note tells which
   std::vector<std::string> notes;    ///< assumptions, and why a value is missing
   std::vector<std::string> reasons;  ///< why the result is not to be trusted

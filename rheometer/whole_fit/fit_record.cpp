@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "rheometer/records/text.hpp"
+#include "rheometer/vane/geometries.hpp"
 #include "rheometer/vane/vane_ends.hpp"
 #include "rheometer/whole_fit/fit_with_blades.hpp"
 
@@ -19,6 +20,8 @@ struct Table {
 struct Fitting {
   const FitOptions& options;
   const std::vector<std::filesystem::path>& data_folders;
+  Geometry geometry = {};    ///< without words where none is named
+  ReadOptions reading = {};  ///< of the records
 
   bool computed_ends() const { return options.ends == "computed"; }
 
@@ -34,6 +37,7 @@ struct Fitting {
     throw RecordError(name + " computed: its table, reference_data/" + folder +
                       "/*.csv, is not there; allowed without it: " + name + " none");
   }
+  bool has_geometry() const { return !geometry.words.empty() || !has_default_lengths(options); }
   Table ends() const { return table("vane_ends", "--ends"); }
   Table blades() const { return table("vane_blades", "--blades"); }
 };
@@ -48,11 +52,72 @@ auto named(const std::string& name, Call call) {
   }
 }
 
-TorqueRecord read(const RecordSource& source, double torque_offset) {
-  if (!source.record) return read_torque_record(source.name, torque_offset);
+TorqueRecord read(const Fitting& f, const RecordSource& source) {
+  const double torque_offset = f.options.torque_offset;
+  if (!source.record) return read_torque_record(source.name, torque_offset, f.reading);
   TorqueRecord record = *source.record;
   for (double& torque : record.torque) torque -= torque_offset;
+  if (!f.reading.stress_constant) return record;
+  for (double& torque : record.torque) torque *= *f.reading.stress_constant;
+  for (double& speed : record.omega) speed *= *f.reading.strain_constant * evenly_sheared_speed;
+  record.sheared_evenly = true;
   return record;
+}
+
+// --- the geometry
+
+ReadOptions read_options(const FitOptions& o, const Geometry& g) {
+  ReadOptions r;
+  r.columns = o.column;
+  r.decimal = o.decimal;
+  r.shear_first = g.words.empty() && has_default_lengths(o);
+  r.torque_per_degree = o.torque_per_degree ? o.torque_per_degree : g.torque_per_degree;
+  r.full_scale_torque = o.full_scale_torque;
+  if (!g.words.empty() && !g.cylinders)
+    r.stress_constant = g.stress_constant, r.strain_constant = g.strain_constant;
+  return r;
+}
+
+std::string geometry_words(const Fitting& f, bool sheared_evenly) {
+  if (!f.geometry.words.empty() && (!sheared_evenly || f.reading.stress_constant)) return f.geometry.words;
+  if (sheared_evenly)
+    return "none: shear rate and shear stress as the instrument converted them, which is trusted";
+  const Instrument given{f.options.vane_radius, f.options.vane_height, f.options.container_radius};
+  return text_of("vane, radius %.6g mm, height %.6g mm, in a container of radius %.6g mm",
+                 1e3 * given.vane_radius, 1e3 * given.vane_height, 1e3 * given.container_radius) +
+         (f.has_geometry() ? "" : ": the default (ICAR), none is given");
+}
+
+/// Of parallel plates: the part of the stress that goes as the rate to the power n is 3/(n + 3) of the rim's.
+void correct_for_plates(FitResult& result) {
+  const auto scale = [](std::optional<ParameterEstimate>& e, double factor) {
+    if (!e || e->given) return;
+    e->value *= factor;
+    if (e->ci95) e->ci95 = Interval{e->ci95->low * factor, e->ci95->high * factor};
+  };
+  scale(result.mu, 4.0 / 3.0);
+  if (const auto& n = result.of_law["flow_index"])
+    scale(result.of_law["consistency"], (n->value + 3.0) / 3.0);
+  result.notes.push_back(
+      "parallel plates: corrected for the rate that falls from the rim to the axis, by the law fitted");
+}
+
+/// The fit of a record whose shear is even: no gap, no plug, no vane enters it.
+FitResult fit_evenly_sheared(const Fitting& f, const TorqueRecord& record, FitInput in) {
+  if (f.options.ends != "none" || f.options.blades != "none")
+    throw std::invalid_argument("--ends and --blades are a vane's; this record has shear rates and stresses");
+  if (f.geometry.plates && record.kind != RecordKind::flow_curve)
+    throw std::invalid_argument(
+        "a decay between parallel plates is not read: the rate falls from the rim to the axis");
+  if (f.geometry.plates && in.mu) *in.mu *= 0.75;
+  in.instrument = evenly_sheared();
+  FitResult result = fit(record, in);
+  if (f.geometry.plates && in.mu && result.mu) result.mu->value /= 0.75;
+  if (f.geometry.plates) correct_for_plates(result);
+  std::erase_if(result.notes, [](const std::string& note) { return note.starts_with("plug:"); });
+  result.sheared_evenly = true;
+  result.plug.reset(), result.plug_below.reset(), result.sheared_radius.reset();
+  return result;
 }
 
 // --- blades and ends of a fit
@@ -88,6 +153,7 @@ void note_beyond_blades(const TorqueRecord& record, const FitInput& in, const Bl
 FitResult fit_vane(const Fitting& f, const TorqueRecord& record, const FitInput& in) {
   if (f.options.blades == "none") {
     FitResult result = fit(record, in);
+    if (f.geometry.cylinders && f.options.ends == "none") return result;
     result.notes.push_back(
         f.options.ends == "none"
             ? taken_for_a_cylinder
@@ -128,14 +194,17 @@ TorqueRecord with_even_ends(const Fitting& f, const TorqueRecord& record, const 
 /// `factor`: of the ends, which is in the height of `in` already; 1 for none.
 FitResult read_and_fit(const Fitting& f, const RecordSource& source, FitInput in, double factor) {
   return named(source.name, [&] {
-    const TorqueRecord record = read(source, f.options.torque_offset);
+    const TorqueRecord record = read(f, source);
+    if (in.omega && record.sheared_evenly) *in.omega *= f.geometry.strain_constant * evenly_sheared_speed;
     if (!in.omega && record.speed > 0.0) in.omega = record.speed;
-    FitResult result = fit_vane(f, record, in);
+    if (!in.rest && record.rest > 0.0) in.rest = record.rest;
+    FitResult result = record.sheared_evenly ? fit_evenly_sheared(f, record, in) : fit_vane(f, record, in);
     if (f.computed_ends() && factor != 1.0 && record.kind == RecordKind::flow_curve && result.tau_0 &&
         result.mu && result.mu->value > 0.0)
       result = fit_vane(f, with_even_ends(f, record, in, factor, result), in);
     note_beyond_ends(f, in, result);
     result.notes.insert(result.notes.begin(), record.understood.begin(), record.understood.end());
+    result.notes.insert(result.notes.begin(), "geometry: " + geometry_words(f, record.sheared_evenly));
     return result;
   });
 }
@@ -188,10 +257,24 @@ std::vector<MoveByEnds> moves_by_ends(const Fitting& f, const RecordSource& sour
   return moves;
 }
 
+void set_geometry(const Fitting& f, bool sheared_evenly, RecordFits& all) {
+  all.geometry = geometry_words(f, sheared_evenly);
+  all.default_geometry = !sheared_evenly && !f.has_geometry();
+  if (sheared_evenly) all.instrument = evenly_sheared();
+}
+
 ProtocolFit fit_protocol(const Fitting& f, const std::string& file, const FitInput& in) {
   return named(file, [&] {
-    ProtocolFit p{parse_protocol_record(read_text_file(file), file, f.options.torque_offset), {}};
-    p.reading = read_protocol(p.record, in, {.compliance = f.options.instrument_compliance});
+    ProtocolFit p{parse_protocol_record(read_text_file(file), file, f.options.torque_offset, f.reading), {}};
+    if (p.record.sheared_evenly && (f.options.ends != "none" || f.geometry.plates))
+      throw std::invalid_argument(f.geometry.plates
+                                      ? "--protocol does not read parallel plates"
+                                      : "--ends is a vane's; this record has shear rates and stresses");
+    p.record.understood.insert(p.record.understood.begin(),
+                               "geometry: " + geometry_words(f, p.record.sheared_evenly));
+    FitInput of_record = in;
+    if (p.record.sheared_evenly) of_record.instrument = evenly_sheared();
+    p.reading = read_protocol(p.record, of_record, {.compliance = f.options.instrument_compliance});
     return p;
   });
 }
@@ -201,8 +284,14 @@ ProtocolFit fit_protocol(const Fitting& f, const std::string& file, const FitInp
 RecordFits fit_records(const std::vector<RecordSource>& sources, const FitOptions& options,
                        const std::vector<std::filesystem::path>& data_folders) {
   check(options, sources.size());
-  const Fitting f{options, data_folders};
+  Fitting f{options, data_folders};
   FitInput in = input_of(options);
+  if (!options.geometry.empty()) {
+    const Table table = f.table("geometries", "--geometry");
+    f.geometry = named("", [&] { return geometry_of(options.geometry, table.text, table.name); });
+    if (f.geometry.cylinders) in.instrument = *f.geometry.cylinders;
+  }
+  f.reading = read_options(options, f.geometry);
   named("the instrument", [&] { check(in.instrument); });
   RecordFits all;
   all.options = options;
@@ -212,6 +301,7 @@ RecordFits fit_records(const std::vector<RecordSource>& sources, const FitOption
   if (options.protocol) {
     all.protocol = fit_protocol(f, sources.front().name, in);
     all.reasons = all.protocol->reading.reasons;
+    set_geometry(f, all.protocol->record.sheared_evenly, all);
     return all;
   }
   for (const RecordSource& source : sources) {
@@ -219,6 +309,7 @@ RecordFits fit_records(const std::vector<RecordSource>& sources, const FitOption
     for (const auto& why : all.fits.back().reasons)
       all.reasons.push_back(sources.size() > 1 ? source.name + ": " + why : why);
   }
+  set_geometry(f, all.fits.front().sheared_evenly, all);
   if (sources.size() > 1)
     all.means = replicate_means(all.fits);
   else

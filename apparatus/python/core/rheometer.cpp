@@ -99,7 +99,8 @@ py::list option_rows() {
   using namespace py::literals;
   py::list rows;
   for (const FitOption& o : fit_options())
-    rows.append(py::dict("name"_a = o.name, "unit"_a = o.unit, "words"_a = o.words, "help"_a = o.help));
+    rows.append(py::dict("name"_a = o.name, "unit"_a = o.unit, "words"_a = o.words, "help"_a = o.help,
+                         "flag"_a = o.is_flag()));
   return rows;
 }
 
