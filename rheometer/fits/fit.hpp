@@ -115,6 +115,18 @@ struct FitResult {
   std::vector<double> lambda_apparent;  ///< of curve.observed, torque decay alone
 };
 
+/// How speeds and torques of a record are shown: as they are, or as the shear rates and stresses that they stand for.
+struct ShownUnits {
+  double speed = 0.0;  ///< a speed over this is in the unit of its key
+  const char *speed_key = "", *torque_key = "", *speed_unit = "", *speed_label = "", *torque_label = "";
+};
+inline ShownUnits shown_units(bool sheared_evenly) {
+  if (sheared_evenly)
+    return {evenly_sheared_speed, "shear_rate_per_s", "shear_stress_Pa", "1/s",
+            "shear rate (1/s)",   "shear stress (Pa)"};
+  return {angular_speed(1.0), "speed_rev_per_s", "torque_N_m", "rev/s", "speed (rev/s)", "torque (N·m)"};
+}
+
 /// The note of a fit without corrections for the vane's ends and blades.
 inline constexpr const char* taken_for_a_cylinder =
     "the vane is taken for a cylinder without ends: a real one reads some 17 % too much yield stress so; "

@@ -14,6 +14,7 @@ namespace {
 void read_fit(const TorqueRecord& record, const FitInput& input, SectionReading& reading) {
   try {
     reading.fit = fit(record, input);
+    reading.fit->sheared_evenly = record.sheared_evenly;
     reading.reasons.insert(reading.reasons.end(), reading.fit->reasons.begin(), reading.fit->reasons.end());
   } catch (const std::exception& error) {  // too few rows, a torque of 0: the section has no reading
     reading.notes.push_back(std::string("no fit: ") + error.what());
@@ -89,6 +90,7 @@ ProtocolReading read_protocol(const ProtocolRecord& record, const FitInput& inpu
                               const ProtocolOptions& options) {
   check(input.instrument);
   ProtocolReading result;
+  result.sheared_evenly = record.sheared_evenly;
   for (const Section& s : find_sections(record)) {
     SectionReading reading;
     reading.section = s;

@@ -51,6 +51,7 @@ struct Structuration {
 };
 
 struct ProtocolReading {
+  bool sheared_evenly = false;  ///< of the record
   std::vector<SectionReading> sections;
   Structuration structuration;
   std::vector<std::string> reasons;  ///< why a section is not to be trusted, with its number

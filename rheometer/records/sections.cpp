@@ -205,15 +205,51 @@ ProtocolRecord protocol_of(const NumberTable& table) {
   return r;
 }
 
+namespace {
+
+/// Rows that are slower than 5e-4 of the fastest one are a rest where the instrument stands still and nothing holds a
+/// torque. A sweep over decades passes there too, its speed in order, and a slow step or a creep test holds its speed or
+/// torque.
+bool is_rest(const ProtocolRecord& r, std::size_t begin, std::size_t end, double fastest, double largest) {
+  constexpr double standing = 1e-6, no_torque = 0.05, held = 0.05, high = 0.2;
+  const auto rows = static_cast<double>(end - begin);
+  double speed = 0.0, torque = 0.0, low = HUGE_VAL, top = -HUGE_VAL, slowest = HUGE_VAL, quickest = 0.0;
+  for (std::size_t i = begin; i < end; ++i) {
+    speed += r.omega[i] / rows, torque += r.torque[i] / rows;
+    low = std::min(low, r.torque[i]), top = std::max(top, r.torque[i]);
+    slowest = std::min(slowest, r.omega[i]), quickest = std::max(quickest, r.omega[i]);
+  }
+  if (torque <= no_torque * largest) return true;
+  if (speed <= standing * fastest)
+    return !(end - begin >= fewest_rows && torque > high * largest && top - low < held * torque);
+  std::size_t up = 0, down = 0;
+  for (std::size_t i = begin + (begin == 0); i < end; ++i)
+    (r.omega[i] > r.omega[i - 1] ? up : down) += r.omega[i] != r.omega[i - 1];
+  const bool in_order = std::max(up, down) >= 3 && 5 * std::min(up, down) <= up + down;
+  const bool constant = end - begin >= fewest_rows && quickest - slowest <= 2.0 * same_speed * speed;
+  return !in_order && !constant;
+}
+
+}  // namespace
+
 std::vector<Section> find_sections(const ProtocolRecord& r) {
   std::vector<Section> sections;
   if (r.omega.empty()) return sections;
-  const double fastest = highest(r.omega, 0, r.omega.size());
-  const auto rests = [&](std::size_t i) { return !(r.omega[i] > 5e-4 * fastest); };
-  for (std::size_t begin = 0, end = 0; begin < r.omega.size(); begin = end) {
-    for (end = begin + 1; end < r.omega.size() && rests(end) == rests(begin); ++end) {
+  const std::size_t rows = r.omega.size();
+  const double fastest = highest(r.omega, 0, rows), largest = highest(r.torque, 0, rows);
+  std::vector<char> rests(rows, 0);
+  for (std::size_t begin = 0, end = 0; begin < rows; begin = end) {
+    const auto slow = [&](std::size_t i) { return !(r.omega[i] > 5e-4 * fastest); };
+    for (end = begin + 1; end < rows && slow(end) == slow(begin); ++end) {
     }
-    if (rests(begin))
+    if (slow(begin) && is_rest(r, begin, end, fastest, largest))
+      std::fill(rests.begin() + static_cast<std::ptrdiff_t>(begin),
+                rests.begin() + static_cast<std::ptrdiff_t>(end), 1);
+  }
+  for (std::size_t begin = 0, end = 0; begin < rows; begin = end) {
+    for (end = begin + 1; end < rows && rests[end] == rests[begin]; ++end) {
+    }
+    if (rests[begin])
       sections.push_back({.kind = SectionKind::rest, .begin = begin, .end = end});
     else
       add_shear(r.omega, begin, end, sections);

@@ -46,7 +46,8 @@ ProtocolRecord parse_protocol_record(std::string_view text, const std::string& n
 /// The columns of a table of torque_quantities as they stand, time carried on and speeds without their sign.
 ProtocolRecord protocol_of(const NumberTable& table);
 
-/// Sections in the order of time that cover all rows. A rest is slower than 5e-4 of the highest speed; a speed is constant
+/// Sections in the order of time that cover all rows. In a rest the instrument stands still, slower than 5e-4 of
+/// the highest speed, and holds no torque; a speed is constant
 /// within 3 %; rows in which the vane gathers speed belong to what follows.
 std::vector<Section> find_sections(const ProtocolRecord& record);
 

@@ -87,6 +87,17 @@ std::string seen(const NumberTable& table) {
   return text + (table.header.size() > 12 ? ", ..." : "");
 }
 
+/// Shear rates and stresses in the columns of speed and torque.
+void take_shear(NumberTable& table) {
+  for (double& rate : table.column[q_shear_rate]) rate *= evenly_sheared_speed;
+  for (const auto& [to, from] : {std::pair(q_speed, q_shear_rate), std::pair(q_torque, q_shear_stress)}) {
+    table.column[to].swap(table.column[from]);
+    table.position[to] = table.position[from];
+  }
+}
+
+}  // namespace
+
 void require_kinds(const NumberTable& table, const std::string& name) {
   const bool has_time = table.position[q_time] != 0, has_speed = table.position[q_speed] != 0;
   const std::string kinds =
@@ -99,17 +110,6 @@ void require_kinds(const NumberTable& table, const std::string& name) {
     throw RecordError(at_position(name, table.header_line, 1, "neither a time nor a speed column" + kinds));
   if (table.line.empty()) throw RecordError(at_position(name, table.header_line, 1, "a header without rows"));
 }
-
-/// Shear rates and stresses in the columns of speed and torque.
-void take_shear(NumberTable& table) {
-  for (double& rate : table.column[q_shear_rate]) rate *= evenly_sheared_speed;
-  for (const auto& [to, from] : {std::pair(q_speed, q_shear_rate), std::pair(q_torque, q_shear_stress)}) {
-    table.column[to].swap(table.column[from]);
-    table.position[to] = table.position[from];
-  }
-}
-
-}  // namespace
 
 NumberTable torque_table(std::string_view text, const std::string& name, double torque_offset,
                          const ReadOptions& options, bool& sheared_evenly) {

@@ -49,6 +49,9 @@ TorqueRecord read_torque_record(const std::string& path, double torque_offset = 
 NumberTable torque_table(std::string_view text, const std::string& name, double torque_offset,
                          const ReadOptions& options, bool& sheared_evenly);
 
+/// Throws RecordError, with what the header has, where a torque, or both time and speed, or all rows are missing.
+void require_kinds(const NumberTable& table, const std::string& name);
+
 /// The text of a file. Throws RecordError where it cannot be read.
 std::string read_text_file(const std::string& path);
 

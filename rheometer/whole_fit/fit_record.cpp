@@ -5,41 +5,24 @@
 #include <stdexcept>
 
 #include "rheometer/records/text.hpp"
-#include "rheometer/vane/geometries.hpp"
 #include "rheometer/vane/vane_ends.hpp"
 #include "rheometer/whole_fit/fit_with_blades.hpp"
+#include "rheometer/whole_fit/record_reading.hpp"
 
 namespace tremie {
 namespace {
-
-struct Table {
-  std::string text, name;
-};
 
 /// What all fits of a call share.
 struct Fitting {
   const FitOptions& options;
   const std::vector<std::filesystem::path>& data_folders;
-  Geometry geometry = {};    ///< without words where none is named
-  ReadOptions reading = {};  ///< of the records
+  RecordReading reading;
 
+  const Geometry& geometry() const { return reading.geometry; }
   bool computed_ends() const { return options.ends == "computed"; }
 
-  /// The first table of reference_data/`folder`, which the option of the vane reads.
-  Table table(const char* folder, const char* option) const {
-    for (const auto& data : data_folders) {
-      std::error_code error;
-      for (const auto& entry : std::filesystem::directory_iterator(data / folder, error))
-        if (entry.path().extension() == ".csv")
-          return {read_text_file(entry.path().string()), entry.path().filename().string()};
-    }
-    const std::string name = option;
-    throw RecordError(name + " computed: its table, reference_data/" + folder +
-                      "/*.csv, is not there; allowed without it: " + name + " none");
-  }
-  bool has_geometry() const { return !geometry.words.empty() || !has_default_lengths(options); }
-  Table ends() const { return table("vane_ends", "--ends"); }
-  Table blades() const { return table("vane_blades", "--blades"); }
+  DataTable ends() const { return data_table(data_folders, "vane_ends", "--ends computed"); }
+  DataTable blades() const { return data_table(data_folders, "vane_blades", "--blades computed"); }
 };
 
 /// Faults of a fit with the name of what it is of, if it has one.
@@ -54,39 +37,17 @@ auto named(const std::string& name, Call call) {
 
 TorqueRecord read(const Fitting& f, const RecordSource& source) {
   const double torque_offset = f.options.torque_offset;
-  if (!source.record) return read_torque_record(source.name, torque_offset, f.reading);
+  if (!source.record) return read_torque_record(source.name, torque_offset, f.reading.options);
   TorqueRecord record = *source.record;
   for (double& torque : record.torque) torque -= torque_offset;
-  if (!f.reading.stress_constant) return record;
-  for (double& torque : record.torque) torque *= *f.reading.stress_constant;
-  for (double& speed : record.omega) speed *= *f.reading.strain_constant * evenly_sheared_speed;
+  if (!f.reading.options.stress_constant) return record;
+  for (double& torque : record.torque) torque *= *f.reading.options.stress_constant;
+  for (double& speed : record.omega) speed *= *f.reading.options.strain_constant * evenly_sheared_speed;
   record.sheared_evenly = true;
   return record;
 }
 
-// --- the geometry
-
-ReadOptions read_options(const FitOptions& o, const Geometry& g) {
-  ReadOptions r;
-  r.columns = o.column;
-  r.decimal = o.decimal;
-  r.shear_first = g.words.empty() && has_default_lengths(o);
-  r.torque_per_degree = o.torque_per_degree ? o.torque_per_degree : g.torque_per_degree;
-  r.full_scale_torque = o.full_scale_torque;
-  if (!g.words.empty() && !g.cylinders)
-    r.stress_constant = g.stress_constant, r.strain_constant = g.strain_constant;
-  return r;
-}
-
-std::string geometry_words(const Fitting& f, bool sheared_evenly) {
-  if (!f.geometry.words.empty() && (!sheared_evenly || f.reading.stress_constant)) return f.geometry.words;
-  if (sheared_evenly)
-    return "none: shear rate and shear stress as the instrument converted them, which is trusted";
-  const Instrument given{f.options.vane_radius, f.options.vane_height, f.options.container_radius};
-  return text_of("vane, radius %.6g mm, height %.6g mm, in a container of radius %.6g mm",
-                 1e3 * given.vane_radius, 1e3 * given.vane_height, 1e3 * given.container_radius) +
-         (f.has_geometry() ? "" : ": the default (ICAR), none is given");
-}
+// --- evenly sheared
 
 /// Of parallel plates: the part of the stress that goes as the rate to the power n is 3/(n + 3) of the rim's.
 void correct_for_plates(FitResult& result) {
@@ -106,14 +67,14 @@ void correct_for_plates(FitResult& result) {
 FitResult fit_evenly_sheared(const Fitting& f, const TorqueRecord& record, FitInput in) {
   if (f.options.ends != "none" || f.options.blades != "none")
     throw std::invalid_argument("--ends and --blades are a vane's; this record has shear rates and stresses");
-  if (f.geometry.plates && record.kind != RecordKind::flow_curve)
+  if (f.geometry().plates && record.kind != RecordKind::flow_curve)
     throw std::invalid_argument(
         "a decay between parallel plates is not read: the rate falls from the rim to the axis");
-  if (f.geometry.plates && in.mu) *in.mu *= 0.75;
+  if (f.geometry().plates && in.mu) *in.mu *= 0.75;
   in.instrument = evenly_sheared();
   FitResult result = fit(record, in);
-  if (f.geometry.plates && in.mu && result.mu) result.mu->value /= 0.75;
-  if (f.geometry.plates) correct_for_plates(result);
+  if (f.geometry().plates && in.mu && result.mu) result.mu->value /= 0.75;
+  if (f.geometry().plates) correct_for_plates(result);
   std::erase_if(result.notes, [](const std::string& note) { return note.starts_with("plug:"); });
   result.sheared_evenly = true;
   result.plug.reset(), result.plug_below.reset(), result.sheared_radius.reset();
@@ -153,7 +114,7 @@ void note_beyond_blades(const TorqueRecord& record, const FitInput& in, const Bl
 FitResult fit_vane(const Fitting& f, const TorqueRecord& record, const FitInput& in) {
   if (f.options.blades == "none") {
     FitResult result = fit(record, in);
-    if (f.geometry.cylinders && f.options.ends == "none") return result;
+    if (f.geometry().cylinders && f.options.ends == "none") return result;
     result.notes.push_back(
         f.options.ends == "none"
             ? taken_for_a_cylinder
@@ -195,7 +156,7 @@ TorqueRecord with_even_ends(const Fitting& f, const TorqueRecord& record, const 
 FitResult read_and_fit(const Fitting& f, const RecordSource& source, FitInput in, double factor) {
   return named(source.name, [&] {
     const TorqueRecord record = read(f, source);
-    if (in.omega && record.sheared_evenly) *in.omega *= f.geometry.strain_constant * evenly_sheared_speed;
+    if (in.omega && record.sheared_evenly) *in.omega *= f.geometry().strain_constant * evenly_sheared_speed;
     if (!in.omega && record.speed > 0.0) in.omega = record.speed;
     if (!in.rest && record.rest > 0.0) in.rest = record.rest;
     FitResult result = record.sheared_evenly ? fit_evenly_sheared(f, record, in) : fit_vane(f, record, in);
@@ -204,7 +165,8 @@ FitResult read_and_fit(const Fitting& f, const RecordSource& source, FitInput in
       result = fit_vane(f, with_even_ends(f, record, in, factor, result), in);
     note_beyond_ends(f, in, result);
     result.notes.insert(result.notes.begin(), record.understood.begin(), record.understood.end());
-    result.notes.insert(result.notes.begin(), "geometry: " + geometry_words(f, record.sheared_evenly));
+    result.notes.insert(result.notes.begin(),
+                        "geometry: " + geometry_words(f.reading, f.options, record.sheared_evenly));
     return result;
   });
 }
@@ -258,20 +220,21 @@ std::vector<MoveByEnds> moves_by_ends(const Fitting& f, const RecordSource& sour
 }
 
 void set_geometry(const Fitting& f, bool sheared_evenly, RecordFits& all) {
-  all.geometry = geometry_words(f, sheared_evenly);
-  all.default_geometry = !sheared_evenly && !f.has_geometry();
+  all.geometry = geometry_words(f.reading, f.options, sheared_evenly);
+  all.default_geometry = !sheared_evenly && f.reading.default_geometry;
   if (sheared_evenly) all.instrument = evenly_sheared();
 }
 
 ProtocolFit fit_protocol(const Fitting& f, const std::string& file, const FitInput& in) {
   return named(file, [&] {
-    ProtocolFit p{parse_protocol_record(read_text_file(file), file, f.options.torque_offset, f.reading), {}};
-    if (p.record.sheared_evenly && (f.options.ends != "none" || f.geometry.plates))
-      throw std::invalid_argument(f.geometry.plates
+    ProtocolFit p{
+        parse_protocol_record(read_text_file(file), file, f.options.torque_offset, f.reading.options), {}};
+    if (p.record.sheared_evenly && (f.options.ends != "none" || f.geometry().plates))
+      throw std::invalid_argument(f.geometry().plates
                                       ? "--protocol does not read parallel plates"
                                       : "--ends is a vane's; this record has shear rates and stresses");
     p.record.understood.insert(p.record.understood.begin(),
-                               "geometry: " + geometry_words(f, p.record.sheared_evenly));
+                               "geometry: " + geometry_words(f.reading, f.options, p.record.sheared_evenly));
     FitInput of_record = in;
     if (p.record.sheared_evenly) of_record.instrument = evenly_sheared();
     p.reading = read_protocol(p.record, of_record, {.compliance = f.options.instrument_compliance});
@@ -284,14 +247,9 @@ ProtocolFit fit_protocol(const Fitting& f, const std::string& file, const FitInp
 RecordFits fit_records(const std::vector<RecordSource>& sources, const FitOptions& options,
                        const std::vector<std::filesystem::path>& data_folders) {
   check(options, sources.size());
-  Fitting f{options, data_folders};
+  const Fitting f{options, data_folders, reading_of(options, data_folders)};
   FitInput in = input_of(options);
-  if (!options.geometry.empty()) {
-    const Table table = f.table("geometries", "--geometry");
-    f.geometry = named("", [&] { return geometry_of(options.geometry, table.text, table.name); });
-    if (f.geometry.cylinders) in.instrument = *f.geometry.cylinders;
-  }
-  f.reading = read_options(options, f.geometry);
+  if (f.geometry().cylinders) in.instrument = *f.geometry().cylinders;
   named("the instrument", [&] { check(in.instrument); });
   RecordFits all;
   all.options = options;
