@@ -39,6 +39,7 @@ Json section_json(const SectionReading& s, std::size_t number, bool stress) {
          {"rest_before_s", s.section.rest_before > 0.0 ? Json(s.section.rest_before) : Json(nullptr)}};
   j["start_up"] = s.start_up ? start_up_json(*s.start_up, stress) : Json(nullptr);
   j["decay"] = s.decay ? decay_json(*s.decay, stress) : Json(nullptr);
+  j[stress ? "loop_area_Pa_per_s" : "loop_area_W"] = json_of(s.loop_area);
   j["fit"] = s.fit ? fit_results(*s.fit) : Json(nullptr);
   j["notes"] = s.notes;
   j["reasons"] = s.reasons;

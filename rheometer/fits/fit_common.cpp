@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "rheometer/records/text.hpp"
+#include "rheometer/tables/text.hpp"
 #include "rheometer/regression/lack_of_fit.hpp"
 #include "rheometer/regression/statistics.hpp"
 

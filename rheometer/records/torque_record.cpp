@@ -7,9 +7,8 @@
 
 #include "libmpm/constitutive/constants.hpp"
 #include "rheometer/records/sections.hpp"
-#include "rheometer/records/table.hpp"
-#include "rheometer/records/text.hpp"
-#include "rheometer/reference/instrument.hpp"
+#include "rheometer/tables/table.hpp"
+#include "rheometer/tables/text.hpp"
 
 namespace tremie {
 
@@ -37,6 +36,10 @@ void require_below(const std::vector<double>& column, const NumberTable& table, 
       throw RecordError(at_position(name, table.line[i], position, what + "; is the header's unit right?"));
 }
 
+bool is_flow_curve(const Section& s) {
+  return s.kind == SectionKind::flow_curve_up || s.kind == SectionKind::flow_curve_down;
+}
+
 /// The first section that is a decay, at a constant rate rather than a start-up; else the first flow curve.
 const Section* section_to_fit(const std::vector<Section>& sections) {
   const Section *decay = nullptr, *curve = nullptr;
@@ -45,8 +48,7 @@ const Section* section_to_fit(const std::vector<Section>& sections) {
     if (shear && s.end - s.begin >= 8 &&
         (!decay || (decay->kind == SectionKind::start_up && s.kind != decay->kind)))
       decay = &s;
-    const bool flow = s.kind == SectionKind::flow_curve_up || s.kind == SectionKind::flow_curve_down;
-    if (flow && !curve) curve = &s;
+    if (is_flow_curve(s) && !curve) curve = &s;
   }
   return decay ? decay : curve;
 }
@@ -62,10 +64,13 @@ TorqueRecord one_section(const NumberTable& table, const std::string& name, bool
         name, table.header_line, 1,
         "time, speed and torque, but no 8 rows of one speed (within 3 %) and no ramp or steps: neither a "
         "torque decay nor a flow curve; --protocol reads every section"));
-  const bool curve = found->kind == SectionKind::flow_curve_up || found->kind == SectionKind::flow_curve_down;
+  const bool curve = is_flow_curve(*found);
   TorqueRecord one = curve ? flow_curve_of(record, *found) : decay_of(record, *found);
   const double speed = sheared_evenly ? found->omega / evenly_sheared_speed : found->omega / two_pi;
   const char* unit = sheared_evenly ? " 1/s" : " rev/s";
+  one.is_section = true;
+  for (const Section& s : sections)
+    if (!curve && is_flow_curve(s)) one.flow_curves.push_back(flow_curve_of(record, s));
   one.understood = table.understood;
   one.understood.push_back(
       std::string(curve ? "first flow curve" : "first section of constant speed") + ": lines " +

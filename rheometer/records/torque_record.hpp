@@ -3,33 +3,35 @@
 // Torque records of a rheometer as text files: a flow curve (torque at several speeds) or a torque decay
 // (torque over time at one speed).
 
-#include <stdexcept>
+#include <cmath>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "rheometer/records/table.hpp"
+#include "rheometer/tables/table.hpp"
 
 namespace tremie {
+
+/// Of an even shear between cylinders (evenly_sheared() in instrument.hpp): the gap by the radius, and the speed [rad/s] at
+/// a shear rate of 1 1/s.
+inline constexpr double evenly_sheared_gap = 1e-5;
+inline const double evenly_sheared_speed = std::log1p(evenly_sheared_gap);
 
 enum class RecordKind { flow_curve, torque_decay };
 
 /// Rows in the order of the file, SI units.
 struct TorqueRecord {
   RecordKind kind = RecordKind::flow_curve;
-  std::vector<double> omega;            ///< flow curve alone [rad/s], > 0 or = 0
-  std::vector<double> time;             ///< torque decay alone [s], not descending
-  std::vector<double> torque;           ///< [N m], >= 0
-  std::vector<long> line;               ///< of the file, from 1
-  double speed = 0.0;                   ///< of a torque decay whose file has it [rad/s]; 0: not there
-  double rest = 0.0;                    ///< before a torque decay, where the file has it [s]; 0: not there
-  bool sheared_evenly = false;          ///< speed and torque are those of evenly_sheared() (instrument.hpp)
-  std::vector<std::string> understood;  ///< how an instrument's export was read, a sentence each
-};
-
-/// A fault of a record: "name:line:column: what is wrong; what is allowed".
-struct RecordError : std::runtime_error {
-  using std::runtime_error::runtime_error;
+  std::vector<double> omega;              ///< flow curve alone [rad/s], > 0 or = 0
+  std::vector<double> time;               ///< torque decay alone [s], not descending
+  std::vector<double> torque;             ///< [N m], >= 0
+  std::vector<long> line;                 ///< of the file, from 1
+  double speed = 0.0;                     ///< of a torque decay whose file has it [rad/s]; 0: not there
+  double rest = 0.0;                      ///< before a torque decay, where the file has it [s]; 0: not there
+  std::vector<TorqueRecord> flow_curves;  ///< of the same file, where it holds several sections
+  bool is_section = false;                ///< of a record with time and speed
+  bool sheared_evenly = false;            ///< speed and torque are those of evenly_sheared() (instrument.hpp)
+  std::vector<std::string> understood;    ///< how an instrument's export was read, a sentence each
 };
 
 /// Reads a record from text (table.hpp): torques over speeds, over time, or both, or what the instrument made of them,

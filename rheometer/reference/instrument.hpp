@@ -2,8 +2,9 @@
 
 // A concentric-cylinder rheometer, and the shear rates that are quoted for it.
 
-#include <cmath>
 #include <numbers>
+
+#include "rheometer/records/torque_record.hpp"
 
 namespace tremie {
 
@@ -21,8 +22,6 @@ inline double angular_speed(double revolutions_per_second) {
 
 /// A gap so narrow that its shear is even, of which the torque [N m] is the shear stress [Pa] and the speed [rad/s] the
 /// shear rate [1/s] times evenly_sheared_speed: exact for a Bingham material, within 1e-5 for any.
-inline constexpr double evenly_sheared_gap = 1e-5;
-inline const double evenly_sheared_speed = std::log1p(evenly_sheared_gap);
 inline Instrument evenly_sheared() {
   const double outer = 1.0 + evenly_sheared_gap;
   const double height = (1.0 - 1.0 / (outer * outer)) / (4.0 * std::numbers::pi * evenly_sheared_speed);

@@ -4,9 +4,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "rheometer/records/columns/fields.hpp"
-#include "rheometer/records/number_text.hpp"
-#include "rheometer/records/text.hpp"
+#include "rheometer/tables/fields.hpp"
+#include "rheometer/tables/number_text.hpp"
+#include "rheometer/tables/text.hpp"
 
 namespace tremie {
 

@@ -6,7 +6,7 @@
 
 #include "libmpm/constitutive/constants.hpp"
 #include "rheometer/fits/flow_law.hpp"
-#include "rheometer/records/text.hpp"
+#include "rheometer/tables/text.hpp"
 
 namespace tremie {
 namespace {

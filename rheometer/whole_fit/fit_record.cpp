@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "rheometer/records/text.hpp"
+#include "rheometer/tables/text.hpp"
 #include "rheometer/vane/vane_ends.hpp"
 #include "rheometer/whole_fit/fit_with_blades.hpp"
 #include "rheometer/whole_fit/record_reading.hpp"
@@ -152,21 +152,44 @@ TorqueRecord with_even_ends(const Fitting& f, const TorqueRecord& record, const 
   return even;
 }
 
+/// Yield stress and viscosity of a decay by the last Bingham flow curve of the same file, as --protocol takes them.
+void take_own_flow_curve(const TorqueRecord& record, FitInput& in, std::vector<std::string>& notes) {
+  if (in.tau_0 || in.mu) return;
+  for (auto curve = record.flow_curves.rbegin(); curve != record.flow_curves.rend(); ++curve) try {
+      FitInput of_curve = in;
+      of_curve.law = law_of_section(in);
+      const FitResult result = fit(*curve, of_curve);
+      if (!result.reasons.empty() || !result.tau_0 || !result.mu) continue;
+      in.tau_0 = std::max(0.0, result.tau_0->value), in.mu = result.mu->value;
+      notes.push_back(text_of("yield_stress, plastic_viscosity: of the flow curve on lines %ld to %ld",
+                              curve->line.front(), curve->line.back()));
+      return;
+    } catch (const std::invalid_argument&) {  // too few rows: no flow curve
+    }
+}
+
 /// `factor`: of the ends, which is in the height of `in` already; 1 for none.
 FitResult read_and_fit(const Fitting& f, const RecordSource& source, FitInput in, double factor) {
   return named(source.name, [&] {
     const TorqueRecord record = read(f, source);
     if (in.omega && record.sheared_evenly) *in.omega *= f.geometry().strain_constant * evenly_sheared_speed;
+    if (in.omega && !(*in.omega > 0.0)) in.omega.reset();  // a record of shear rates has no speed
     if (!in.omega && record.speed > 0.0) in.omega = record.speed;
     if (!in.rest && record.rest > 0.0) in.rest = record.rest;
+    if (record.is_section && record.kind == RecordKind::flow_curve) in.law = law_of_section(in);
+    std::vector<std::string> notes{"geometry: " +
+                                   geometry_words(f.reading, f.options, record.sheared_evenly)};
+    notes.insert(notes.end(), record.understood.begin(), record.understood.end());
+    FitInput of_curve = in;
+    if (record.sheared_evenly) of_curve.instrument = evenly_sheared();
+    take_own_flow_curve(record, of_curve, notes);
+    in.tau_0 = of_curve.tau_0, in.mu = of_curve.mu;
     FitResult result = record.sheared_evenly ? fit_evenly_sheared(f, record, in) : fit_vane(f, record, in);
     if (f.computed_ends() && factor != 1.0 && record.kind == RecordKind::flow_curve && result.tau_0 &&
         result.mu && result.mu->value > 0.0)
       result = fit_vane(f, with_even_ends(f, record, in, factor, result), in);
     note_beyond_ends(f, in, result);
-    result.notes.insert(result.notes.begin(), record.understood.begin(), record.understood.end());
-    result.notes.insert(result.notes.begin(),
-                        "geometry: " + geometry_words(f.reading, f.options, record.sheared_evenly));
+    result.notes.insert(result.notes.begin(), notes.begin(), notes.end());
     return result;
   });
 }

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "rheometer/records/text.hpp"
+#include "rheometer/tables/text.hpp"
 
 namespace tremie {
 

@@ -1,11 +1,11 @@
-#include "rheometer/records/columns/column_names.hpp"
+#include "rheometer/tables/column_names.hpp"
 
 #include <algorithm>
 #include <cctype>
 #include <stdexcept>
 
-#include "rheometer/records/columns/fields.hpp"
-#include "rheometer/records/number_text.hpp"
+#include "rheometer/tables/fields.hpp"
+#include "rheometer/tables/number_text.hpp"
 
 namespace tremie::detail {
 

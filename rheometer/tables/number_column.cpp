@@ -1,14 +1,13 @@
-#include "rheometer/records/columns/number_column.hpp"
+#include "rheometer/tables/number_column.hpp"
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 
-#include "rheometer/records/columns/fields.hpp"
-#include "rheometer/records/number_text.hpp"
-#include "rheometer/records/table.hpp"
-#include "rheometer/records/text.hpp"
-#include "rheometer/records/torque_record.hpp"
+#include "rheometer/tables/fields.hpp"
+#include "rheometer/tables/number_text.hpp"
+#include "rheometer/tables/table.hpp"
+#include "rheometer/tables/text.hpp"
 
 namespace tremie::detail {
 

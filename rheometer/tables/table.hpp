@@ -5,11 +5,17 @@
 // torque record and a shear-rate history have in common.
 
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace tremie {
+
+/// A fault of a record: "name:line:column: what is wrong; what is allowed".
+struct RecordError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 /// A quantity that a column may hold, and the factors of its units to SI. A unit is written in lower case
 /// without spaces and brackets, "per" as "/": "rev/s", "mnm".

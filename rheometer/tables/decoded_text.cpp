@@ -1,7 +1,6 @@
 #include <algorithm>
 
-#include "rheometer/records/table.hpp"
-#include "rheometer/records/torque_record.hpp"
+#include "rheometer/tables/table.hpp"
 
 namespace tremie {
 

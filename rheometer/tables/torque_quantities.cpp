@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "libmpm/constitutive/constants.hpp"
-#include "rheometer/records/table.hpp"
+#include "rheometer/tables/table.hpp"
 
 namespace tremie {
 

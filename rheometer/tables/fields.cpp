@@ -1,4 +1,4 @@
-#include "rheometer/records/columns/fields.hpp"
+#include "rheometer/tables/fields.hpp"
 
 #include <algorithm>
 #include <cctype>

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "rheometer/records/table.hpp"
+#include "rheometer/tables/table.hpp"
 
 namespace tremie::detail {
 

@@ -1,12 +1,11 @@
-#include "rheometer/records/table.hpp"
+#include "rheometer/tables/table.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "rheometer/records/columns/column_names.hpp"
-#include "rheometer/records/columns/fields.hpp"
-#include "rheometer/records/columns/number_column.hpp"
-#include "rheometer/records/torque_record.hpp"
+#include "rheometer/tables/column_names.hpp"
+#include "rheometer/tables/fields.hpp"
+#include "rheometer/tables/number_column.hpp"
 
 namespace tremie {
 
@@ -312,11 +311,16 @@ class Reader {
     for (std::size_t q = 0; q < quantities_.size(); ++q)
       if (h.has(q)) factor[q] = unit_factor(h, q);
     std::optional<Header> next;
+    behind_a_gap_ = false;
     for (std::size_t i = begin; i < lines_.size() && !next; ++i) {
-      if (carries_nothing(lines_[i].text)) continue;
+      if (carries_nothing(lines_[i].text)) {
+        behind_a_gap_ = true;
+        continue;
+      }
       const auto fields = fields_of(lines_[i].text, h.separator);
       if (takes_row(h, fields, lines_[i].number)) {
         put_row(h, fields, factor, lines_[i].number);
+        behind_a_gap_ = false;
       } else {
         next = header_at(i);
         if (next && !((sets_.empty() || has_a_set(*next)) && has_rows(*next))) next.reset();
@@ -343,6 +347,9 @@ class Reader {
         ++texts, text_at = i;
     }
     if (numbers == 0) return false;
+    const bool starts_with_text = !fields.front().empty() && !looks_like_a_number(fields.front());
+    if (texts > 0 && behind_a_gap_ && starts_with_text)
+      return false;  // "Yield stress, 54, Pa" below the table
     if (!fields.front().empty() && fields.front().back() == ':')
       return false;  // "Interval and data points: 2 20"
     const std::size_t width = h.fields.size();
@@ -443,6 +450,7 @@ class Reader {
   std::vector<std::string> tables_;
   std::size_t left_out_ = 0;
   bool strict_ = false;
+  bool behind_a_gap_ = false;  ///< the line before the one that is read is blank, or text behind a blank one
   NumberTable table_;
 };
 
