@@ -29,12 +29,16 @@ std::size_t end_of_constant(const std::vector<double>& omega, std::size_t begin,
   return i;
 }
 
-/// A slow ramp keeps its speed for a few rows too, but drifts through all of the tolerance.
+/// A slow ramp keeps its speed for a few rows too, but drifts through all of the tolerance; so does the turn between a
+/// ramp up and one down, there and back.
 bool drifts(const std::vector<double>& omega, std::size_t begin, std::size_t end) {
   const std::size_t third = std::max<std::size_t>(1, (end - begin) / 3);
-  double first = 0.0, last = 0.0;
-  for (std::size_t i = 0; i < third; ++i) first += omega[begin + i], last += omega[end - 1 - i];
-  return std::abs(last - first) > drift * first;
+  double first = 0.0, last = 0.0, middle = 0.0;
+  const auto n = static_cast<double>(third), between = static_cast<double>(end - begin) - 2.0 * n;
+  for (std::size_t i = 0; i < third; ++i) first += omega[begin + i] / n, last += omega[end - 1 - i] / n;
+  for (std::size_t i = begin + third; i + third < end; ++i) middle += omega[i] / between;
+  const bool turns = between > 0.0 && std::abs(middle - 0.5 * (first + last)) > drift * first;
+  return std::abs(last - first) > drift * first || turns;
 }
 
 std::vector<Piece> pieces_of(const std::vector<double>& omega, std::size_t begin, std::size_t end) {
