@@ -16,7 +16,8 @@ namespace {
 
 using namespace tremie::cli;
 
-constexpr StudyCommand study_commands[] = {fit_command, study_command, calibrate_command, verify_command};
+constexpr StudyCommand study_commands[] = {fit_command, read_command, study_command, calibrate_command,
+                                           verify_command};
 
 bool is_study_command(const char* word) {
   for (const StudyCommand& command : study_commands)

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "libmpm/constitutive/constants.hpp"
-#include "rheometer/records/number_text.hpp"
+#include "rheometer/tables/number_text.hpp"
 
 namespace tremie::scene {
 namespace {

@@ -141,7 +141,7 @@ void add_options(Command& command, Given& o) {
     const std::string name = report::command_name(option);
     if (option.is_flag())
       command.flag(name.c_str(), o.flags[i], option.help);
-    else if (option.is_word())
+    else if (!option.words.empty())
       command.choice(name.c_str(), o.texts[i], option.words, option.help);
     else
       command.option(name.c_str(), o.texts[i], option.help);
