@@ -25,7 +25,9 @@ StepSettings step_settings(const Scene& scene) {
   settings.cut_cell_rule = true;   // what hangs on the column's walls is thinner than a cell
   settings.moving_surface = true;  // without it steps of tenths of a second carry a fluid past its level
   settings.alternating_viscosity = scene.alternating_viscosity;
-  if (scene.model.space == SpaceKind::plane_with_side_walls) settings.side_wall_distance = scene.box.width;
+  settings.wall_law = scene.walls;
+  if (scene.model.space == SpaceKind::plane_with_side_walls && face(scene.walls) != FaceKind::free_slip)
+    settings.side_wall_distance = scene.box.width;
   return settings;
 }
 
@@ -60,8 +62,7 @@ template <class Geometry>
 Outcome run_in(const Scene& scene, const scene::Observer& observer) {
   ImplicitBody<Geometry> body{filled_column<Geometry>(scene)};
   StepSettings settings = step_settings<Geometry>(scene);
-  if constexpr (Geometry::dim == 3)
-    if (!resolves_bars(body.grid.axes[1].h)) body.bars = parts::slender_bars(bars_of(scene), body.grid.axes);
+  if constexpr (Geometry::dim == 3) add_bars(scene, body);
 
   Outcome outcome;
   const experiment::Flow flow{
@@ -73,7 +74,7 @@ Outcome run_in(const Scene& scene, const scene::Observer& observer) {
             settings.dt_max =
                 std::min(longest_dt<Geometry>(scene, body.time), experiment::without_sliver(left, body.dt));
             settings.fixed_dt = experiment::fixed_step(scene.model, left);
-            body.boundary = walls_inside<Geometry>(scene, body.grid.axes, body.time);
+            body.grid.sheets = walls_inside<Geometry>(scene, body.grid.axes[0], body.time);
           },
       .advance =
           [&](Checks& checks, Cost& cost) {

@@ -61,6 +61,20 @@ double point_length(const Body<Geometry>& body, const Scene& scene) {
   return body.grid.axes[0].h / scene.model.points_per_cell[0];
 }
 
+/// Share of the volume that stands beyond the gate while it is shut, to the grid; later what stands beyond the front wall,
+/// a cell above the channel.
+template <class Geometry>
+double share_beyond_the_wall(const Body<Geometry>& body, const Scene& scene) {
+  const double wall = place_of_gate(body.grid.axes[0]), row = body.grid.axes[Geometry::up].h;
+  const double low = gate_edge(scene, body.time) < 0.5 * row ? 0.0 : scene.box.channel_height + row;
+  double beyond = 0.0, all = 0.0;
+  for (std::size_t p = 0; p < body.points.size(); ++p) {
+    all += body.points.volume(p);
+    if (body.points.x[p][0] > wall && body.points.x[p][Geometry::up] > low) beyond += body.points.volume(p);
+  }
+  return beyond / all;
+}
+
 template <class Geometry>
 Sample read(const Body<Geometry>& body, const Scene& scene, const StepReport& step) {
   const Box& box = scene.box;
@@ -73,6 +87,7 @@ Sample read(const Body<Geometry>& body, const Scene& scene, const StepReport& st
   s.front = experiment::front_of(body.points, box.column_length, body.grid.axes[0].h);
   s.h1 = depth_over(behind_the_gate(box));
   if (s.front > box.channel_length - 0.5 * off_the_walls) s.h2 = depth_over(at_the_end(box));
+  s.beyond_the_wall = share_beyond_the_wall(body, scene);
   s.max_speed = step.max_speed;
   s.shear_rate_mean = step.shear_rate_mean;
   s.flocculation_mean = experiment::mean_flocculation(body.points);
