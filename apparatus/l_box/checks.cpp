@@ -108,14 +108,13 @@ std::string no_number(const View& v) {
 }  // namespace
 
 std::string went_through_the_wall(const View& j) {
-  double most = 0.0;
-  for (const Sample& s : j.series) most = std::max(most, s.beyond_the_wall);
-  if (most <= most_beyond_the_wall) return {};
+  const double through = j.series.back().through_the_wall;
+  if (through <= most_through_the_wall) return {};
   return fmt::format(
-      "{:.2g} % of the concrete stood beyond the shut gate or the column's front wall: a smaller model.cell, "
+      "{:.2g} % of the concrete went through the shut gate or the column's front wall: a smaller model.cell, "
       "or "
       "a shorter model.time_step",
-      100.0 * most);
+      100.0 * through);
 }
 
 double drop_at_rest(const Scene& scene, double h, double length) {

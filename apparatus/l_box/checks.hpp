@@ -28,11 +28,11 @@ double drop_at_rest(const Scene& scene, double h, double length);
 /// The fastest that the front was [m/s].
 double fastest_front(const std::vector<Sample>& series);
 
-/// Share of the concrete that may be seen beyond the shut gate or the front wall.
-inline constexpr double most_beyond_the_wall = 0.002;
-
-/// A reason where more than that was; else empty.
 using View = scene::RunView<Scene, Outcome>;
+
+/// Share of the concrete that may go through the shut part of the gate or the front wall.
+inline constexpr double most_through_the_wall = 0.002;
+/// A reason where more did; else empty.
 std::string went_through_the_wall(const View& run);
 
 /// Adds the reasons of all checks.

@@ -65,6 +65,7 @@ Outcome run_in(const Scene& scene, const scene::Observer& observer) {
   if constexpr (Geometry::dim == 3) add_bars(scene, body);
 
   Outcome outcome;
+  double through = 0.0;  // gate and front wall, share of the volume
   const experiment::Flow flow{
       .time = [&] { return body.time; },
       .unfinished = [&] { return experiment::has_time_left(body.time, scene.duration); },
@@ -78,7 +79,10 @@ Outcome run_in(const Scene& scene, const scene::Observer& observer) {
           },
       .advance =
           [&](Checks& checks, Cost& cost) {
+            const auto from = body.points.x;
+            const double edge = gate_edge(scene, body.time);
             const StepReport step = implicit_step(body, scene.model.law, settings);
+            through += share_through_the_wall(body, from, edge);
             experiment::count_step(body, step, checks, cost);
             experiment::watch_fixed_step(body, scene.model, step, checks);
             return step;
@@ -89,12 +93,17 @@ Outcome run_in(const Scene& scene, const scene::Observer& observer) {
       .free_to_flow =
           [&] { return !scene.gate_speed || *scene.gate_speed * body.time > scene.box.channel_height; },
       .stands_since = [&] { return Geometry::dim == 3 ? stands_since(outcome.series) : std::nullopt; },
-      .state = [&](Archive& archive) { archive(body, outcome.series); }};
+      .state = [&](Archive& archive) { archive(body, outcome.series, through); }};
   experiment::run_experiment(
       flow, body,
       {scene.duration, scene.frame_interval,
        [](const Sample& now) { return fmt::format("front {:.0f} mm", 1e3 * now.front); }},
-      observer, [&](const StepReport& step) { return read(body, scene, step); },
+      observer,
+      [&](const StepReport& step) {
+        Sample line = read(body, scene, step);
+        line.through_the_wall = through;
+        return line;
+      },
       [&](std::optional<double> stopped_at) {
         read_results(body, scene, stopped_at, outcome);
         add_reasons(scene, outcome);

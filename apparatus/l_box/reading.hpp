@@ -61,18 +61,21 @@ double point_length(const Body<Geometry>& body, const Scene& scene) {
   return body.grid.axes[0].h / scene.model.points_per_cell[0];
 }
 
-/// Share of the volume that stands beyond the gate while it is shut, to the grid; later what stands beyond the front wall,
-/// a cell above the channel.
+/// Share of the volume that a step took from the column into the channel, or back, more than a cell above the opening,
+/// which reaches up to `edge`; `from`: where the points were.
 template <class Geometry>
-double share_beyond_the_wall(const Body<Geometry>& body, const Scene& scene) {
-  const double wall = place_of_gate(body.grid.axes[0]), row = body.grid.axes[Geometry::up].h;
-  const double low = gate_edge(scene, body.time) < 0.5 * row ? 0.0 : scene.box.channel_height + row;
-  double beyond = 0.0, all = 0.0;
+double share_through_the_wall(const Body<Geometry>& body, const std::vector<Vec<Geometry::dim>>& from,
+                              double edge) {
+  constexpr int up = Geometry::up;
+  const double wall = place_of_gate(body.grid.axes[0]), above = edge + body.grid.axes[up].h;
+  double through = 0.0, all = 0.0;
   for (std::size_t p = 0; p < body.points.size(); ++p) {
+    const Vec<Geometry::dim>& to = body.points.x[p];
     all += body.points.volume(p);
-    if (body.points.x[p][0] > wall && body.points.x[p][Geometry::up] > low) beyond += body.points.volume(p);
+    if ((from[p][0] < wall) != (to[0] < wall) && std::min(from[p][up], to[up]) > above)
+      through += body.points.volume(p);
   }
-  return beyond / all;
+  return through / all;
 }
 
 template <class Geometry>
@@ -87,7 +90,6 @@ Sample read(const Body<Geometry>& body, const Scene& scene, const StepReport& st
   s.front = experiment::front_of(body.points, box.column_length, body.grid.axes[0].h);
   s.h1 = depth_over(behind_the_gate(box));
   if (s.front > box.channel_length - 0.5 * off_the_walls) s.h2 = depth_over(at_the_end(box));
-  s.beyond_the_wall = share_beyond_the_wall(body, scene);
   s.max_speed = step.max_speed;
   s.shear_rate_mean = step.shear_rate_mean;
   s.flocculation_mean = experiment::mean_flocculation(body.points);

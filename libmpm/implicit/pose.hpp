@@ -62,14 +62,16 @@ void add_side_walls(double W, const YieldLaw& law, const WallLaw& wall_law,
   }
 }
 
-/// A wall law that holds with a stress does so on the area that is wetted.
+/// A wall law that holds with a stress does so on the area that is wetted. One that holds with more than the concrete's
+/// yield stress must not be the laxer for it.
 template <class Geometry>
-void set_wall_stresses(const WallLaw& law, YieldProblem<Geometry>& problem) {
+void set_wall_stresses(const WallLaw& law, double tau_0, YieldProblem<Geometry>& problem) {
   const std::optional<WallStress> stress = wall_stress(law);
   if (!stress || problem.wall_nodes.empty()) return;
   const NodeAreas<Geometry::dim> areas = wetted_areas(problem.grid, problem.quadrature);
   for (auto& t : problem.wall_nodes) {
     t.limit = stress->yield * areas[t.node][t.normal_axis];
+    t.scale = std::max(tau_0, no_stress) * areas[t.node][t.normal_axis];
     t.viscous = stress->viscous * areas[t.node][t.normal_axis];
   }
 }
@@ -122,7 +124,7 @@ void pose(ImplicitBody<Geometry>& body, const YieldLaw& law, const StepSettings&
   apply_blocks<D>(body.grid, posed->fixed, body.v);
   apply_sheets<D>(body.grid, posed->fixed, posed->wall_nodes, body.v);
   fill_mirrors<D>(body.grid, body.v);
-  set_wall_stresses(settings.wall_law, *posed);
+  set_wall_stresses(settings.wall_law, body.mix.tau_0, *posed);
   if (settings.side_wall_distance > 0.0)
     add_side_walls(settings.side_wall_distance, law, settings.wall_law, body.v, *posed);
   posed->drag = viscous_drag(posed->wall_nodes, body.v.size());

@@ -5,7 +5,7 @@
 #include <atomic>
 
 #include "apparatus/l_box/checks.hpp"
-#include "apparatus/l_box/set_up.hpp"
+#include "apparatus/l_box/reading.hpp"
 #include "apparatus/parts/bars.hpp"
 #include "apparatus/registry/registry.hpp"
 
@@ -60,13 +60,25 @@ TEST(LBoxChecks, TheGateStandsOnAFaceOfTheGrid) {
     }
 }
 
-// A thousandth beyond the wall is nothing, three thousandths are a leak.
-TEST(LBoxChecks, ConcreteBeyondTheWallIsMarked) {
-  for (const auto& [beyond, marked] : {std::pair{0.003, true}, {0.001, false}}) {
+// 1 of 4 points crosses half a metre up, while the opening reaches up to 0.15 m: a quarter went through. One that comes out
+// below it did not.
+TEST(LBoxChecks, WhatCrossesTheWallAboveTheOpeningIsCounted) {
+  Body<PlaneStrain> body;
+  body.grid.axes[0] = l_box::along_the_channel({}, 0.01);
+  body.grid.axes[1] = {.h = 0.01};
+  for (double y : {0.5, 0.3, 0.1, 0.05}) add_point<2>(body.points, {0.099, y}, 1.0, 1e-4, 0.0);
+  const auto from = body.points.x;
+  body.points.x[0][0] = body.points.x[3][0] = 0.101;
+  EXPECT_NEAR(l_box::share_through_the_wall(body, from, 0.15), 0.25, 1e-12);
+}
+
+// A thousandth through the wall is nothing, three thousandths are a leak.
+TEST(LBoxChecks, ConcreteThatGoesThroughTheWallIsMarked) {
+  for (const auto& [through, marked] : {std::pair{0.003, true}, {0.001, false}}) {
     l_box::Outcome outcome;
     outcome.series.resize(2);
-    outcome.series.front().beyond_the_wall = beyond;
-    EXPECT_EQ(!l_box::went_through_the_wall({{}, outcome}).empty(), marked) << beyond;
+    outcome.series.back().through_the_wall = through;
+    EXPECT_EQ(!l_box::went_through_the_wall({{}, outcome}).empty(), marked) << through;
   }
 }
 
