@@ -13,7 +13,7 @@
 // penalty s, and update_admm() is its step in closed form, for all of them.
 //
 //                                               acts at   g                     k
-//   wall law of a flat wall (wall_law.hpp)      node      the law's             the law's
+//   wall law of a flat wall or sheet            node      the law's             the law's
 //   side walls of a section (pose.hpp)          node      their yield stress    of the parabola between them
 //   slender bar (slender_bars.hpp)              point     limit load            of the flow that the grid misses
 //   wall inside the grid (boundary_points.hpp)  point     none                  none: a penalty alone
