@@ -42,6 +42,8 @@ struct Interrupted {};
 Section paper_mixes(const Settings& settings);  ///< Mixes A to C fresh and rested, the paper's parameters
 /// The exponent of the shear rate in the breakdown from two mixes, forecast of the third; draws breakdown.svg.
 Section breakdown_of_pairs(const Settings& settings);
+/// One interface law of the floor for all three mixes, from two mixes, forecast of the third.
+Section sliding_floor(const Settings& settings);
 Section torque_records(
     const Settings& settings);  ///< the site's decay; static yield stress of a paste over rest
 Section stiff_mixes(const Settings& settings);  ///< slump against yield stress, two published correlations
