@@ -261,8 +261,8 @@ Lab read_lab(const std::filesystem::path& file) {
   for (const auto& [key, node] : table_of(document, file.string()))
     if (std::find(allowed.begin(), allowed.end(), key) == allowed.end())
       complain(node, key,
-               fmt::format("unknown key; allowed: {} (nearest: {})", fmt::join(allowed, ", "),
-                           scene::nearest(key, allowed)));
+               fmt::format("unknown key; allowed: {}{}", fmt::join(allowed, ", "),
+                           scene::nearest_in_brackets(key, allowed, "")));
   Lab lab;
   lab.name = file.stem().string();
   lab.file = file;
@@ -273,7 +273,11 @@ Lab read_lab(const std::filesystem::path& file) {
   read_unknowns(document, lab);
   read_tests(document, "forecast", lab);
   // Every test's scene is read once, at the middle of the ranges, before anything is run.
-  for (const Test& test : lab.tests) scene_at(lab, test, std::vector<double>(lab.unknowns.size(), 0.5));
+  lab.files.push_back(file);
+  for (const Test& test : lab.tests) {
+    const auto scene = scene_at(lab, test, std::vector<double>(lab.unknowns.size(), 0.5));
+    lab.files.insert(lab.files.end(), scene.files.begin(), scene.files.end());
+  }
   return lab;
 }
 

@@ -34,7 +34,8 @@ struct Test {
 struct Lab {
   std::string name;
   std::filesystem::path file;
-  std::vector<std::string> known;  ///< overrides
+  std::vector<std::filesystem::path> files;  ///< that it was read from
+  std::vector<std::string> known;            ///< overrides
   std::vector<study::Factor> unknowns;
   std::vector<Test> tests;  ///< measured ones first
   std::size_t measured = 0;

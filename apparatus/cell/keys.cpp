@@ -102,7 +102,11 @@ std::vector<ShearSegment> read_history(const Values& values) {
 
 Scene build(scene::Loaded& loaded) {
   Values& values = loaded.values;
-  if (values.has("history")) inline_csv(values, std::filesystem::path(loaded.path).parent_path());
+  if (values.has("history")) {
+    const auto folder = std::filesystem::path(loaded.path).parent_path();
+    loaded.files.push_back(folder / values.word("history"));
+    inline_csv(values, folder);
+  }
   Scene scene;
   scene.name = loaded.name;
   scene.cell.mix = scene::read_mix(values);

@@ -10,6 +10,7 @@
 #include "apparatus/cli/commands.hpp"
 #include "apparatus/cli/options/command.hpp"
 #include "apparatus/cli/options/json_option.hpp"
+#include "apparatus/cli/process/say.hpp"
 #include "apparatus/registry/cost_estimate.hpp"
 #include "apparatus/registry/machine_pace.hpp"
 #include "apparatus/registry/registry.hpp"
@@ -33,16 +34,16 @@ std::string count_text(std::int64_t n) {
 
 void print_estimate(const scene::Scene& scene, const scene::SizeEstimate& e) {
   const auto cost = scene::cost_of(scene, e, scene::machine_pace(scene));
-  fmt::print("\n# cost, estimated\n#   {} points, {} bytes a point\n#   {} active cells at the start\n",
-             e.points, e.bytes_per_point, e.cells_active);
-  fmt::print("#   about {} steps, at most some {}\n", count_text(e.steps_expected), count_text(e.steps));
-  fmt::print("#   about {} of CPU ({} to {}", scene::duration_text(cost.cpu),
-             scene::duration_text(cost.cpu_low), scene::duration_text(cost.cpu_high));
+  say("\n# cost, estimated\n#   {} points, {} bytes a point\n#   {} active cells at the start\n", e.points,
+      e.bytes_per_point, e.cells_active);
+  say("#   about {} steps, at most some {}\n", count_text(e.steps_expected), count_text(e.steps));
+  say("#   about {} of CPU ({} to {}", scene::duration_text(cost.cpu), scene::duration_text(cost.cpu_low),
+      scene::duration_text(cost.cpu_high));
   if (e.steps > e.steps_expected)
-    fmt::print("; up to {} if it flows on for all of test.duration", scene::duration_text(cost.cpu_most));
-  fmt::print(")\n");
-  fmt::print("#   about {} of memory, {} of files (each to a factor of two)\n",
-             scene::megabytes_text(cost.memory), scene::megabytes_text(cost.disk));
+    say("; up to {} if it flows on for all of test.duration", scene::duration_text(cost.cpu_most));
+  say(")\n");
+  say("#   about {} of memory, {} of files (each to a factor of two)\n", scene::megabytes_text(cost.memory),
+      scene::megabytes_text(cost.disk));
 }
 
 Json cost_json(const scene::Scene& scene, const std::optional<scene::SizeEstimate>& e) {
@@ -74,16 +75,16 @@ void print_json(const scene::Scene& scene, const std::optional<scene::SizeEstima
                   {"uses", scene::uses(scene)},
                   {"notes", scene.notes},
                   {"cost", cost_json(scene, estimate)}};
-  fmt::print("{}\n", json.dump(2));
+  answer(json.dump(2) + "\n");
 }
 
 void print_text(const CheckOptions& options, const scene::Scene& scene,
                 const std::optional<scene::SizeEstimate>& estimate) {
-  fmt::print("# {}: valid. Every value that it uses, in SI:\n\n{}",
-             options.scene == "-" ? "the scene" : options.scene, scene.resolved);
-  fmt::print("\n# used and left out\n");
-  for (const auto& line : scene::uses(scene)) fmt::print("#   {}\n", line);
-  for (const auto& note : scene.notes) fmt::print("# note: {}\n", note);
+  answer(fmt::format("# {}: valid. Every value that it uses, in SI:\n\n{}",
+                     options.scene == "-" ? "the scene" : options.scene, scene.resolved));
+  say("\n# used and left out\n");
+  for (const auto& line : scene::uses(scene)) say("#   {}\n", line);
+  for (const auto& note : scene.notes) say("# note: {}\n", note);
   if (estimate) print_estimate(scene, *estimate);
 }
 

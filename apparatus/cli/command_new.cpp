@@ -6,6 +6,7 @@
 
 #include "apparatus/cli/commands.hpp"
 #include "apparatus/cli/options/command.hpp"
+#include "apparatus/cli/process/say.hpp"
 #include "apparatus/registry/registry.hpp"
 #include "apparatus/scene/resolved.hpp"
 
@@ -18,8 +19,8 @@ std::string template_of(const std::string& name) {
     if (apparatus.keys.name == name) return scene::write_template(apparatus.keys);
     known.push_back(apparatus.keys.name);
   }
-  throw scene::InputError(fmt::format("new: \"{}\" is not available; did you mean \"{}\"? Available: {}",
-                                      name, scene::nearest(name, known), fmt::join(known, ", ")));
+  throw scene::InputError(fmt::format("new: \"{}\" is not available{} Available: {}", name,
+                                      scene::did_you_mean(name, known), fmt::join(known, ", ")));
 }
 
 }  // namespace
@@ -31,7 +32,7 @@ void add_command_new(CLI::App& app, int& exit_code) {
   command.example(
       "tremie new slump_flow > slump.toml; also l_box, icar_vane, cell. Then tremie run slump.toml.");
   command.run([name, &exit_code] {
-    fmt::print("{}", template_of(*name));
+    answer(template_of(*name));
     exit_code = done;
   });
 }

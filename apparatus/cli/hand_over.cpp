@@ -10,6 +10,7 @@
 
 #include "apparatus/cli/commands.hpp"
 #include "apparatus/cli/process/own_file.hpp"
+#include "apparatus/cli/process/say.hpp"
 
 namespace tremie::cli {
 
@@ -19,11 +20,10 @@ int hand_over(char** argv) {
   setenv("GLOG_minloglevel", "3", 0);
   execv(program.c_str(), argv);
   if (errno != ENOENT) {
-    fmt::print(stderr, "tremie: {}: {}\n", program.string(), std::strerror(errno));
+    say(stderr, "tremie: {}: {}\n", program.string(), std::strerror(errno));
     return fault;
   }
-  fmt::print(
-      stderr,
+  say(stderr,
       "tremie: {} is not there: fit, study, verify and calibrate are in that program, beside tremie. It is "
       "built where libsundials-dev, libceres-dev and libboost-dev are installed (README.md, the test line)\n",
       program.string());

@@ -4,12 +4,13 @@
 
 #include "apparatus/cli/commands.hpp"
 #include "apparatus/cli/hand_over.hpp"
+#include "apparatus/cli/process/say.hpp"
 
 namespace tremie::cli {
 
 int hand_over(char** argv) {
-  fmt::print(stderr, "tremie {}: not in this build, which lacks {}; apt-get install {} and build again\n",
-             argv[1], TREMIE_MISSING_PACKAGES, TREMIE_MISSING_PACKAGES);
+  say(stderr, "tremie {}: not in this build, which lacks {}; apt-get install {} and build again\n", argv[1],
+      TREMIE_MISSING_PACKAGES, TREMIE_MISSING_PACKAGES);
   return bad_input;
 }
 

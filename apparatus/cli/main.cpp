@@ -9,13 +9,15 @@
 #include "apparatus/cli/hand_over.hpp"
 #include "apparatus/cli/options/command.hpp"
 #include "apparatus/cli/process/levels.hpp"
+#include "apparatus/cli/process/say.hpp"
 #include "apparatus/cli/program.hpp"
 
 namespace {
 
 using namespace tremie::cli;
 
-constexpr StudyCommand study_commands[] = {fit_command, study_command, calibrate_command, verify_command};
+constexpr StudyCommand study_commands[] = {fit_command, read_command, study_command, calibrate_command,
+                                           verify_command};
 
 bool is_study_command(const char* word) {
   for (const StudyCommand& command : study_commands)
@@ -42,6 +44,7 @@ void name_study_commands(CLI::App& app) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  secure_streams();
   become_best_level(argv);
   return_large_blocks();
   if (argc > 1 && is_study_command(argv[1])) return hand_over(argv);

@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "apparatus/cli/commands.hpp"
+#include "apparatus/cli/process/say.hpp"
 #include "apparatus/registry/registry.hpp"
 #include "apparatus/report/run_files/glossary.hpp"
 #include "apparatus/scene/input_error.hpp"
@@ -29,7 +30,7 @@ std::string joined(const std::vector<std::string>& words) {
 /// What an argument that is not known could have been.
 std::string unknown(const std::string& what, const std::string& given,
                     const std::vector<std::string>& known) {
-  return fmt::format("{} \"{}\"; did you mean \"{}\"? Allowed: {}", what, given, scene::nearest(given, known),
+  return fmt::format("{} \"{}\"{} Allowed: {}", what, given, scene::did_you_mean(given, known),
                      joined(known));
 }
 
@@ -107,13 +108,6 @@ void check_options(const CLI::App& app) {
                 "have tremie study run one scene over ranges"));
 }
 
-/// What was printed has arrived.
-int flushed(int exit_code) {
-  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return exit_code;
-  fmt::print(stderr, "tremie: the standard output cannot be written: {}\n", std::strerror(errno));
-  return exit_code == done ? static_cast<int>(fault) : exit_code;
-}
-
 /// Control characters that came in with a file or an argument do nothing to the terminal.
 std::string visible(std::string_view text) {
   std::string shown;
@@ -154,17 +148,17 @@ A run leaves report.html, curves and frames in runs/NAME. tremie COMMAND --help 
 /// The commands, "name TAB description" a line: what completions and man pages are made of.
 void print_commands(const CLI::App& app) {
   for (const CLI::App* command : app.get_subcommands({}))
-    fmt::print("{}\t{}\n", command->get_name(), command->get_description());
+    say("{}\t{}\n", command->get_name(), command->get_description());
 }
 
 /// What every apparatus reads, "apparatus TAB name TAB unit TAB words" a line: what the reference is made of.
 void print_readings() {
   for (const scene::Apparatus& apparatus : scene::all_apparatus()) {
-    fmt::print("{}\t\t\t{}\n", apparatus.keys.name, apparatus.words);
+    say("{}\t\t\t{}\n", apparatus.keys.name, apparatus.words);
     for (const scene::Described& reading : apparatus.glossary)
       if (reading.is_result)
-        fmt::print("{}\t{}\t{}\t{}\n", apparatus.keys.name, reading.name, report::unit_of(reading.name),
-                   report::words_of(reading.name, apparatus.keys.name));
+        say("{}\t{}\t{}\t{}\n", apparatus.keys.name, reading.name, report::unit_of(reading.name),
+            report::words_of(reading.name, apparatus.keys.name));
   }
 }
 
@@ -173,6 +167,7 @@ int parse_and_run(int argc, char** argv, const std::function<void(CLI::App&, int
   app.set_version_flag("--version", fmt::format("tremie {} ({}) for {}", version, commit, instructions));
   const auto lists = [&app](const char* option, const char* what, auto print) {
     const auto list = [print] {
+      answer("");
       print();
       throw CLI::Success();
     };
@@ -189,11 +184,11 @@ int parse_and_run(int argc, char** argv, const std::function<void(CLI::App&, int
   } catch (const CLI::RequiredError& error) {
     const CLI::App& at = app.get_subcommands().empty() ? app : *app.get_subcommands().front();
     check_options(app);
-    fmt::print(stderr, "tremie{}{}: {}\n{}\n", &at == &app ? "" : " ", &at == &app ? "" : at.get_name(),
-               error.what(), &at == &app ? "tremie --help shows what there is." : at.get_footer());
+    say(stderr, "tremie{}{}: {}\n{}\n", &at == &app ? "" : " ", &at == &app ? "" : at.get_name(),
+        error.what(), &at == &app ? "tremie --help shows what there is." : at.get_footer());
     return bad_input;
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() != 0) check_options(app);
+    error.get_exit_code() != 0 ? check_options(app) : answer("");
     return app.exit(error) == 0 ? done : bad_input;
   }
   return exit_code;
@@ -202,17 +197,17 @@ int parse_and_run(int argc, char** argv, const std::function<void(CLI::App&, int
 }  // namespace
 
 int run_program(int argc, char** argv, const std::function<void(CLI::App&, int&)>& add) {
+  secure_streams();
   try {
-    return flushed(parse_and_run(argc, argv, add));
+    return exit_code_once_printed(parse_and_run(argc, argv, add), fault);
   } catch (const scene::InputError& error) {
-    fmt::print(stderr, "{}\n", message(error.what()));
+    say(stderr, "{}\n", message(error.what()));
     return bad_input;
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr,
-               "tremie: there is not enough memory: larger cells (model.cell) or fewer points_per_cell\n");
+    say(stderr, "tremie: there is not enough memory: larger cells (model.cell) or fewer points_per_cell\n");
     return fault;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "tremie: {}\n", message(error.what()));
+    say(stderr, "tremie: {}\n", message(error.what()));
     return fault;
   }
 }

@@ -17,6 +17,8 @@ int run_program(int argc, char** argv, const std::function<void(CLI::App&, int& 
 struct StudyCommand {
   const char *name, *description;
 };
+inline constexpr StudyCommand read_command{
+    "read", "Show what is understood of a rheometer's record: columns, units, sections, geometry"};
 inline constexpr StudyCommand fit_command{
     "fit", "Material parameters, with their uncertainty, from a torque record"};
 inline constexpr StudyCommand study_command{

@@ -5,6 +5,8 @@
 
 #include <cstdio>
 
+#include "apparatus/cli/process/say.hpp"
+
 namespace tremie::cli {
 namespace {
 
@@ -20,7 +22,7 @@ std::string time_text(double s) {
 ProgressLine::ProgressLine() : terminal_(isatty(STDOUT_FILENO) == 1), start_(Clock::now()), last_(start_) {}
 
 ProgressLine::~ProgressLine() {
-  if (open_) fmt::print("\r\033[K");
+  if (open_) say("\r\033[K");
   std::fflush(stdout);
 }
 
@@ -41,9 +43,9 @@ void ProgressLine::show(const scene::Progress& progress) {
       fmt::format("{:7.2f} s of {:g} s   step {:.2g} s   {}   at most {} left", progress.time,
                   progress.duration, progress.time_step, progress.reading, time_text(left));
   if (terminal_)
-    fmt::print("\r\033[K{}", text);
+    say("\r\033[K{}", text);
   else
-    fmt::print("{}\n", text);
+    say("{}\n", text);
   open_ = terminal_;
   std::fflush(stdout);
 }

@@ -121,24 +121,55 @@ YieldLaw read_law(const Values& values) {
   return read;
 }
 
-std::vector<Key> contact_keys() {
+std::vector<Key> contact_keys(bool friction) {
   std::vector<Key> keys{{.name = "contact", .kind = Kind::choice}};
   for_each_wall_law([&](const auto& law) {
+    if (law.follows_pressure && !friction) return;
     keys.front().words.emplace_back(law.word);
     for (const auto& of_law : law.keys()) {
       keys.push_back(scene_key(of_law));
+      keys.back().required = of_law.fallback.empty() && !of_law.optional;
       keys.back().only_with = Condition{"contact", {law.word}};
     }
   });
+  keys.push_back({.name = "interface_yield_ratio",
+                  .kind = Kind::number,
+                  .range = between(0.0, 100.0),
+                  .only_with = Condition{"contact", {Interface::word}},
+                  .example = "0.5",
+                  .help = "in place of interface_yield_stress: tau_i over the mix's yield_stress"});
   keys.front().fallback = keys.front().words.front();
   return keys;
 }
 
-WallLaw read_wall_law(const Values& values) {
+void settle_interface(Values& values, const std::string& section) {
+  const std::string contact = section + ".contact", stress = section + ".interface_yield_stress",
+                    ratio = section + ".interface_yield_ratio";
+  if (values.word(contact) != Interface::word) return;
+  if (values.has("model.scheme") && values.word("model.scheme") != "implicit")
+    values.fail(
+        contact,
+        "explicit steps do not know \"interface\", whose stress acts on the area that is wetted; give "
+        "model.scheme = \"implicit\" or another contact");
+  if (!values.has(stress) && !values.has(ratio))
+    values.fail(contact,
+                "\"interface\" needs interface_yield_stress beside it, like interface_yield_stress = "
+                "\"27 Pa\", or interface_yield_ratio = 0.5");
+  if (!values.has(ratio)) return;
+  if (values.has(stress) && values.layer(stress) >= values.layer(ratio)) {
+    values.drop_beside(ratio, stress, "has no meaning beside interface_yield_stress; give one or the other");
+    return;
+  }
+  values.set_number(stress, values.number(ratio) * values.number("mix.yield_stress"), values.layer(ratio),
+                    "interface_yield_ratio = " + write_number(values.number(ratio)) + " of mix.yield_stress");
+  values.drop(ratio);
+}
+
+WallLaw read_wall_law(const Values& values, const std::string& section) {
   WallLaw read;
   for_each_wall_law([&](auto law) {
-    if (law.word != values.word("floor.contact")) return;
-    for (const auto& key : law.keys()) law.*key.member = values.number(key.name);
+    if (law.word != values.word(section + ".contact")) return;
+    for (const auto& key : law.keys()) law.*key.member = values.number(section + "." + name_of(key.name));
     read = law;
   });
   return read;

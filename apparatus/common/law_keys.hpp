@@ -2,7 +2,7 @@
 
 // The scene keys of the yield laws, as the laws state them (libmpm/constitutive/laws/law_interface.hpp): parameters of
 // [model] beside model.yield, and those of [mix] that take the place of plastic_viscosity. Those of the wall laws
-// (libmpm/boundary/wall_law_interface.hpp): parameters of [floor] beside floor.contact.
+// (libmpm/boundary/wall_law_interface.hpp): parameters beside `contact`, of [floor] or [walls].
 
 #include <algorithm>
 #include <string>
@@ -51,10 +51,14 @@ void settle_law(Values& values);
 /// The law that model.yield and the keys of [mix] name, with its parameters.
 YieldLaw read_law(const Values& values);
 
-/// floor.contact and the wall laws' parameters.
-std::vector<Key> contact_keys();
+/// `contact` and the wall laws' parameters; `friction`: those that follow the pressure too.
+std::vector<Key> contact_keys(bool friction = true);
 
-/// The wall law that floor.contact names, with its parameters.
-WallLaw read_wall_law(const Values& values);
+/// One description of the interface's yield stress is left: that of the later layer. Throws InputError where it has none
+/// or two, or where explicit steps would have to know it.
+void settle_interface(Values& values, const std::string& section);
+
+/// The wall law that the `contact` of a section names, with its parameters.
+WallLaw read_wall_law(const Values& values, const std::string& section);
 
 }  // namespace tremie::scene

@@ -63,6 +63,7 @@ struct Checks {
   std::int64_t points_lost = 0;
   double max_speed_end = 0.0;  ///< [m/s]
   bool stability_limit_exceeded = false;
+  bool stood_still = false;          ///< a body that was free to fall has not moved
   double cells_in_a_step = 0.0;      ///< the most that a point crossed, where the scene fixes the step
   std::vector<std::string> reasons;  ///< why the result is not to be trusted; empty: it is
 };

@@ -193,6 +193,7 @@ Section floor_section() {
 }
 
 void settle_floor(Values& values) {
+  settle_interface(values, "floor");
   const char* coefficient = "floor.coefficient";
   if (!values.has(coefficient) || values.given(coefficient) || !values.has("mix.friction_coefficient"))
     return;
@@ -200,7 +201,7 @@ void settle_floor(Values& values) {
                     values.layer("mix.friction_coefficient"), "the mix's friction_coefficient");
 }
 
-Floor read_floor(const Values& values) { return {read_wall_law(values)}; }
+Floor read_floor(const Values& values) { return {read_wall_law(values, "floor")}; }
 
 Section model_section(const std::vector<std::string>& spaces, const ModelDefaults& defaults) {
   Section section{

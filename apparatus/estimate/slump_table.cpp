@@ -14,7 +14,7 @@
 #include "apparatus/scene/document.hpp"
 #include "apparatus/scene/input_error.hpp"
 #include "apparatus/scene/units.hpp"
-#include "rheometer/records/number_rows.hpp"
+#include "rheometer/tables/number_rows.hpp"
 
 namespace tremie::estimate {
 namespace {

@@ -12,8 +12,6 @@
 namespace tremie::l_box {
 namespace {
 
-using View = scene::RunView<Scene, Outcome>;
-
 /// The last line of the series that is at least standing_lasts old; the end of the series where there is none.
 std::vector<Sample>::const_iterator line_before(const std::vector<Sample>& series) {
   const auto old = std::find_if(series.rbegin(), series.rend(), [&](const Sample& s) {
@@ -77,16 +75,53 @@ std::string inertia(const View& j) {
                                        j.scene.model.cell[1]);
 }
 
+/// The opening under a gate that has risen by less than some cells is narrow to the grid, as that under a cone. One of a
+/// twentieth of a cell lets next to nothing through, and so does the grid.
+std::string narrow_opening(const View& j) {
+  constexpr double least = 2.5, shut = 0.05;
+  const double edge = gate_edge(j.scene, j.series.back().time), risen = edge / j.scene.model.cell[1];
+  if (risen >= least || risen <= shut || edge >= j.scene.box.channel_height ||
+      j.status == Status::interrupted)
+    return {};
+  return fmt::format(
+      "the gate has risen by {:.2g} cells, less than {:g}: a longer test.duration, or a smaller model.cell "
+      "upwards",
+      risen, least);
+}
+
+/// The gate stands on a face of the grid.
+std::string gate_beside_its_place(const View& j) {
+  constexpr double most = 0.01;
+  const double L = j.scene.box.column_length,
+               off = place_of_gate(along_the_channel(j.scene.box, j.scene.model.cell[0])) - L;
+  if (std::abs(off) <= most * L) return {};
+  return fmt::format(
+      "no cells of about this size have a face at the gate, which stands {:.2g} mm beside it: another "
+      "model.cell",
+      1e3 * std::abs(off));
+}
+
 std::string no_number(const View& v) {
   return std::isfinite(v.r.h1) ? std::string{} : "H1 is not a finite number";
 }
 
 }  // namespace
 
+std::string went_through_the_wall(const View& j) {
+  const double through = j.series.back().through_the_wall;
+  if (through <= most_through_the_wall) return {};
+  return fmt::format(
+      "{:.2g} % of the concrete went through the shut gate or the column's front wall: a smaller model.cell, "
+      "or "
+      "a shorter model.time_step",
+      100.0 * through);
+}
+
 double drop_at_rest(const Scene& scene, double h, double length) {
+  const double held = std::min(scene.mix.tau_0, bears(scene.walls, 0.0));
   const double floor_and_walls = (1.0 / h + (scene.side_walls_slip ? 0.0 : 2.0 / scene.box.width)) * length;
   const double bars = bar_yield_drag * scene.bars * bar_diameter / scene.box.width;
-  return scene.mix.tau_0 / (scene.mix.density * experiment::gravity) * (floor_and_walls + bars);
+  return (held * floor_and_walls + scene.mix.tau_0 * bars) / (scene.mix.density * experiment::gravity);
 }
 
 double fastest_front(const std::vector<Sample>& series) {
@@ -117,9 +152,9 @@ std::optional<double> ratio_change(const std::vector<Sample>& series) {
 }
 
 void add_reasons(const Scene& scene, Outcome& outcome) {
-  scene::add_reasons<View>(
-      {inertia_at_the_bars, wide_cells_at_the_bars, few_cells, wrong_level, inertia, no_number},
-      {scene, outcome}, outcome.checks.reasons);
+  scene::add_reasons<View>({inertia_at_the_bars, wide_cells_at_the_bars, few_cells, went_through_the_wall,
+                            narrow_opening, gate_beside_its_place, wrong_level, inertia, no_number},
+                           {scene, outcome}, outcome.checks.reasons);
 }
 
 }  // namespace tremie::l_box

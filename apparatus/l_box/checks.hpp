@@ -3,8 +3,10 @@
 // When an L-box stands, how its ratio still changes, and why a result is not to be trusted.
 
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "apparatus/common/readings.hpp"
 #include "apparatus/l_box/l_box.hpp"
 
 namespace tremie::l_box {
@@ -25,6 +27,13 @@ double drop_at_rest(const Scene& scene, double h, double length);
 
 /// The fastest that the front was [m/s].
 double fastest_front(const std::vector<Sample>& series);
+
+using View = scene::RunView<Scene, Outcome>;
+
+/// Share of the concrete that may go through the shut part of the gate or the front wall.
+inline constexpr double most_through_the_wall = 0.002;
+/// A reason where more did; else empty.
+std::string went_through_the_wall(const View& run);
 
 /// Adds the reasons of all checks.
 void add_reasons(const Scene& scene, Outcome& outcome);

@@ -25,7 +25,9 @@ StepSettings step_settings(const Scene& scene) {
   settings.cut_cell_rule = true;   // what hangs on the column's walls is thinner than a cell
   settings.moving_surface = true;  // without it steps of tenths of a second carry a fluid past its level
   settings.alternating_viscosity = scene.alternating_viscosity;
-  if (scene.model.space == SpaceKind::plane_with_side_walls) settings.side_wall_distance = scene.box.width;
+  settings.wall_law = scene.walls;
+  if (scene.model.space == SpaceKind::plane_with_side_walls && face(scene.walls) != FaceKind::free_slip)
+    settings.side_wall_distance = scene.box.width;
   return settings;
 }
 
@@ -60,10 +62,10 @@ template <class Geometry>
 Outcome run_in(const Scene& scene, const scene::Observer& observer) {
   ImplicitBody<Geometry> body{filled_column<Geometry>(scene)};
   StepSettings settings = step_settings<Geometry>(scene);
-  if constexpr (Geometry::dim == 3)
-    if (!resolves_bars(body.grid.axes[1].h)) body.bars = parts::slender_bars(bars_of(scene), body.grid.axes);
+  if constexpr (Geometry::dim == 3) add_bars(scene, body);
 
   Outcome outcome;
+  double through = 0.0;  // gate and front wall, share of the volume
   const experiment::Flow flow{
       .time = [&] { return body.time; },
       .unfinished = [&] { return experiment::has_time_left(body.time, scene.duration); },
@@ -73,11 +75,14 @@ Outcome run_in(const Scene& scene, const scene::Observer& observer) {
             settings.dt_max =
                 std::min(longest_dt<Geometry>(scene, body.time), experiment::without_sliver(left, body.dt));
             settings.fixed_dt = experiment::fixed_step(scene.model, left);
-            body.boundary = walls_inside<Geometry>(scene, body.grid.axes, body.time);
+            body.grid.sheets = walls_inside<Geometry>(scene, body.grid.axes[0], body.time);
           },
       .advance =
           [&](Checks& checks, Cost& cost) {
+            const auto from = body.points.x;
+            const double edge = gate_edge(scene, body.time);
             const StepReport step = implicit_step(body, scene.model.law, settings);
+            through += share_through_the_wall(body, from, edge);
             experiment::count_step(body, step, checks, cost);
             experiment::watch_fixed_step(body, scene.model, step, checks);
             return step;
@@ -88,12 +93,17 @@ Outcome run_in(const Scene& scene, const scene::Observer& observer) {
       .free_to_flow =
           [&] { return !scene.gate_speed || *scene.gate_speed * body.time > scene.box.channel_height; },
       .stands_since = [&] { return Geometry::dim == 3 ? stands_since(outcome.series) : std::nullopt; },
-      .state = [&](Archive& archive) { archive(body, outcome.series); }};
+      .state = [&](Archive& archive) { archive(body, outcome.series, through); }};
   experiment::run_experiment(
       flow, body,
       {scene.duration, scene.frame_interval,
        [](const Sample& now) { return fmt::format("front {:.0f} mm", 1e3 * now.front); }},
-      observer, [&](const StepReport& step) { return read(body, scene, step); },
+      observer,
+      [&](const StepReport& step) {
+        Sample line = read(body, scene, step);
+        line.through_the_wall = through;
+        return line;
+      },
       [&](std::optional<double> stopped_at) {
         read_results(body, scene, stopped_at, outcome);
         add_reasons(scene, outcome);

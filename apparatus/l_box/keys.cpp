@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "apparatus/common/law_keys.hpp"
 #include "apparatus/common/shared_keys.hpp"
 #include "apparatus/l_box/l_box.hpp"
 
@@ -35,6 +36,15 @@ Section test_section() {
                     .help = "0, or 2 or 3 of 12 mm in front of the gate (three dimensions alone)"}}};
 }
 
+Section walls_section() {
+  return {
+      .name = "walls",
+      .help =
+          "Of the floor, the ends, the side walls and the column's front wall. Along the gate the concrete "
+          "slips where they hold it.",
+      .keys = contact_keys(false)};
+}
+
 bool in_the_plane(const Values& values) { return values.word("model.space").starts_with("plane"); }
 
 /// Three dimensions start from cells and points that take minutes; a scene that gives one of the two is taken at its
@@ -50,6 +60,7 @@ void settle_model(Values& values) {
 
 void settle(Values& values) {
   settle_mix(values);
+  settle_interface(values, "walls");
   settle_model(values);
   const auto bars = values.integer("test.bars");
   if (bars == 1) values.fail("test.bars", "1 is not allowed; allowed: 0, 2 (class PL1) or 3 (class PL2)");
@@ -93,7 +104,8 @@ ApparatusKeys keys() {
                                                       "[8, 4] in three dimensions"});
   return {.name = "l_box",
           .help = "The L-box test of EN 12350-10.",
-          .schema = joined({mix_sections("5 MPa"), {box_section(), test_section(), model, output_section()}}),
+          .schema = joined({mix_sections("5 MPa"),
+                            {box_section(), test_section(), walls_section(), model, output_section()}}),
           .settle = settle};
 }
 
@@ -106,6 +118,7 @@ Scene read_scene(const Values& values) {
   scene.rest = values.number("test.rest");
   scene.duration = values.number("test.duration");
   scene.gate_speed = values.number_unless("test.gate_speed", "instant");
+  scene.walls = read_wall_law(values, "walls");
   scene.bars = static_cast<int>(values.integer("test.bars"));
   scene.model = read_model(values);
   scene.frame_interval = read_output(values).frame_interval;

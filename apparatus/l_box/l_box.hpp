@@ -37,6 +37,7 @@ struct Scene {
   double rest = 60.0;                       ///< in the column, before the gate is lifted [s]
   double duration = 180.0;                  ///< of the flow, at most [s]
   std::optional<double> gate_speed = 0.30;  ///< [m/s]; empty: the gate is gone at once
+  WallLaw walls = NoSlip{};                 ///< floor, ends, front wall, gate and side walls
   int bars = 0;                             ///< 0; 2 or 3 in space alone
   Model model;
   double frame_interval = 0.0;  ///< simulated time between frames [s]; 0: chosen (run/run_loop.hpp)
@@ -49,12 +50,13 @@ struct Scene {
 
 /// One line of timeseries.csv.
 struct Sample {
-  double time = 0.0;             ///< since the start of the lift [s]
-  double front = 0.0;            ///< distance of the front from the gate [m], 0 behind it
-  double h1 = 0.0;               ///< depth behind the gate, as reading.hpp has it [m]
-  std::optional<double> h2;      ///< depth at the channel's end [m]; empty before the front is there
-  double max_speed = 0.0;        ///< [m/s]
-  double shear_rate_mean = 0.0;  ///< volume mean [1/s]
+  double time = 0.0;              ///< since the start of the lift [s]
+  double front = 0.0;             ///< distance of the front from the gate [m], 0 behind it
+  double h1 = 0.0;                ///< depth behind the gate, as reading.hpp has it [m]
+  std::optional<double> h2;       ///< depth at the channel's end [m]; empty before the front is there
+  double through_the_wall = 0.0;  ///< share of the volume that has gone through gate or front wall so far
+  double max_speed = 0.0;         ///< [m/s]
+  double shear_rate_mean = 0.0;   ///< volume mean [1/s]
   std::optional<double> flocculation_mean;
   double volume_change = 0.0;  ///< sum V / V0 - 1
   double time_step = 0.0;      ///< [s]

@@ -61,6 +61,23 @@ double point_length(const Body<Geometry>& body, const Scene& scene) {
   return body.grid.axes[0].h / scene.model.points_per_cell[0];
 }
 
+/// Share of the volume that a step took from the column into the channel, or back, more than a cell above the opening,
+/// which reaches up to `edge`; `from`: where the points were.
+template <class Geometry>
+double share_through_the_wall(const Body<Geometry>& body, const std::vector<Vec<Geometry::dim>>& from,
+                              double edge) {
+  constexpr int up = Geometry::up;
+  const double wall = place_of_gate(body.grid.axes[0]), above = edge + body.grid.axes[up].h;
+  double through = 0.0, all = 0.0;
+  for (std::size_t p = 0; p < body.points.size(); ++p) {
+    const Vec<Geometry::dim>& to = body.points.x[p];
+    all += body.points.volume(p);
+    if ((from[p][0] < wall) != (to[0] < wall) && std::min(from[p][up], to[up]) > above)
+      through += body.points.volume(p);
+  }
+  return through / all;
+}
+
 template <class Geometry>
 Sample read(const Body<Geometry>& body, const Scene& scene, const StepReport& step) {
   const Box& box = scene.box;

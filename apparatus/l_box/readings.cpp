@@ -211,7 +211,8 @@ std::vector<std::string> uses(const Scene& scene) {
   lines.push_back(space == SpaceKind::plane ? "side walls: left out (model.space = \"plane\")"
                   : space == SpaceKind::plane_with_side_walls
                       ? "side walls: their drag, averaged over the width"
-                      : "side walls: no slip");
+                      : "side walls: computed");
+  lines.push_back("walls: " + word(scene.walls));
   const bool plane = space == SpaceKind::plane || space == SpaceKind::plane_with_side_walls;
   lines.push_back(plane ? "third dimension: left out (model.space)" : "third dimension: computed");
   add_model_uses(scene.model, lines);

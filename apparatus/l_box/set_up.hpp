@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "apparatus/l_box/l_box.hpp"
@@ -30,6 +31,31 @@ inline Axis between_walls(double length, double cell, FaceKind low, FaceKind hig
   return {.h = length / n, .low = low, .high = high, .n_cells = n};
 }
 
+/// The axis along the channel, of cells of about `cell`, with a repeated knot at a face where the gate and the column's
+/// front wall stand. Of the numbers of cells within a quarter of that the nearest is taken of which a face is within a
+/// fiftieth of a cell from there, or else that with the nearest face.
+inline Axis along_the_channel(const Box& box, double cell, FaceKind ends = FaceKind::no_slip) {
+  const double length = box.column_length + box.channel_length, wanted = length / cell;
+  const auto faces = [&](int n) { return std::max(1L, std::lround(n * box.column_length / length)); };
+  const auto cost = [&](int n) {
+    return std::max(0.02, std::abs(n * box.column_length / length - static_cast<double>(faces(n)))) +
+           1e-3 * std::abs(n - wanted) / wanted;
+  };
+  int best = std::max(2, static_cast<int>(std::lround(wanted)));
+  for (int n = std::max(2, static_cast<int>(wanted / 1.25)); n <= 1.25 * wanted + 1.0; ++n)
+    if (cost(n) < cost(best)) best = n;
+  return {.h = length / best,
+          .low = ends,
+          .high = ends,
+          .n_cells = best,
+          .repeated_knots = {static_cast<int>(faces(best))}};
+}
+
+/// Where the grid has the gate and the front wall [m].
+inline double place_of_gate(const Axis& along) {
+  return along.origin + along.repeated_knots.front() * along.h;
+}
+
 /// The flow stretches the concrete along the channel alone: there points_per_cell has its first number,
 /// across the channel and up its second.
 template <class Geometry>
@@ -41,13 +67,12 @@ Body<Geometry> filled_column(const Scene& scene) {
   body.gravity[up] = -experiment::gravity;
   const auto [across, h_up] = scene.model.cell;
   const auto [n_along, n_up] = scene.model.points_per_cell;
+  body.grid.axes[0] = along_the_channel(box, across, face(scene.walls));
   Vec<D> high;
-  high[0] = box.column_length, high[up] = box.column_height;
-  body.grid.axes[0] =
-      between_walls(box.column_length + box.channel_length, across, FaceKind::no_slip, FaceKind::no_slip);
-  body.grid.axes[up] = {.h = h_up, .low = FaceKind::no_slip};
+  high[0] = place_of_gate(body.grid.axes[0]), high[up] = box.column_height;
+  body.grid.axes[up] = {.h = h_up, .low = face(scene.walls)};
   if constexpr (D == 3) {
-    const FaceKind side = scene.side_walls_slip ? FaceKind::free_slip : FaceKind::no_slip;
+    const FaceKind side = scene.side_walls_slip ? FaceKind::free_slip : face(scene.walls);
     const bool half = scene.model.space == SpaceKind::half;
     high[1] = computed_width(scene);
     body.grid.axes[1] = between_walls(high[1], across, half ? FaceKind::symmetry : side, side);
@@ -80,37 +105,36 @@ inline std::vector<parts::Bar> bars_of(const Scene& scene) {
   return bars;
 }
 
-inline bool resolves_bars(double cell) { return parts::resolves_bars(cell, bar_diameter); }
+/// Puts the bars of the scene into a body in space.
+inline void add_bars(const Scene& scene, ImplicitBody<ThreeD>& body) {
+  const auto& axes = body.grid.axes;
+  if (parts::resolves_bars(axes[1].h, bar_diameter))
+    parts::add_resolved_bars(bars_of(scene), 0.5 * std::min(axes[1].h, axes[2].h), body.boundary);
+  else
+    body.bars = parts::slender_bars(bars_of(scene), axes);
+}
 
-/// The column's front wall above the channel, to which the concrete sticks, and what is left of the gate
-/// below it, along which it slips, half a cell between points; and the bars.
+/// Height of the gate's lower edge [m].
+inline double gate_edge(const Scene& scene, double time) {
+  const double top = scene.box.channel_height;
+  return scene.gate_speed ? std::min(top, *scene.gate_speed * time) : top;
+}
+
+/// The column's front wall above the channel, and what is left of the gate below it. Where the walls hold the concrete, it
+/// slips along the gate all the same.
 template <class Geometry>
-std::vector<BoundaryPoint<Geometry::dim>> walls_inside(const Scene& scene,
-                                                       const std::array<Axis, Geometry::dim>& axes,
-                                                       double time) {
-  constexpr int D = Geometry::dim, up = Geometry::up;
-  const Box& box = scene.box;
-  const double spacing = 0.5 * axes[up].h;
-  const double gate = scene.gate_speed ? *scene.gate_speed * time : box.channel_height;
-  const int n = static_cast<int>(std::ceil(box.column_height / spacing));
-  const int n_across = D == 3 ? 2 * axes[1].n_cells : 1;
-  std::vector<BoundaryPoint<D>> points;
-  for (int i = 0; i < n; ++i) {
-    const double y = (i + 0.5) * spacing;
-    const bool wall = y > box.channel_height;
-    if (!wall && y < gate) continue;
-    for (int k = 0; k < n_across; ++k) {
-      BoundaryPoint<D> point;
-      point.x[0] = box.column_length, point.x[up] = y;
-      if constexpr (D == 3) point.x[1] = 0.5 * (k + 0.5) * axes[1].h;
-      if (!wall) point.normal[0] = 1.0;
-      points.push_back(point);
-    }
+std::vector<Sheet<Geometry::dim>> walls_inside(const Scene& scene, const Axis& along, double time) {
+  const double edge = gate_edge(scene, time), top = scene.box.channel_height;
+  Sheet<Geometry::dim> wall{.face = along.repeated_knots.front(), .along = Geometry::up};
+  wall.from = top, wall.to = std::numeric_limits<double>::infinity(), wall.contact = face(scene.walls);
+  std::vector<Sheet<Geometry::dim>> walls{wall};
+  if (edge < top) {
+    wall.from = edge, wall.to = top;
+    if (wall.contact == FaceKind::no_slip) wall.contact = FaceKind::free_slip;
+    wall.velocity[Geometry::up] = *scene.gate_speed;
+    walls.push_back(wall);
   }
-  if constexpr (D == 3)
-    if (resolves_bars(axes[1].h))
-      parts::add_resolved_bars(bars_of(scene), 0.5 * std::min(axes[1].h, axes[up].h), points);
-  return points;
+  return walls;
 }
 
 /// The runs in the box's two geometries, compiled apart.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "apparatus/registry/usual_ranges.hpp"
 #include "apparatus/run/machine/free_processors.hpp"
 #include "apparatus/run/machine/stopwatch.hpp"
 #include "apparatus/run/machine/threads.hpp"
@@ -27,6 +28,10 @@ Scene build(Loaded loaded) {
   if (loaded.values.has("output.frames")) scene.output = read_output(loaded.values);
   scene.resolved = write_resolved(loaded.schema, loaded.values);
   scene.notes = loaded.values.notes;
+  const auto unusual = unusual_values(loaded.schema, loaded.values);
+  scene.notes.insert(scene.notes.end(), unusual.begin(), unusual.end());
+  if (const std::string soft = softness(loaded.values); !soft.empty()) scene.notes.push_back(soft);
+  scene.files = loaded.files;
   for (const auto& [key, value] : loaded.values.entries)
     if (loaded.values.given(key)) scene.places[key] = describe(value.origin);
   return scene;
@@ -86,6 +91,8 @@ Outcome run(const Scene& scene, const Observer& observer, bool coarser) {
   watch.stop(outcome.cost);
   if (scene.functions->threads)
     outcome.cost.threads = scene.functions->threads(const_cast<Scene&>(scene).test);
+  if (outcome.checks.stood_still)
+    outcome.lines.push_back("moved           no: the concrete stands as it was filled in");
   if (outcome.status == Status::failed && outcome.checks.reasons.empty())
     outcome.checks.reasons.push_back("the run did not come to its end");
   return outcome;

@@ -30,6 +30,7 @@ struct Scene {
   Measured measured;
   Output output;
   std::string resolved;  ///< the same scene as TOML, every value in SI; reads back to the same scene
+  std::vector<std::filesystem::path> files;                ///< that it was read from
   std::vector<std::string> notes;                          ///< what the reader left out, and why
   std::map<std::string, std::string, std::less<>> places;  ///< of the keys that were given, "mine.toml:7"
 };

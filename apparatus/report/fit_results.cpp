@@ -37,10 +37,11 @@ Json apparent_json(const FitResult& r) {
 Json dropped_json(const FitResult& r) {
   Json list = Json::array();
   const bool decay = r.kind == RecordKind::torque_decay;
+  const ShownUnits shown = shown_units(r.sheared_evenly);
   for (const DroppedPoint& p : r.dropped)
     list.push_back({{"line", p.line},
-                    {decay ? "time_s" : "speed_rev_per_s", decay ? p.x : p.x / two_pi},
-                    {"torque_N_m", p.torque},
+                    {decay ? "time_s" : shown.speed_key, decay ? p.x : p.x / shown.speed},
+                    {shown.torque_key, p.torque},
                     {"reason", p.reason}});
   return list;
 }
@@ -127,6 +128,7 @@ Json fit_results(const RecordFits& fits, const std::vector<std::string>& records
               : fits.fits.size() > 1 ? replicates_json(fits, records)
                                      : fit_results(fits.fits.front());
   if (fits.protocol) json["understood"] = fits.protocol->record.understood;
+  json["geometry"] = {{"words", fits.geometry}, {"default", fits.default_geometry}};
   json["ends"] = {{"correction", fits.options.ends}, {"factor", fits.end_factor}};
   if (fits.fits.size() == 1) json["ends"]["moves"] = moves_json(fits.moves);
   if (!fits.protocol) json["blades"] = {{"correction", fits.options.blades}};

@@ -3,30 +3,31 @@
 #include <fmt/format.h>
 
 #include "apparatus/report/fit_results.hpp"
-#include "libmpm/constitutive/constants.hpp"
 
 namespace tremie::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json start_up_json(const StartUpReading& s) {
-  return {{"peak_torque_N_m", s.peak_torque},
+Json start_up_json(const StartUpReading& s, bool stress) {
+  return {{stress ? "peak_shear_stress_Pa" : "peak_torque_N_m", s.peak_torque},
           {"peak_time_s", s.peak_time},
           {"peak_inside", s.peak_inside},
-          {"end_torque_N_m", s.end_torque},
+          {stress ? "end_shear_stress_Pa" : "end_torque_N_m", s.end_torque},
           {"static_yield_stress_Pa", json_of(s.static_yield_stress)},
           {"shear_modulus_Pa", json_of(s.shear_modulus)}};
 }
 
-Json decay_json(const DecayShape& d) {
-  return {
-      {"peak_torque_N_m", d.peak_torque},          {"end_torque_N_m", d.end_torque},
-      {"half_time_s", json_of(d.half_time)},       {"exponential_scatter", json_of(d.exponential_scatter)},
-      {"power_scatter", json_of(d.power_scatter)}, {"power_exponent", json_of(d.power_m)}};
+Json decay_json(const DecayShape& d, bool stress) {
+  return {{stress ? "peak_shear_stress_Pa" : "peak_torque_N_m", d.peak_torque},
+          {stress ? "end_shear_stress_Pa" : "end_torque_N_m", d.end_torque},
+          {"half_time_s", json_of(d.half_time)},
+          {"exponential_scatter", json_of(d.exponential_scatter)},
+          {"power_scatter", json_of(d.power_scatter)},
+          {"power_exponent", json_of(d.power_m)}};
 }
 
-Json section_json(const SectionReading& s, std::size_t number) {
+Json section_json(const SectionReading& s, std::size_t number, bool stress) {
   Json j{{"number", number},
          {"kind", std::string(name_of(s.section.kind))},
          {"pre_shear", s.section.pre_shear},
@@ -34,10 +35,11 @@ Json section_json(const SectionReading& s, std::size_t number) {
          {"last_line", s.last_line},
          {"start_s", s.start},
          {"duration_s", s.duration},
-         {"speed_rev_per_s", s.section.omega / two_pi},
+         {shown_units(stress).speed_key, s.section.omega / shown_units(stress).speed},
          {"rest_before_s", s.section.rest_before > 0.0 ? Json(s.section.rest_before) : Json(nullptr)}};
-  j["start_up"] = s.start_up ? start_up_json(*s.start_up) : Json(nullptr);
-  j["decay"] = s.decay ? decay_json(*s.decay) : Json(nullptr);
+  j["start_up"] = s.start_up ? start_up_json(*s.start_up, stress) : Json(nullptr);
+  j["decay"] = s.decay ? decay_json(*s.decay, stress) : Json(nullptr);
+  j[stress ? "loop_area_Pa_per_s" : "loop_area_W"] = json_of(s.loop_area);
   j["fit"] = s.fit ? fit_results(*s.fit) : Json(nullptr);
   j["notes"] = s.notes;
   j["reasons"] = s.reasons;
@@ -69,7 +71,7 @@ Json breakdown_json(const Breakdown& b) {
 Json protocol_results(const ProtocolReading& r) {
   Json j{{"kind", "protocol"}, {"sections", Json::array()}};
   for (std::size_t i = 0; i < r.sections.size(); ++i)
-    j["sections"].push_back(section_json(r.sections[i], i + 1));
+    j["sections"].push_back(section_json(r.sections[i], i + 1, r.sheared_evenly));
   const Structuration& a = r.structuration;
   j["structuration_rate_Pa_per_s"] = json_of(a.A_thix);
   j["static_yield_stress_without_rest_Pa"] = json_of(a.at_no_rest);
@@ -88,9 +90,11 @@ Json protocol_results(const ProtocolReading& r) {
 }
 
 std::string protocol_csv(const ProtocolReading& r) {
+  const ShownUnits shown = shown_units(r.sheared_evenly);
   std::string text =
-      "number,kind,first_line,last_line,start_s,duration_s,speed_rev_per_s,rest_before_s,peak_torque_N_m,"
-      "static_yield_stress_Pa,shear_modulus_Pa,model,relative_scatter\n";
+      fmt::format("number,kind,first_line,last_line,start_s,duration_s,{},rest_before_s,peak_{},",
+                  shown.speed_key, shown.torque_key);
+  text += "static_yield_stress_Pa,shear_modulus_Pa,model,relative_scatter\n";
   const auto cell = [](const std::optional<double>& v) {
     return v ? fmt::format("{:.8g}", *v) : std::string{};
   };
@@ -104,8 +108,8 @@ std::string protocol_csv(const ProtocolReading& r) {
     if (s.fit) scatter = s.fit->scatter;
     text += fmt::format("{},{},{},{},{:.8g},{:.8g},{:.8g},{:.8g},{},{},{},{},{}\n", i + 1,
                         name_of(s.section.kind), s.first_line, s.last_line, s.start, s.duration,
-                        s.section.omega / two_pi, s.section.rest_before, cell(peak), cell(stress),
-                        cell(modulus), s.fit ? s.fit->model : "", cell(scatter));
+                        s.section.omega / shown_units(r.sheared_evenly).speed, s.section.rest_before,
+                        cell(peak), cell(stress), cell(modulus), s.fit ? s.fit->model : "", cell(scatter));
   }
   return text;
 }

@@ -11,9 +11,11 @@
 #include <cerrno>
 #include <chrono>
 #include <fstream>
+#include <iterator>
 #include <thread>
 #include <vector>
 
+#include "apparatus/report/folder/own_files.hpp"
 #include "apparatus/scene/input_error.hpp"
 #include "libmpm/io/write_error.hpp"
 
@@ -22,13 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* ours = ".tremie";          ///< marks a folder that results are written into
+constexpr const char* ours = list_of_own_files;  ///< empty, it marks a folder that results are written into
 constexpr const char* complete = ".publishing";  ///< all is written, and some of it already in its place
-
-fs::path tidy(const fs::path& folder) {
-  fs::path path = fs::absolute(folder).lexically_normal();
-  return path.has_filename() ? path : path.parent_path();
-}
 
 std::string hidden_name(const fs::path& target) {
   return fmt::format(".{}.part", target.filename().string());
@@ -39,14 +36,10 @@ bool is_there(const fs::path& path) {
   return fs::exists(path, error);
 }
 
-bool is_earlier_result(const fs::path& folder) {
-  // a run leaves its scene, a fit its readings, a calibration its mix, a comparison its table, a verification its
-  // document
-  if (is_there(folder / "VERIFICATION.md") || is_there(folder / "VALIDATION.md")) return true;
-  if (!is_there(folder / "summary.json")) return false;
-  for (const char* file : {"scene.toml", "fit.csv", "fit_1.csv", "sections.csv", "mix.toml", "compare.csv"})
-    if (is_there(folder / file)) return true;
-  return false;
+/// Whether a process writes there, or has left it.
+bool is_staging(const fs::path& folder) {
+  std::error_code error;
+  return fs::is_regular_file(folder / ours, error) && fs::is_empty(folder / ours, error);
 }
 
 /// Holds nothing, or nothing but what a run writes into on its way there.
@@ -57,24 +50,36 @@ bool is_free(const fs::path& folder) {
   return !error;
 }
 
-[[noreturn]] void refuse(const fs::path& folder, const std::string& why) {
-  throw scene::InputError(fmt::format("--out {}: {}", folder.string(), why));
+/// Holds a result of a run that was interrupted, or none.
+bool is_unfinished(const fs::path& folder) {
+  std::ifstream stream(folder / "summary.json", std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  return text.find("\"status\": \"interrupted\"") != std::string::npos;
+}
+
+/// What nobody may write over; whether the folder is there at all.
+bool refuse_what_is_no_folder(const fs::path& folder) {
+  std::error_code error;
+  const auto status = fs::status(folder, error);
+  if (!fs::exists(status)) return false;
+  if (!fs::is_directory(status)) refuse_folder(folder, "is there already and is no folder");
+  if (access(folder.c_str(), R_OK | W_OK | X_OK) != 0) refuse_folder(folder, "cannot be written");
+  return true;
 }
 
 void refuse_what_is_in_the_way(const fs::path& folder, bool replace) {
-  std::error_code error;
-  const auto status = fs::status(folder, error);
-  if (!fs::exists(status)) return;
-  if (!fs::is_directory(status)) refuse(folder, "is there already and is no folder");
-  if (access(folder.c_str(), R_OK | W_OK | X_OK) != 0) refuse(folder, "cannot be written");
-  if (is_free(folder)) return;
-  if (!replace && is_there(folder / "checkpoint"))
-    refuse(folder,
-           fmt::format("holds an interrupted run: `tremie resume {}` goes on with it, --force replaces it",
-                       folder.string()));
-  if (!replace) refuse(folder, "holds an earlier result; --force replaces it, --out DIR writes elsewhere");
-  if (!is_earlier_result(folder))
-    refuse(folder, "holds files that are no earlier result: --force does not replace them");
+  if (!refuse_what_is_no_folder(folder) || is_free(folder)) return;
+  if (const auto foreign = foreign_files(folder); !foreign.empty())
+    refuse_folder(folder,
+                  fmt::format("holds files that are not Tremie's, or were changed since ({}): nothing there "
+                              "is replaced, with or without --force; --out DIR writes elsewhere",
+                              short_list(foreign)));
+  if (replace) return;
+  if (is_there(folder / "checkpoint"))
+    refuse_folder(folder, fmt::format("holds an interrupted run: `tremie resume {}` goes on with it, --force "
+                                      "replaces it",
+                                      folder.string()));
+  refuse_folder(folder, "holds an earlier result; --force replaces it, --out DIR writes elsewhere");
 }
 
 /// The topmost part of `folder` that is not there yet; empty where all of it is.
@@ -112,7 +117,7 @@ Lock lock_patiently(const fs::path& folder, int& file) {
 void refuse_what_another_writes(const fs::path& target, const fs::path& staging) {
   int file = -1;
   if (lock_patiently(staging, file) == Lock::taken_by_another)
-    refuse(target, "another process writes its result there at this moment");
+    refuse_folder(target, "another process writes its result there at this moment");
   if (file >= 0) close(file);
 }
 
@@ -131,7 +136,7 @@ void move_rest(const fs::path& staging, const fs::path& target) {
     return (a == "summary.json") < (b == "summary.json");
   });
   for (const fs::path& name : names)
-    if (name != complete && name != ours) fs::rename(staging / name, target / name);
+    if (name != complete) fs::rename(staging / name, target / name);
   fs::remove_all(staging);
 }
 
@@ -160,7 +165,7 @@ void clear_remains(const fs::path& parent, const fs::path& own) {
   for (const auto& entry : fs::directory_iterator(parent, ignored)) {
     const fs::path& part = entry.path();
     const std::string name = part.filename().string();
-    if (part == own || !name.starts_with('.') || !name.ends_with(".part") || !is_there(part / ours)) continue;
+    if (part == own || !name.starts_with('.') || !name.ends_with(".part") || !is_staging(part)) continue;
     int file = -1;
     if (lock_folder(part, file) == Lock::held && is_named(file, part) && !is_there(part / "checkpoint/state"))
       fs::remove_all(part, ignored);
@@ -168,32 +173,59 @@ void clear_remains(const fs::path& parent, const fs::path& own) {
   }
 }
 
+/// Removes an earlier result; what others have put beside it goes into the new one.
+void remove_earlier(const fs::path& old, const fs::path& target) {
+  std::error_code ignored;
+  fs::remove(old / "checkpoint/state", ignored);  // nobody goes on from it any more
+  remove_own_files(old);
+  for (const auto& entry : fs::directory_iterator(old, ignored))
+    if (const fs::path to = target / entry.path().filename(); !is_there(to))
+      fs::rename(entry.path(), to, ignored);
+  fs::remove(old, ignored);
+}
+
 }  // namespace
 
 fs::path find_checkpoint(const fs::path& folder) {
-  const fs::path target = tidy(folder), hidden = hidden_name(target);
+  const fs::path target = resolved_folder(folder), hidden = hidden_name(target);
   for (const fs::path& part : {target.parent_path() / hidden, target / hidden, target})
     if (is_there(part / "checkpoint/state")) return part / "checkpoint";
   return {};
 }
 
-RunFolder::RunFolder(const fs::path& folder, bool replace) : target_(tidy(folder)), replace_(replace) {
+void refuse_where_another_goes_on(const fs::path& folder, const fs::path& checkpoint) {
+  const fs::path target = resolved_folder(folder), hidden = hidden_name(target);
+  for (const fs::path& part : {target.parent_path() / hidden, target / hidden})
+    if (is_staging(part)) refuse_what_another_writes(target, part);
+  if (find_checkpoint(folder) != checkpoint)
+    refuse_folder(target, "another process has gone on with its run meanwhile");
+}
+
+RunFolder::RunFolder(const fs::path& folder, bool replace, const std::vector<fs::path>& inputs)
+    : target_(resolved_folder(folder)), replace_(replace) {
   finish_publishing(target_);
+  refuse_inputs(target_, inputs);
   const fs::path unfinished = find_checkpoint(target_);
   if (!unfinished.empty()) refuse_what_another_writes(target_, unfinished.parent_path());
   if (!replace && !unfinished.empty() && unfinished.parent_path() != target_)
-    refuse(target_,
-           fmt::format("there is an unfinished run: `tremie resume {}` goes on with it, --force begins anew",
-                       target_.string()));
+    refuse_folder(
+        target_,
+        fmt::format("there is an unfinished run: `tremie resume {}` goes on with it, --force begins anew",
+                    target_.string()));
   refuse_what_is_in_the_way(target_, replace);
   make_staging();
   clear(staging_, ours);
 }
 
-RunFolder::RunFolder(const fs::path& folder, Resumed) : target_(tidy(folder)), replace_(true) {
+RunFolder::RunFolder(const fs::path& folder, Resumed) : target_(resolved_folder(folder)), replace_(true) {
   if (find_checkpoint(target_).empty())
     throw scene::InputError(fmt::format("{}: holds no unfinished run", target_.string()));
-  refuse_what_is_in_the_way(target_, true);
+  if (refuse_what_is_no_folder(target_) && !is_free(target_))
+    if (const auto changed = changed_files(target_); !changed.empty())
+      refuse_folder(target_,
+                    fmt::format("{} was changed since Tremie wrote it, and would be replaced: it has to be "
+                                "moved elsewhere first",
+                                short_list(changed)));
   make_staging();
   take_over_checkpoint();
 }
@@ -205,16 +237,34 @@ void RunFolder::make_staging() {
   made_parent_ = first_missing(parent);
   fs::create_directories(parent, error);
   staging_ = parent / hidden_name(target_);
+  if (!error) refuse_foreign_staging();
   if (!error) lock();
   if (lock_ >= 0) std::ofstream(staging_ / ours);
   if (!error && !is_there(staging_ / ours)) error = std::make_error_code(std::errc::permission_denied);
   if (error) {
     std::error_code ignored;
     if (lock_ >= 0 && !is_there(checkpoint())) fs::remove_all(staging_, ignored);
-    if (!made_parent_.empty()) fs::remove_all(made_parent_, ignored);
-    refuse(target_, "cannot be written: " + error.message());
+    remove_made_parents();
+    refuse_folder(target_, "cannot be written: " + error.message());
   }
   clear_remains(parent, staging_);
+}
+
+/// A folder of the staging's name that bears no mark of Tremie's is none, or the earlier result of a process that was
+/// killed when its own was in place.
+void RunFolder::refuse_foreign_staging() {
+  if (!is_there(staging_) || is_staging(staging_)) return;
+  remove_own_files(staging_);
+  std::error_code error;
+  if (is_there(staging_) && !fs::is_empty(staging_, error))
+    refuse_folder(target_, fmt::format("{} holds files that are not Tremie's", staging_.string()));
+}
+
+/// Keeps what others have filled meanwhile.
+void RunFolder::remove_made_parents() {
+  std::error_code ignored;
+  for (fs::path part = staging_.parent_path(); !made_parent_.empty(); part = part.parent_path())
+    if (!fs::remove(part, ignored) || part == made_parent_) break;
 }
 
 void RunFolder::lock() {
@@ -222,7 +272,7 @@ void RunFolder::lock() {
     std::error_code error;
     fs::create_directory(staging_, error);
     if (lock_patiently(staging_, lock_) == Lock::taken_by_another)
-      refuse(target_, "another process writes its result there at this moment");
+      refuse_folder(target_, "another process writes its result there at this moment");
     if (lock_ < 0 || is_named(lock_, staging_)) return;
     close(lock_);
     lock_ = -1;
@@ -242,7 +292,7 @@ void RunFolder::take_over_checkpoint() {
     fs::remove_all(checkpoint());
     if (!error) fs::rename(copy, checkpoint(), error);
   }
-  if (error) refuse(target_, "its checkpoint cannot be copied: " + error.message());
+  if (error) refuse_folder(target_, "its checkpoint cannot be copied: " + error.message());
 }
 
 RunFolder::~RunFolder() {
@@ -252,10 +302,7 @@ RunFolder::~RunFolder() {
     std::ofstream(staging_ / ours);
   } else if (!published_) {
     fs::remove_all(staging_, ignored);
-    for (fs::path part = staging_.parent_path(); !made_parent_.empty(); part = part.parent_path()) {
-      if (!fs::remove(part, ignored) || part == made_parent_)
-        break;  // keeps what others have filled meanwhile
-    }
+    remove_made_parents();
   }
   if (lock_ >= 0) close(lock_);
 }
@@ -268,29 +315,34 @@ void RunFolder::move_inside() {
 
 /// By one rename, or one exchange with an earlier result: at no moment is there none.
 void RunFolder::put_in_place() {
-  fs::remove(staging_ / ours);
   if (!is_there(target_)) return fs::rename(staging_, target_);
+  if (renameat2(AT_FDCWD, staging_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) == 0)
+    return remove_earlier(staging_, target_);
   const fs::path old = staging_.string() + ".old";
-  if (renameat2(AT_FDCWD, staging_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) == 0) {
-    fs::remove(staging_ / "checkpoint/state");  // of the earlier result: nobody goes on from it any more
-    fs::remove_all(staging_);
-    return;
-  }
   fs::rename(target_, old);  // a file system that cannot exchange
   fs::rename(staging_, target_);
-  fs::remove_all(old);
+  remove_earlier(old, target_);
+}
+
+bool RunFolder::holds_finished_result() const {
+  return is_there(target_) && !is_free(target_) && !is_unfinished(target_);
+}
+
+/// Others may have been at work in the target since it was looked at.
+void RunFolder::refuse_what_came_meanwhile() {
+  const bool filled = is_there(target_) && !is_free(target_);
+  if (!filled || (replace_ && !inside_ && changed_files(target_).empty())) return;
+  published_ = true;
+  throw io::WriteError(fmt::format("{}: was filled by others meanwhile; the result lies in {}",
+                                   target_.string(), staging_.string()));
 }
 
 void RunFolder::publish() try {
   if (lock_ >= 0 && !is_named(lock_, staging_))
     throw io::WriteError(
         fmt::format("{}: was removed while the result was written into it", staging_.string()));
-  if (!inside_ && !replace_ && is_there(target_) && !is_free(target_)) {
-    published_ = true;
-    fs::remove(staging_ / ours);
-    throw io::WriteError(fmt::format("{}: was filled by others meanwhile; the result lies in {}",
-                                     target_.string(), staging_.string()));
-  }
+  list_all_as_own(staging_);
+  refuse_what_came_meanwhile();
   inside_ ? move_inside() : put_in_place();
   published_ = true;
 } catch (const fs::filesystem_error& error) {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace tremie::report {
 
@@ -15,9 +16,11 @@ struct Resumed {};
 class RunFolder {
  public:
   /// Throws scene::InputError where the folder holds something or an unfinished run and `replace` is false, where it
-  /// holds something that is no earlier result, where another process writes there, or where it cannot be written.
-  RunFolder(const std::filesystem::path& folder, bool replace);
-  /// Goes on where find_checkpoint(folder) finds a run's checkpoint, which lies in checkpoint() then. Throws
+  /// holds one of the `inputs` or anything else that is not Tremie's (folder/own_files.hpp), where another process
+  /// writes there, or where it cannot be written.
+  RunFolder(const std::filesystem::path& folder, bool replace,
+            const std::vector<std::filesystem::path>& inputs = {});
+  /// What others have put beside the interrupted result stays there. Goes on where find_checkpoint(folder) finds a run's checkpoint, which lies in checkpoint() then. Throws
   /// scene::InputError where there is none, and as above.
   RunFolder(const std::filesystem::path& folder, Resumed);
   ~RunFolder();
@@ -31,11 +34,17 @@ class RunFolder {
   /// Where the result will be.
   const std::filesystem::path& target() const { return target_; }
 
+  /// Whether a result that came to its end lies there, whose place no interrupted one takes.
+  bool holds_finished_result() const;
+
   /// Throws io::WriteError.
   void publish();
 
  private:
   void make_staging();
+  void refuse_foreign_staging();
+  void remove_made_parents();
+  void refuse_what_came_meanwhile();
   void lock();
   void take_over_checkpoint();
   void move_inside();
@@ -52,5 +61,10 @@ class RunFolder {
 /// The folder with the checkpoint of the unfinished run that was to fill `folder`: beside it where the run was killed,
 /// inside where it was interrupted. Empty where there is none.
 std::filesystem::path find_checkpoint(const std::filesystem::path& folder);
+
+/// Throws scene::InputError where another process goes on from this checkpoint, or has done so: what is read of it
+/// meanwhile is not whole.
+void refuse_where_another_goes_on(const std::filesystem::path& folder,
+                                  const std::filesystem::path& checkpoint);
 
 }  // namespace tremie::report

@@ -36,6 +36,7 @@ Json checks_json(const Checks& checks) {
           {"points_lost", checks.points_lost},
           {"max_speed_end_m_per_s", checks.max_speed_end},
           {"stability_limit_exceeded", checks.stability_limit_exceeded},
+          {"stood_still", checks.stood_still},
           {"reasons", checks.reasons}};
 }
 
@@ -54,7 +55,7 @@ Json cost_json(const Cost& cost) {
 /// Null where there are no points: what is told of points, cells and steps.
 void leave_out_points(bool steps_too, Json& summary) {
   for (const char* key : {"volume_change", "mass_error", "unconverged_steps", "points_lost",
-                          "max_speed_end_m_per_s", "stability_limit_exceeded"})
+                          "max_speed_end_m_per_s", "stability_limit_exceeded", "stood_still"})
     summary["checks"][key] = nullptr;
   for (const char* key : {"cells_active", "bytes_per_point"}) summary["cost"][key] = nullptr;
   if (steps_too)

@@ -40,6 +40,14 @@ double total_mass(const Points<D>& points) {
   return m;
 }
 
+/// Mean height of the mass over the origin.
+template <int D>
+double mean_height(const Points<D>& points) {
+  double sum = 0.0;
+  for (std::size_t p = 0; p < points.size(); ++p) sum += points.mass[p] * points.x[p][D - 1];
+  return sum / total_mass(points);
+}
+
 /// sum V / sum V0 - 1, against the stress-free volume.
 template <int D>
 double volume_change(const Points<D>& points) {

@@ -38,20 +38,28 @@ template <class Geometry, class RecordOfRun, class Read, class Finish>
 void run_experiment(const Flow& flow, Body<Geometry>& body,
                     const Showing<typename RecordOfRun::Sample>& showing, const scene::Observer& observer,
                     Read read, Finish finish, RecordOfRun& record) {
-  const double start_mass = total_mass(body.points), start_volume_change = volume_change(body.points);
+  const double start_mass = total_mass(body.points), start_volume_change = volume_change(body.points),
+               start_height = mean_height(body.points);
   if (showing.from_start && record.series.empty()) show_start(body, observer, read, record);
+  Squeeze squeeze;
+  squeeze.see(start_volume_change, 0.0);
+  Flow watched = flow;
+  watched.collapsed = [&] { return squeeze.collapsed(); };
   const auto read_and_show = [&](const StepReport& step) {
+    squeeze.see(volume_change(body.points), body.time);
     const auto& sample = record.series.emplace_back(read(step));
     if (observer.on_progress)
       observer.on_progress({sample.time, showing.duration, sample.time_step, showing.progress(sample)});
   };
-  const auto stopped_at = run_loop(flow, read_and_show, observer, showing.frame_interval,
+  const auto stopped_at = run_loop(watched, read_and_show, observer, showing.frame_interval,
                                    showing.from_start ? frame_after(0.0, showing.frame_interval) : 0.0,
                                    record.status, record.checks, record.cost);
   if (record.series.empty()) record.series.emplace_back();  // the first step failed
   if (flow.tell) flow.tell(stopped_at.has_value(), record.checks, record.cost);
   judge(body, start_mass, record.checks, record.cost);
+  judge_squeeze(squeeze, body.mix, 2.0 * start_height, record.checks);
   if (showing.from_start) judge_volume(start_volume_change, record.checks);
+  record.checks.stood_still = showing.from_start && mean_height(body.points) > 0.99 * start_height;
   finish(stopped_at);
   record.final_frame = flow.last_frame ? flow.last_frame() : flow.frame();
   if (observer.on_frame) observer.on_frame(record.final_frame);

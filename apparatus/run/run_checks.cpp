@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "apparatus/run/step_settings.hpp"
+#include "apparatus/scene/units.hpp"
 #include "libmpm/implicit/step_size.hpp"
 
 namespace tremie::experiment {
@@ -81,6 +83,17 @@ void judge_volume(double at_start, Checks& checks) {
   checks.reasons.push_back(
       fmt::format("the concrete's volume changed by {:+.2g} %; its weight can account for {:.2g} %",
                   100.0 * checks.volume_change, 100.0 * most));
+}
+
+void judge_squeeze(const Squeeze& squeeze, const Mix& mix, double height, Checks& checks) {
+  constexpr double most = 0.15;
+  if (!(std::abs(squeeze.most) > most)) return;
+  checks.reasons.push_back(fmt::format(
+      "the concrete is too soft: its volume changed by {:+.3g} % at {:.3g} s, more than {:g} %, under its "
+      "weight{}: a "
+      "larger mix.bulk_modulus ({} kPa now; {} kPa keeps it to 1 %)",
+      100.0 * squeeze.most, squeeze.at, 100.0 * most, squeeze.collapsed() ? "; the run ends there" : "",
+      scene::rounded(1e-3 * mix.K, 3), scene::rounded(0.1 * mix.density * gravity * height, 1)));
 }
 
 #define TREMIE_CHECKS_IN(Geometry)                                                                 \

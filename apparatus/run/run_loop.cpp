@@ -41,6 +41,7 @@ std::optional<double> run_loop(const Flow& flow, const std::function<void(const 
   const Checkpoints* checkpoints = flow.state ? observer.checkpoints : nullptr;
   const VisitState state = state_of(flow, next_frame, watch, checks, cost);
   if (goes_on(checkpoints)) checkpoints->restore(state);
+  if (flow.collapsed && flow.collapsed()) status = Status::failed;
   while (status == Status::completed && !at_rest && flow.unfinished()) {
     if (checkpoints && checkpoints->due()) checkpoints->keep(state);
     flow.prepare();
@@ -50,6 +51,7 @@ std::optional<double> run_loop(const Flow& flow, const std::function<void(const 
     at_rest = rests_since(flow, step, watch);
     if (observer.interrupted && *observer.interrupted) status = Status::interrupted;
     if (flow.gains_energy && flow.gains_energy()) status = Status::failed;
+    if (flow.collapsed && flow.collapsed()) status = Status::failed;
     if (observer.on_frame && observer.all_frames && flow.time() >= next_frame) {
       observer.on_frame(flow.frame());
       next_frame = frame_after(next_frame, frame_interval);

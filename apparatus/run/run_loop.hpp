@@ -42,6 +42,7 @@ struct Flow {
   std::function<bool()> free_to_flow = {};
   /// Since when the readings stand still, as a laboratory would judge it [s]: rest too, where it is not empty.
   std::function<std::optional<double>()> stands_since = {};
+  std::function<bool()> collapsed = {};     ///< its own weight has squeezed the body to nothing; may be empty
   std::function<bool()> gains_energy = {};  ///< more than a stable run can; may be empty
   std::function<void(bool, Checks&, Cost&)> tell =
       {};  ///< what the steps themselves were watched for; true: the flow came to rest

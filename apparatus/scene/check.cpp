@@ -99,8 +99,8 @@ void read_text(const Key& key, const std::string& text, Value& into) {
   if (key.kind == Kind::text || is_word(key, text)) {
     into.words.push_back(text);
   } else if (key.kind == Kind::choice) {
-    throw Problem(fmt::format("\"{}\" is not allowed; allowed: {} (nearest: \"{}\")", text, join(key.words),
-                              nearest(text, key.words)));
+    throw Problem(fmt::format("\"{}\" is not allowed; allowed: {}{}", text, join(key.words),
+                              nearest_in_brackets(text, key.words)));
   } else if (key.kind == Kind::quantity) {
     std::string words = key.words.empty() ? "" : " or " + join(key.words);
     double value = 0.0;
@@ -111,6 +111,7 @@ void read_text(const Key& key, const std::string& text, Value& into) {
     }
     check_range(key, value, "\"" + text + "\"");
     into.numbers.push_back(value);
+    into.written.push_back(text);
   } else {
     throw Problem(fmt::format("\"{}\" is a string; allowed: {} without quotes", text, allowed_text(key)));
   }
@@ -156,7 +157,7 @@ Value read_pairs(const Key& key, const Node& node) {
 }
 
 Value read_value(const Key& key, const Node& node) {
-  Value value{{}, {}, node.origin, {}};
+  Value value{{}, {}, node.origin, {}, {}};
   const auto* array = std::get_if<Array>(&node.value);
   if (key.shape == Shape::pairs) return read_pairs(key, node);
   if (!array) {
@@ -259,14 +260,14 @@ class Checker {
     for (const auto& section : schema_)
       if (!section.name.empty() && parent_of(section) == name)
         allowed.push_back(section.name.substr(name.empty() ? 0 : name.size() + 1));
-    std::string hint = fmt::format("did you mean \"{}\"?", nearest(key, allowed));
+    std::string hint = did_you_mean(key, allowed);
     for (const auto& section : schema_)
       if (section.name != name && find_key(section, key))
-        hint = section.name.empty() ? "it belongs at the top of the file."
-                                    : fmt::format("it belongs in [{}].", section.name);
+        hint = section.name.empty() ? "; it belongs at the top of the file."
+                                    : fmt::format("; it belongs in [{}].", section.name);
     const auto where = name.empty() ? "at the top of a scene" : "in [" + name + "]";
     report(node.origin, dotted(place, key),
-           fmt::format("unknown key; {} Allowed {}: {}", hint, where, join(allowed, "")));
+           fmt::format("unknown key{} Allowed {}: {}", hint, where, join(allowed, "")));
   }
 
   /// Words that other keys of the scene imply, where it gives none.

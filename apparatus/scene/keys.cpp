@@ -58,7 +58,20 @@ std::string nearest(std::string_view word, const std::vector<std::string>& words
   };
   const auto closer = [&](const std::string& a, const std::string& b) { return distance(a) < distance(b); };
   const auto found = std::min_element(words.begin(), words.end(), closer);
-  return found == words.end() ? std::string{} : *found;
+  // Words that differ in more than a third of the letters have no spelling in common.
+  const bool is_near = found != words.end() && distance(*found) <= std::max<std::size_t>(2, word.size() / 3);
+  return is_near ? *found : std::string{};
+}
+
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& words) {
+  const std::string near = nearest(word, words);
+  return near.empty() ? "." : fmt::format("; did you mean \"{}\"?", near);
+}
+
+std::string nearest_in_brackets(std::string_view word, const std::vector<std::string>& words,
+                                const char* quote) {
+  const std::string near = nearest(word, words);
+  return near.empty() ? near : fmt::format(" (nearest: {}{}{})", quote, near, quote);
 }
 
 const Section* find_section(const Schema& schema, std::string_view name) {

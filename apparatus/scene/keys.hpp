@@ -125,8 +125,13 @@ std::string range_text(const Key& key);
 
 bool contains(const Range& range, double value);
 
-/// The word of which `word` is a part, else the nearest by edit distance; empty where there are none.
+/// The word of which `word` is a part, else the nearest by edit distance; empty where none is near.
 std::string nearest(std::string_view word, const std::vector<std::string>& words);
+/// "; did you mean \"spread\"?", or "." where no word is near.
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& words);
+/// " (nearest: \"spread\")", or nothing.
+std::string nearest_in_brackets(std::string_view word, const std::vector<std::string>& words,
+                                const char* quote = "\"");
 
 const Section* find_section(const Schema& schema, std::string_view name);
 const Key* find_key(const Section& section, std::string_view name);

@@ -35,14 +35,15 @@ fs::path file_of(const FromFile& from, const std::string& name, const Origin& or
     if (fs::is_regular_file(file, error)) return file;
   }
   const auto known = names_in(from.folder);
-  throw InputError(fmt::format(
-      "{0}: {1}: there is no {1} \"{2}\"; did you mean \"{3}\"? Allowed: {4}, a path to a .toml file, "
-      "or a table [{1}]",
-      describe(origin), from.section, name, nearest(name, known), quoted_list(known)));
+  throw InputError(
+      fmt::format("{0}: {1}: there is no {1} \"{2}\"{3} Allowed: {4}, a path to a .toml file, "
+                  "or a table [{1}]",
+                  describe(origin), from.section, name, did_you_mean(name, known), quoted_list(known)));
 }
 
-/// Replaces `mix = "mix_a"` by that file's [mix], and so on.
-void inline_files(Node& document, const fs::path& scene_folder) {
+/// Replaces `mix = "mix_a"` by that file's [mix], and so on. Returns the files.
+std::vector<fs::path> inline_files(Node& document, const fs::path& scene_folder) {
+  std::vector<fs::path> files;
   for (const FromFile& from : from_files) {
     Node* section = find(document, from.section);
     const auto* name = section ? std::get_if<std::string>(&section->value) : nullptr;
@@ -54,7 +55,9 @@ void inline_files(Node& document, const fs::path& scene_folder) {
       throw InputError(
           fmt::format("{}:1: {}: missing table [{}]", file.string(), from.section, from.section));
     *section = *table;
+    files.push_back(file);
   }
+  return files;
 }
 
 /// A key of the concrete itself, not of its name or of what was measured on it.
@@ -65,8 +68,8 @@ bool is_of_the_concrete(const Override& o) {
 }
 
 /// Lays the command line's values over the scene's. Returns the keys of the concrete among them, "yield_stress,
-/// density".
-std::string apply_overrides(Node& document, const Request& request) {
+/// density"; adds the files that were read.
+std::string apply_overrides(Node& document, const Request& request, std::vector<fs::path>& files) {
   std::vector<Override> overrides;
   std::string of_the_concrete;
   for (const auto& argument : request.overrides) overrides.push_back(parse_override(argument));
@@ -77,7 +80,8 @@ std::string apply_overrides(Node& document, const Request& request) {
   };
   for (const auto& change : overrides)
     if (names_a_file(change)) put(document, change.path, change.value);
-  inline_files(document, request.path.parent_path());
+  files = inline_files(document, request.path.parent_path());
+  if (!request.text) files.push_back(request.path);
   for (const auto& change : overrides) {
     if (names_a_file(change)) continue;
     put(document, change.path, change.value);
@@ -108,8 +112,8 @@ std::string unknown_at_top(const Node& document, std::span<const ApparatusKeys> 
   std::string lines;
   for (const Member& member : std::get<Table>(document.value))
     if (std::find(allowed.begin(), allowed.end(), member.key) == allowed.end())
-      lines += fmt::format("{}: {}: unknown key; did you mean \"{}\"?\n", describe(member.node.origin),
-                           member.key, nearest(member.key, allowed));
+      lines += fmt::format("{}: {}: unknown key{}\n", describe(member.node.origin), member.key,
+                           did_you_mean(member.key, allowed));
   return lines;
 }
 
@@ -131,8 +135,8 @@ const ApparatusKeys& apparatus_of(const Node& document, const std::string& file,
   if (found != known.end())
     throw InputError(fmt::format("{}: apparatus: a scene of \"{}\" is run by `tremie {} {}`",
                                  describe(node->origin), given, found->command, file));
-  throw InputError(fmt::format("{}: apparatus: \"{}\" is not allowed; allowed: {} (nearest: \"{}\")",
-                               describe(node->origin), given, quoted_list(allowed), nearest(given, allowed)));
+  throw InputError(fmt::format("{}: apparatus: \"{}\" is not allowed; allowed: {}{}", describe(node->origin),
+                               given, quoted_list(allowed), nearest_in_brackets(given, allowed)));
 }
 
 /// What to say of a scene without a mix; nothing where it has one.
@@ -239,12 +243,17 @@ std::vector<std::string> mix_names() { return names_in("mixes"); }
 Loaded load(const Request& request, std::span<const ApparatusKeys> known, const std::string& command) {
   Node document = request.text ? parse_text(*request.text, request.path.string(), Layer::scene)
                                : parse_file(request.path);
-  const std::string changed = apply_overrides(document, request);
+  std::vector<fs::path> files;
+  const std::string changed = apply_overrides(document, request, files);
   const ApparatusKeys& apparatus = apparatus_of(document, request.path.string(), known, command);
   const MissingSections missing = missing_mix(document);
   lay_on_preset(document, apparatus);
-  Loaded loaded{
-      request.path.stem().string(), request.path.string(), apparatus.name, whole_schema(apparatus), {}};
+  Loaded loaded{request.path.stem().string(),
+                request.path.string(),
+                apparatus.name,
+                whole_schema(apparatus),
+                {},
+                files};
   loaded.values = check(document, loaded.schema, missing);
   rename_changed_mix(loaded.values, changed);
   loaded.values.drop("preset");  // its values stand in the resolved scene by themselves

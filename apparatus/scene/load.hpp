@@ -27,6 +27,7 @@ struct Loaded {
   std::string apparatus;  ///< "slump_flow"
   Schema schema;          ///< with the top of the file
   Values values;
+  std::vector<std::filesystem::path> files = {};  ///< that were read
 };
 
 /// Reads and checks a scene of one of the apparatus `known` that this command of tremie runs; empty: of any.

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "libmpm/constitutive/constants.hpp"
-#include "rheometer/records/number_text.hpp"
+#include "rheometer/tables/number_text.hpp"
 
 namespace tremie::scene {
 namespace {
@@ -82,6 +82,7 @@ std::span<const Unit> units(Dimension dimension) {
       {Dimension::angle, {{"rad"}, {"deg", std::numbers::pi, 180}, {"°", std::numbers::pi, 180}}},
       {Dimension::torque, {{"N.m"}, {"N·m"}, {"N m"}, {"mN.m", 1, 1000}, {"mN·m", 1, 1000}}},
       {Dimension::consistency, {{"Pa.s^n"}, {"Pa·s^n"}, {"Pa s^n"}}},
+      {Dimension::wall_drag, {{"Pa.s/m"}, {"Pa·s/m"}, {"Pa s/m"}, {"kPa.s/m", 1e3}}},
       {Dimension::acceleration, {{"m/s2"}, {"m/s²"}, {"m/s^2"}}}};
   const auto found = all.find(dimension);
   if (found == all.end()) throw std::logic_error("a dimension without units");

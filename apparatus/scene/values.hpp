@@ -20,7 +20,8 @@ struct Value {
   std::vector<double> numbers;     ///< quantity (SI), number, integer, boolean (0 or 1)
   std::vector<std::string> words;  ///< choice, text, or the word in place of a quantity
   Origin origin;
-  std::string note;  ///< why it has this value, where it was derived
+  std::vector<std::string> written;  ///< a quantity's numbers with their units, as they were given
+  std::string note;                  ///< why it has this value, where it was derived
 };
 
 /// Every getter throws std::logic_error for a key that the scene has no value for: ask has() first where a

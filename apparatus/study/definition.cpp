@@ -19,8 +19,8 @@ void allow_only(const Node& table, const std::string& where, const std::vector<s
   for (const auto& [key, node] : *members)
     if (std::find(known.begin(), known.end(), key) == known.end())
       complain(node, where.empty() ? key : where + "." + key,
-               fmt::format("unknown key; allowed: {} (nearest: {})", fmt::join(known, ", "),
-                           scene::nearest(key, known)));
+               fmt::format("unknown key; allowed: {}{}", fmt::join(known, ", "),
+                           scene::nearest_in_brackets(key, known, "")));
 }
 
 std::string text_at(const Node& table, const std::string& key, const std::string& where) {
@@ -38,8 +38,8 @@ std::string choice_at(const Node& table, const std::string& key, const std::stri
   const auto* text = std::get_if<std::string>(&node->value);
   if (!text || std::find(words.begin(), words.end(), *text) == words.end())
     complain(*node, key,
-             fmt::format("must be one of {} (nearest: {})", fmt::join(words, ", "),
-                         scene::nearest(text ? *text : "", words)));
+             fmt::format("must be one of {}{}", fmt::join(words, ", "),
+                         scene::nearest_in_brackets(text ? *text : "", words, "")));
   return *text;
 }
 

@@ -28,8 +28,9 @@ Key key_named(const std::string& key, const scene::Node& at, const scene::Schema
   const auto* section = dot == std::string::npos ? nullptr : scene::find_section(schema, key.substr(0, dot));
   const auto* found = section ? scene::find_key(*section, key.substr(dot + 1)) : nullptr;
   if (!found)
-    complain(at, key,
-             fmt::format("the scene has no such key (nearest: {})", scene::nearest(key, all_names(schema))));
+    complain(
+        at, key,
+        fmt::format("the scene has no such key{}", scene::nearest_in_brackets(key, all_names(schema), "")));
   return *found;
 }
 
@@ -86,7 +87,7 @@ Level read_level(const std::string& key, const scene::Node& node, const Key& abo
     const auto& allowed = about.words;
     if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), word) == allowed.end())
       complain(node, key,
-               fmt::format("\"{}\" is not allowed (nearest: \"{}\")", word, scene::nearest(word, allowed)));
+               fmt::format("\"{}\" is not allowed{}", word, scene::nearest_in_brackets(word, allowed)));
     return {none, word};
   }
   const double number = number_in_si(node, key, about);

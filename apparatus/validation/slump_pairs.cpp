@@ -12,7 +12,7 @@
 #include "apparatus/scene/load.hpp"
 #include "apparatus/validation/readings.hpp"
 #include "libmpm/io/write_error.hpp"
-#include "rheometer/records/number_rows.hpp"
+#include "rheometer/tables/number_rows.hpp"
 
 namespace tremie::validation {
 namespace {

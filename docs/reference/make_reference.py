@@ -67,7 +67,7 @@ A run fills a folder ([which files](../guide/slump_flow.md#what-a-run-leaves)); 
 | `tremie` | `version`, `commit`, `compiler`, `instructions` (the level of x86-64 that the program is compiled for) |
 | `apparatus`, `status` | which test; `completed`, `interrupted` or `failed` |
 | `results` | the readings, below |
-| `checks` | `volume_change` (ΣV/V0 − 1), `mass_error`, `unconverged_steps`, `points_lost`, `max_speed_end_m_per_s`, `stability_limit_exceeded`, `reasons` |
+| `checks` | `volume_change` (ΣV/V0 − 1), `mass_error`, `unconverged_steps`, `points_lost`, `max_speed_end_m_per_s`, `stability_limit_exceeded`, `stood_still`, `reasons` |
 | `cost` | `wall_s`, `cpu_s`, `steps`, `points`, `cells_active`, `bytes_per_point`, `peak_rss_bytes`, `threads`, `simulated_s` |
 | `error` | with `--with-error` or `--accuracy`: half-widths by reading, `basis` (how they were found), `cpu_s` |
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// Flat walls at the ends of the grid's axes, and rigid blocks of whole cells: which nodal velocities they prescribe,
-// and where a wall law acts. The spline at a wall is interpolatory, so a prescribed velocity is exact there.
+// Flat walls at the ends of the grid's axes, rigid blocks of whole cells and sheets between them: which nodal
+// velocities they prescribe, and where a wall law acts. The spline at a wall is interpolatory, so a prescribed velocity is exact there.
 
 #include <algorithm>
 #include <array>
@@ -22,6 +22,14 @@ struct WallVelocities {
 };
 
 namespace detail {
+
+/// Of a wall law at a node; what it holds with is set by the law.
+template <int D>
+NodeTerm<D> term_at(int node, int normal_axis, double reach, const Vec<D>& velocity) {
+  NodeTerm<D> term;
+  term.node = node, term.normal_axis = normal_axis, term.reach = reach, term.velocity = velocity;
+  return term;
+}
 
 /// Walls at the ends of the axes: which components they prescribe, and the terms of a wall law (wall_law.hpp).
 /// Nodes behind a plane of symmetry are no unknowns.
@@ -44,14 +52,8 @@ void apply_flat_walls(const ActiveGrid<D>& grid, const WallVelocities<D>& walls,
           fixed[i * D + d] = 1;
           v[i][d] = walls.v[a][axis.on_low_wall(j) ? 0 : 1][d];
         }
-      if (face == FaceKind::wall_law) {
-        NodeTerm<D> term;
-        term.node = i;
-        term.normal_axis = a;
-        term.reach = axis.h;
-        term.velocity = walls.v[a][axis.on_low_wall(j) ? 0 : 1];
-        terms.push_back(term);
-      }
+      if (face == FaceKind::wall_law)
+        terms.push_back(term_at(i, a, axis.h, walls.v[a][axis.on_low_wall(j) ? 0 : 1]));
     }
   }
 }
@@ -65,6 +67,25 @@ void apply_blocks(const ActiveGrid<D>& grid, std::vector<char>& fixed, std::vect
     if (!block) continue;
     v[i] = block->velocity(grid.node_position(i));
     for (int d = 0; d < D; ++d) fixed[i * D + d] = 1;
+  }
+}
+
+/// Sheets hold back what would go through them, and all of what sticks to them; along one with a wall law there are terms
+/// of it.
+template <int D>
+void apply_sheets(const ActiveGrid<D>& grid, std::vector<char>& fixed, std::vector<NodeTerm<D>>& terms,
+                  std::vector<Vec<D>>& v) {
+  if (grid.sheets.empty()) return;
+  for (int i = 0; i < grid.n_nodes(); ++i) {
+    const Sheet<D>* sheet = sheet_at_node<D>(grid, grid.node_index[i]);
+    if (!sheet) continue;
+    for (int d = 0; d < D; ++d)
+      if (sheet->contact == FaceKind::no_slip || d == sheet->normal) {
+        fixed[i * D + d] = 1;
+        v[i][d] = sheet->velocity[d];
+      }
+    if (sheet->contact == FaceKind::wall_law)
+      terms.push_back(term_at(i, sheet->normal, grid.axes[sheet->normal].h, sheet->velocity));
   }
 }
 

@@ -32,7 +32,6 @@ inline constexpr double contact_relaxation = 1e-3;
 /// constants are calibrated: about a hundredth of the concrete goes through a cone lifted at 5 to 50 mm/s (lift.md).
 inline double slow_wall_factor(double speed) {
   constexpr double fast = 0.15, most = 100.0;  // [m/s], [1]
-  if (speed <= 0.0) return 1.0;                // a wall that stands is not passed
   return std::clamp(std::pow(fast / std::max(speed, 1e-3 * fast), 2.3), 1.0, most);
 }
 
@@ -78,6 +77,20 @@ std::vector<ContactPoint<D>> find_contact(const ActiveGrid<D>& grid, const Point
     }
   contact.shrink_to_fit();
   return contact;
+}
+
+/// Puts points back on their side of a slow wall that a step from `before` to `after` has taken through it: contact gives way a
+/// little, and what evens the points out knows no wall. `from`: where they were; `margin`: how far off the wall [m].
+template <int D>
+void keep_on_its_side(const RigidWall<D>& wall, double before, double after, const std::vector<Vec<D>>& from,
+                      double margin, std::vector<Vec<D>>& x) {
+#pragma omp parallel for schedule(static)
+  for (std::size_t p = 0; p < x.size(); ++p) {
+    const auto now = wall(x[p], after);
+    if (!now || now->gap >= 0.0 || slow_wall_factor(now->velocity.norm()) == 1.0) continue;
+    const auto then = wall(from[p], before);
+    if (then && then->gap >= 0.0) x[p] += (margin - now->gap) * now->normal;
+  }
 }
 
 }  // namespace tremie

@@ -7,8 +7,9 @@
 //                      FaceKind::wall_law leaves those along the wall to a term at each node (wall_term.hpp), with
 //   yield_force(pressing)   its yield force where the concrete presses on the wall with `pressing`: [N] in an implicit
 //                      step; in an explicit one both are velocities, momenta over the node's mass [m/s]
-//   follows_pressure   whether that depends on `pressing`; an implicit step then renews it from the reaction. The limit
-//                      and the viscous drag of a law that does not are set where terms are made (flat_walls.hpp)
+//   follows_pressure   whether that depends on `pressing`; an implicit step then renews it from the reaction
+//   stress()           in place of yield_force(): the stress that the wall takes from what slides along it, on the area that
+//                      is wetted; implicit steps alone
 //   bears(pressure)    the largest shear stress that the wall takes under a pressure [Pa]
 //
 //   word               the word of a scene's `contact`
@@ -17,3 +18,13 @@
 
 #include "libmpm/constitutive/laws/law_interface.hpp"
 #include "libmpm/grid/axis.hpp"
+
+namespace tremie {
+
+/// What a wall takes from the concrete that slides along it: yield + viscous u.
+struct WallStress {
+  double yield = 0.0;    ///< [Pa]
+  double viscous = 0.0;  ///< [Pa s/m]
+};
+
+}  // namespace tremie

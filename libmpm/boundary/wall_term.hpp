@@ -13,7 +13,7 @@
 // penalty s, and update_admm() is its step in closed form, for all of them.
 //
 //                                               acts at   g                     k
-//   wall law of a flat wall (wall_law.hpp)      node      the law's             the law's
+//   wall law of a flat wall or sheet            node      the law's             the law's
 //   side walls of a section (pose.hpp)          node      their yield stress    of the parabola between them
 //   slender bar (slender_bars.hpp)              point     limit load            of the flow that the grid misses
 //   wall inside the grid (boundary_points.hpp)  point     none                  none: a penalty alone
@@ -25,6 +25,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "libmpm/grid/active_grid.hpp"
@@ -48,6 +49,8 @@ struct NodeTerm : WallTerm<D> {
   int node = 0;
   int normal_axis = 0;  ///< of the wall; -1: side walls, which hold against any motion in the section
   double reach = 0.0;   ///< distance over which it shears the concrete, for ADMM's penalty [m]
+  double scale =
+      std::numeric_limits<double>::infinity();  ///< of forces that matter, if less than the limit [N]
 };
 
 /// At a point of a cell.
@@ -84,7 +87,7 @@ Vec<D> slip_velocity(const PointTerm<D>& term, const CellNodes<D>& cell_nodes, c
 /// Force that the residuals of a term are measured against [N]. The drag of side walls is left out of it.
 template <int D>
 double force_scale(const NodeTerm<D>& term, const Vec<D>&) {
-  return term.limit;
+  return std::min(term.limit, term.scale);
 }
 template <int D>
 double force_scale(const PointTerm<D>& term, const Vec<D>& w) {

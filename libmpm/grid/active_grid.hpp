@@ -55,6 +55,18 @@ struct Block {
   std::function<Vec<D>(const Vec<D>& x)> velocity;  ///< of the block at x [m/s]
 };
 
+/// A thin wall on a face of the grid that is a repeated knot: the cells on its two sides share the nodes on the face
+/// alone, so that what these may not do nothing does anywhere on the wall. It stands where the coordinate of another
+/// direction is within [from, to), and may grow or shrink there; normal to itself it does not move.
+template <int D>
+struct Sheet {
+  int normal = 0, face = 0;                ///< direction across it; the cells above it
+  int along = 1;                           ///< the other direction
+  double from = 0.0, to = 0.0;             ///< [m]
+  FaceKind contact = FaceKind::free_slip;  ///< no_slip, free_slip or wall_law
+  Vec<D> velocity = Vec<D>::Zero();        ///< along itself [m/s]
+};
+
 /// An active node behind a plane of symmetry: its velocity is that of node `of`, component by component times
 /// `sign`. It is no unknown of its own.
 template <int D>
@@ -74,6 +86,7 @@ struct ActiveGrid {
 
   std::array<Axis, D> axes;
   std::vector<Block<D>> blocks;
+  std::vector<Sheet<D>> sheets;
 
   std::vector<Index<D>> cell_index;  ///< of each active cell, in lexicographic order
   CellNodes<D> cell_nodes;
@@ -232,6 +245,17 @@ const Block<D>* block_of_node(const ActiveGrid<D>& grid, const Index<D>& node) {
   return detail::find_block(grid, [&](const Block<D>& b, int d) {
     return node[d] >= grid.axes[d].first_node(b.low[d]) && node[d] <= grid.axes[d].first_node(b.high[d]);
   });
+}
+
+/// The sheet that a node lies on, if any.
+template <int D>
+const Sheet<D>* sheet_at_node(const ActiveGrid<D>& grid, const Index<D>& node) {
+  for (const Sheet<D>& s : grid.sheets) {
+    if (node[s.normal] != grid.axes[s.normal].first_node(s.face)) continue;
+    const double at = grid.axes[s.along].node_position(node[s.along]);
+    if (at >= s.from && at < s.to) return &s;
+  }
+  return nullptr;
 }
 
 /// Whether every cell around one is beyond a wall or holds concrete, as holds(neighbour) has it.

@@ -52,6 +52,9 @@ struct Axis {
       if (f == face) return true;
     return false;
   }
+  /// Whether a cell's first, last spline is interpolatory: a wall or a repeated knot is there.
+  bool interpolates_low(int c) const { return (clamped_low() && c == 0) || repeated(c); }
+  bool interpolates_high(int c) const { return (clamped_high() && c == n_cells - 1) || repeated(c + 1); }
   /// The first of the three nodes that a cell sees; that of the face below it, if that is a wall or a
   /// repeated knot.
   int first_node(int cell) const {
@@ -92,8 +95,7 @@ struct SplineValues {
 
 /// Splines of cell c at the local coordinate s in [0, 1].
 inline SplineValues splines(const Axis& axis, int c, double s) {
-  const bool low = (axis.clamped_low() && c == 0) || axis.repeated(c);
-  const bool high = (axis.clamped_high() && c == axis.n_cells - 1) || axis.repeated(c + 1);
+  const bool low = axis.interpolates_low(c), high = axis.interpolates_high(c);
   const double t = 1.0 - s, ih = 1.0 / axis.h;
   SplineValues v;
   v.N[0] = low ? t * t : 0.5 * t * t;

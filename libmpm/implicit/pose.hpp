@@ -10,15 +10,26 @@
 #include "libmpm/implicit/bar_drag.hpp"
 #include "libmpm/implicit/free_surface.hpp"
 #include "libmpm/implicit/problem/cell_weights.hpp"
+#include "libmpm/implicit/problem/wetted_areas.hpp"
 
 namespace tremie::detail {
 
-/// The side walls of a section averaged over the width W: the concrete sticks to them, so they hold each node
-/// with the yield stress and, for the parabola between two plates, the viscous stress 6 mu v / W on both
-/// sides.
+/// What two layers one behind the other take, each from its own speed, where the speeds add up to `speed`: as one yield
+/// stress and the drag that gives the rest at this speed.
+inline WallStress in_series(WallStress first, WallStress then, double speed) {
+  if (then.yield < first.yield) std::swap(first, then);
+  const double alone = first.viscous > 0.0 ? (then.yield - first.yield) / first.viscous : unbounded;
+  if (speed <= alone) return first;
+  const double both = then.viscous > 0.0 ? 1.0 / (1.0 / first.viscous + 1.0 / then.viscous) : 0.0;
+  return {first.yield, (then.yield - first.yield + both * (speed - alone)) / speed};
+}
+
+/// The side walls of a section averaged over the width W. Where the concrete sticks to them, they hold each node with the
+/// yield stress and, for the parabola between two plates, the viscous stress 6 mu v / W on both sides; a layer at the wall
+/// that slides is in series with that.
 template <class Geometry>
-void add_side_walls(double W, const YieldLaw& law, const std::vector<Vec<Geometry::dim>>& v,
-                    YieldProblem<Geometry>& problem) {
+void add_side_walls(double W, const YieldLaw& law, const WallLaw& wall_law,
+                    const std::vector<Vec<Geometry::dim>>& v, YieldProblem<Geometry>& problem) {
   constexpr int D = Geometry::dim;
   const auto& grid = problem.grid;
   std::vector<double> V(grid.node_index.size(), 0.0), limit(grid.node_index.size(), 0.0);
@@ -33,6 +44,7 @@ void add_side_walls(double W, const YieldLaw& law, const std::vector<Vec<Geometr
     }
   fold_mirrors<D>(grid, V);
   fold_mirrors<D>(grid, limit);
+  const std::optional<WallStress> layer = wall_stress(wall_law);
   for (std::size_t i = 0; i < V.size(); ++i) {
     const double tau_y = V[i] > 0.0 ? 0.5 * W * limit[i] / V[i] : 0.0;
     const double mu = problem.mu + viscosity(law, 6.0 * v[i].norm() / W, tau_y);
@@ -42,7 +54,25 @@ void add_side_walls(double W, const YieldLaw& law, const std::vector<Vec<Geometr
     held.reach = W / std::sqrt(12.0);
     held.limit = limit[i];
     held.viscous = 12.0 * mu / (W * W) * V[i];
+    if (layer) {
+      const WallStress both = in_series(*layer, {tau_y, 6.0 * mu / W}, v[i].norm());
+      held.limit = 2.0 / W * V[i] * both.yield, held.viscous = 2.0 / W * V[i] * both.viscous;
+    }
     problem.wall_nodes.push_back(held);
+  }
+}
+
+/// A wall law that holds with a stress does so on the area that is wetted. One that holds with more than the concrete's
+/// yield stress must not be the laxer for it.
+template <class Geometry>
+void set_wall_stresses(const WallLaw& law, double tau_0, YieldProblem<Geometry>& problem) {
+  const std::optional<WallStress> stress = wall_stress(law);
+  if (!stress || problem.wall_nodes.empty()) return;
+  const NodeAreas<Geometry::dim> areas = wetted_areas(problem.grid, problem.quadrature);
+  for (auto& t : problem.wall_nodes) {
+    t.limit = stress->yield * areas[t.node][t.normal_axis];
+    t.scale = std::max(tau_0, no_stress) * areas[t.node][t.normal_axis];
+    t.viscous = stress->viscous * areas[t.node][t.normal_axis];
   }
 }
 
@@ -73,6 +103,7 @@ void carry_over_terms(const std::vector<NodeTerm<Geometry::dim>>& old,
     if (t.normal_axis >= 0 && follows_pressure(law)) t.limit = before.limit;
     t.force = before.force;
     t.slip = before.slip;
+    if (t.limit == 0.0) t.force.setZero();
   }
 }
 
@@ -91,8 +122,11 @@ void pose(ImplicitBody<Geometry>& body, const YieldLaw& law, const StepSettings&
   posed->zeta = settings.alternating_viscosity * posed->eta;
   apply_flat_walls<D>(body.grid, body.walls, posed->fixed, posed->wall_nodes, body.v);
   apply_blocks<D>(body.grid, posed->fixed, body.v);
+  apply_sheets<D>(body.grid, posed->fixed, posed->wall_nodes, body.v);
   fill_mirrors<D>(body.grid, body.v);
-  if (settings.side_wall_distance > 0.0) add_side_walls(settings.side_wall_distance, law, body.v, *posed);
+  set_wall_stresses(settings.wall_law, body.mix.tau_0, *posed);
+  if (settings.side_wall_distance > 0.0)
+    add_side_walls(settings.side_wall_distance, law, settings.wall_law, body.v, *posed);
   posed->drag = viscous_drag(posed->wall_nodes, body.v.size());
   posed->bound = find_penalty_points(body.grid, body.nodes, body.boundary, dt, settings.boundary_stiffness);
   if (!body.bars.empty()) add_bars(body, law, *posed);

@@ -74,11 +74,13 @@ StepReport step_from_grid(ImplicitBody<Geometry>& body, const YieldLaw& law, con
         Form::shifting(problem, cell_fill(problem, body.points, gamma_dot, settings.particle_shifting), body);
   Form::release(body);
   const std::vector<Vec<D>> v_before = measured ? body.points.v : std::vector<Vec<D>>{};
-  const std::vector<Vec<D>> from = settings.detached > 0.0 ? body.points.x : std::vector<Vec<D>>{};
+  const std::vector<Vec<D>> from = settings.detached > 0.0 || wall ? body.points.x : std::vector<Vec<D>>{};
   grid_to_point(body.grid, body.v, v_old, settings.transfer, Geometry::advects ? dt : 0.0, body.points,
                 body.motion);
   if (settings.detached > 0.0) hold_detached_particles<D>(body.grid.axes, dt, from, body.points);
   if (shifts) shift_points<D>(body.grid, shift, body.points, body.motion);
+  if (wall)
+    keep_on_its_side<D>(wall, body.time, body.time + dt, from, 1e-3 * settings.wall_gap, body.points.x);
   body.time += dt;
   body.dt = dt;
   if (measured) body.time_error = local_error(body.points, v_before, dt);

@@ -7,6 +7,7 @@
 // tensor of the stencil is computed where the point is (tensor-product splines: it is diagonal).
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "libmpm/grid/active_grid.hpp"
@@ -36,11 +37,23 @@ void keep_in_domain(const std::array<Axis, D>& axes, Vec<D>& x) {
   }
 }
 
-/// Keeps a point that moved from `from` to x in the domain and out of blocks: one that would enter a block
-/// stays.
+/// Stops a point that moved from `from` to x before the sheet that it would cross.
+template <int D>
+void keep_on_its_side(const ActiveGrid<D>& grid, const Sheet<D>& sheet, const Vec<D>& from, Vec<D>& x) {
+  const Axis& axis = grid.axes[sheet.normal];
+  const double wall = axis.origin + sheet.face * axis.h, before = from[sheet.normal] - wall,
+               after = x[sheet.normal] - wall;
+  if ((before < 0.0) == (after < 0.0)) return;
+  const double at = from[sheet.along] + before / (before - after) * (x[sheet.along] - from[sheet.along]);
+  if (at >= sheet.from && at < sheet.to) x[sheet.normal] = wall + std::copysign(1e-6 * axis.h, before);
+}
+
+/// Keeps a point that moved from `from` to x in the domain, on its side of sheets and out of blocks: one that would
+/// enter a block stays.
 template <int D>
 void keep_in_domain(const ActiveGrid<D>& grid, const Vec<D>& from, Vec<D>& x) {
   keep_in_domain<D>(grid.axes, x);
+  for (const Sheet<D>& sheet : grid.sheets) keep_on_its_side(grid, sheet, from, x);
   if (!grid.blocks.empty() && block_of_cell<D>(grid, detail::cell_of<D>(grid.axes, x))) x = from;
 }
 

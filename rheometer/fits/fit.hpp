@@ -109,12 +109,25 @@ struct FitResult {
   long readings = 0;                 ///< used
   double scatter = 0.0;              ///< relative standard deviation of a reading about the fit
   double correlation = 0.0;          ///< of successive residuals
+  bool sheared_evenly = false;       ///< speeds and torques are those of evenly_sheared() (instrument.hpp)
   bool law_in_doubt = false;         ///< another law describes the readings far better: a note tells which
   std::vector<std::string> notes;    ///< assumptions, and why a value is missing
   std::vector<std::string> reasons;  ///< why the result is not to be trusted
   FittedCurve curve;
   std::vector<double> lambda_apparent;  ///< of curve.observed, torque decay alone
 };
+
+/// How speeds and torques of a record are shown: as they are, or as the shear rates and stresses that they stand for.
+struct ShownUnits {
+  double speed = 0.0;  ///< a speed over this is in the unit of its key
+  const char *speed_key = "", *torque_key = "", *speed_unit = "", *speed_label = "", *torque_label = "";
+};
+inline ShownUnits shown_units(bool sheared_evenly) {
+  if (sheared_evenly)
+    return {evenly_sheared_speed, "shear_rate_per_s", "shear_stress_Pa", "1/s",
+            "shear rate (1/s)",   "shear stress (Pa)"};
+  return {angular_speed(1.0), "speed_rev_per_s", "torque_N_m", "rev/s", "speed (rev/s)", "torque (N·m)"};
+}
 
 /// The note of a fit without corrections for the vane's ends and blades.
 inline constexpr const char* taken_for_a_cylinder =

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "rheometer/records/text.hpp"
+#include "rheometer/tables/text.hpp"
 #include "rheometer/regression/lack_of_fit.hpp"
 #include "rheometer/regression/statistics.hpp"
 
@@ -21,17 +21,18 @@ void judge_sizes(const TorqueRecord& record, const FitInput& input, FitResult& r
                       *std::max_element(record.torque.begin(), record.torque.end()), input.instrument);
   if (stress < 1.0 || stress > 2e4)
     result.reasons.push_back("the largest shear stress at the vane is " + std::to_string(stress) +
-                             " Pa, which no fresh concrete has: is the torque's unit right?");
+                             " Pa, which no fresh concrete has: is the unit of the torque or stress right?");
   const double speed = record.kind == RecordKind::flow_curve
                            ? *std::max_element(record.omega.begin(), record.omega.end())
                            : input.omega.value_or(0.0);
-  if (speed > angular_speed(10.0))
+  if (speed > angular_speed(10.001))
     result.reasons.push_back("the vane turns at " + std::to_string(speed / angular_speed(1.0)) +
                              " rev/s: is the speed's unit right?");
 }
 
 /// What the parameters hold for: a gap of 3 grains is no continuum, 5 are the usual demand (Feys et al. 2018).
 void judge_gap(const FitInput& in, FitResult& result) {
+  if (is_evenly_sheared(in.instrument)) return;
   const double gap = in.instrument.container_radius - in.instrument.vane_radius;
   if (in.max_aggregate > 0.0 && gap < 5.0 * in.max_aggregate) {
     const bool jams = gap < 3.0 * in.max_aggregate;

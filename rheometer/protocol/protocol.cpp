@@ -5,62 +5,19 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "rheometer/reference/reiner_riwlin.hpp"
 #include "rheometer/regression/least_squares.hpp"
 #include "rheometer/regression/statistics.hpp"
+#include "rheometer/tables/text.hpp"
 
 namespace tremie {
 
 namespace {
 
-/// The row of the largest torque while the vane gathers speed or up to a tenth of the section.
-std::size_t peak_of(const ProtocolRecord& r, const Section& s) {
-  std::size_t peak = s.begin;
-  const std::size_t limit = s.begin + std::max<std::size_t>(3, (s.end - s.begin) / 10);
-  for (std::size_t i = s.begin; i < std::min(limit, s.end); ++i)
-    if (r.torque[i] > r.torque[peak]) peak = i;
-  return peak;
-}
-
-TorqueRecord decay_of(const ProtocolRecord& r, const Section& s) {
-  TorqueRecord d;
-  d.kind = RecordKind::torque_decay;
-  const std::size_t peak = peak_of(r, s);
-  for (std::size_t i = peak; i < s.end; ++i) {
-    d.time.push_back(r.time[i] - r.time[peak]);
-    d.torque.push_back(r.torque[i]);
-    d.line.push_back(r.line[i]);
-  }
-  return d;
-}
-
-/// Rows of a ramp; of steps the mean of the last half of each.
-TorqueRecord flow_curve_of(const ProtocolRecord& r, const Section& s) {
-  TorqueRecord c;
-  c.kind = RecordKind::flow_curve;
-  const auto add = [&](double omega, double torque, long line) {
-    c.omega.push_back(omega);
-    c.torque.push_back(torque);
-    c.line.push_back(line);
-  };
-  if (!s.stepped) {
-    for (std::size_t i = s.begin; i < s.end; ++i) add(r.omega[i], r.torque[i], r.line[i]);
-    return c;
-  }
-  for (std::size_t from = s.begin, to = from; from < s.end; from = to) {
-    for (to = from + 1; to < s.end && std::abs(r.omega[to] / r.omega[from] - 1.0) <= 0.03; ++to) {
-    }
-    if (to - from < 3) continue;
-    double omega = 0.0, torque = 0.0, n = 0.0;
-    for (std::size_t i = from + (to - from) / 2; i < to; ++i)
-      omega += r.omega[i], torque += r.torque[i], n += 1.0;
-    add(omega / n, torque / n, r.line[from]);
-  }
-  return c;
-}
-
 void read_fit(const TorqueRecord& record, const FitInput& input, SectionReading& reading) {
   try {
     reading.fit = fit(record, input);
+    reading.fit->sheared_evenly = record.sheared_evenly;
     reading.reasons.insert(reading.reasons.end(), reading.fit->reasons.begin(), reading.fit->reasons.end());
   } catch (const std::exception& error) {  // too few rows, a torque of 0: the section has no reading
     reading.notes.push_back(std::string("no fit: ") + error.what());
@@ -164,12 +121,94 @@ Breakdown read_breakdown(const ProtocolRecord& record, const std::vector<Section
   return b;
 }
 
+/// The integral of the torque over the speed between the two branches, over the speeds that both have.
+std::optional<double> area_between(const ProtocolRecord& r, const Section& up, const Section& down) {
+  const auto branch = [&](const Section& s) {
+    std::vector<std::pair<double, double>> points;
+    for (std::size_t i = s.begin; i < s.end; ++i) points.emplace_back(r.omega[i], r.torque[i]);
+    std::sort(points.begin(), points.end());
+    return points;
+  };
+  const auto rising = branch(up), falling = branch(down);
+  const double low = std::max(rising.front().first, falling.front().first),
+               high = std::min(rising.back().first, falling.back().first);
+  if (!(high > low)) return std::nullopt;
+  const auto torque_at = [](const std::vector<std::pair<double, double>>& points, double omega) {
+    const auto behind = std::lower_bound(points.begin(), points.end(), std::pair(omega, -HUGE_VAL));
+    if (behind == points.begin()) return behind->second;
+    if (behind == points.end()) return points.back().second;
+    const auto& [x, y] = *std::prev(behind);
+    return behind->first > x ? y + (behind->second - y) * (omega - x) / (behind->first - x) : y;
+  };
+  constexpr int pieces = 1000;
+  double sum = 0.0;
+  for (int i = 0; i <= pieces; ++i) {
+    const double omega = low + (high - low) * i / pieces, weight = i == 0 || i == pieces ? 0.5 : 1.0;
+    sum += weight * (torque_at(rising, omega) - torque_at(falling, omega));
+  }
+  const double area = sum * (high - low) / pieces;
+  return r.sheared_evenly ? area / evenly_sheared_speed : area;
+}
+
+/// The loop of a flow curve down behind one up.
+void read_loop(const ProtocolRecord& record, SectionReading& before, SectionReading& reading) {
+  if (before.section.kind != SectionKind::flow_curve_up ||
+      reading.section.kind != SectionKind::flow_curve_down)
+    return;
+  reading.loop_area = area_between(record, before.section, reading.section);
+  if (reading.loop_area)
+    reading.notes.push_back(text_of("loop: %.4g %s between the branch up and this one", *reading.loop_area,
+                                    record.sheared_evenly ? "Pa/s" : "W"));
+}
+
+/// The last Bingham flow curve that tells both parameters; null where the record has none.
+const SectionReading* own_flow_curve(const std::vector<SectionReading>& sections) {
+  const SectionReading* found = nullptr;
+  for (const SectionReading& s : sections)
+    if (s.fit && s.fit->kind == RecordKind::flow_curve && s.reasons.empty() && s.fit->tau_0 && s.fit->mu)
+      found = &s;
+  return found;
+}
+
+/// The decay by the yield stress and viscosity of the flow curve; told where its own end differs from what those ask for.
+void read_decay(const ProtocolRecord& record, FitInput in, const SectionReading* curve,
+                SectionReading& reading) {
+  const TorqueRecord decay = decay_of(record, reading.section);
+  reading.fit_origin = record.time[peak_of(record, reading.section)] - reading.start;
+  reading.decay = read_decay_shape(decay.time, decay.torque);
+  if (curve && !in.tau_0 && !in.mu) {
+    in.tau_0 = std::max(0.0, curve->fit->tau_0->value), in.mu = curve->fit->mu->value;
+    const double steady = reiner_riwlin({*in.tau_0, *in.mu}, *in.omega, in.instrument).torque;
+    const double end = reading.decay->end_torque;
+    reading.notes.push_back(text_of("yield_stress, plastic_viscosity: of the flow curve on lines %ld to %ld",
+                                    curve->first_line, curve->last_line));
+    if (std::abs(end / steady - 1.0) > 0.1)
+      reading.notes.push_back(
+          text_of("the decay ends at %.4g, where that flow curve has %.4g %s: the two sections "
+                  "contradict each other by %.0f %%",
+                  record.sheared_evenly ? end : 1e3 * end, record.sheared_evenly ? steady : 1e3 * steady,
+                  record.sheared_evenly ? "Pa" : "mN.m", 100.0 * std::abs(end / steady - 1.0)));
+  }
+  read_fit(decay, in, reading);
+}
+
 }  // namespace
+
+std::string law_of_section(const FitInput& input) {
+  return input.mu ? "bingham" : input.law == FitInput{}.law ? "auto" : input.law;
+}
 
 ProtocolReading read_protocol(const ProtocolRecord& record, const FitInput& input,
                               const ProtocolOptions& options) {
   check(input.instrument);
   ProtocolReading result;
+  result.sheared_evenly = record.sheared_evenly;
+  const auto input_for = [&](const Section& s) {
+    FitInput in = input;
+    in.omega = s.omega > 0.0 ? std::optional(s.omega) : std::nullopt;
+    if (s.rest_before > 0.0) in.rest = s.rest_before;
+    return in;
+  };
   for (const Section& s : find_sections(record)) {
     SectionReading reading;
     reading.section = s;
@@ -177,26 +216,26 @@ ProtocolReading read_protocol(const ProtocolRecord& record, const FitInput& inpu
     reading.last_line = record.line[s.end - 1];
     reading.start = record.time[s.begin];
     reading.duration = record.time[s.end - 1] - record.time[s.begin];
-    FitInput in = input;
-    in.omega = s.omega > 0.0 ? std::optional(s.omega) : std::nullopt;
-    if (s.rest_before > 0.0) in.rest = s.rest_before;
     if (s.kind == SectionKind::start_up) {
       reading.start_up = read_start_up(record, s, input.instrument, options, reading.notes);
-    } else if (s.kind == SectionKind::constant_rate) {
-      const TorqueRecord decay = decay_of(record, s);
-      reading.fit_origin = record.time[peak_of(record, s)] - reading.start;
-      reading.decay = read_decay_shape(decay.time, decay.torque);
-      read_fit(decay, in, reading);
     } else if (s.kind == SectionKind::flow_curve_up || s.kind == SectionKind::flow_curve_down) {
-      in.law = in.mu ? "bingham" : "auto";
+      FitInput in = input_for(s);
+      in.law = law_of_section(in);
       read_fit(flow_curve_of(record, s), in, reading);
+      if (!result.sections.empty()) read_loop(record, result.sections.back(), reading);
     } else if (s.kind == SectionKind::other) {
       reading.notes.push_back("neither a constant speed nor a ramp: not read");
     }
     result.sections.push_back(std::move(reading));
-    for (const std::string& why : result.sections.back().reasons)
-      result.reasons.push_back("section " + std::to_string(result.sections.size()) + " (" +
-                               std::string(name_of(s.kind)) + "): " + why);
+  }
+  const SectionReading* curve = own_flow_curve(result.sections);
+  for (std::size_t i = 0; i < result.sections.size(); ++i) {
+    SectionReading& reading = result.sections[i];
+    const Section& s = reading.section;
+    if (s.kind == SectionKind::constant_rate) read_decay(record, input_for(s), curve, reading);
+    for (const std::string& why : reading.reasons)
+      result.reasons.push_back("section " + std::to_string(i + 1) + " (" + std::string(name_of(s.kind)) +
+                               "): " + why);
   }
   result.structuration = structuration_of(result.sections);
   result.breakdown = read_breakdown(record, result.sections, input.instrument);

@@ -38,7 +38,9 @@ struct SectionReading {
   std::optional<StartUpReading> start_up;
   std::optional<DecayShape> decay;
   std::optional<FitResult> fit;  ///< decay or flow curve
-  double fit_origin = 0.0;       ///< time from the start of the section at which a decay's fit begins [s]
+  /// Of a flow curve down behind one up: between the branches, torque over speed [W], or stress over shear rate [Pa/s].
+  std::optional<double> loop_area;
+  double fit_origin = 0.0;  ///< time from the start of the section at which a decay's fit begins [s]
   std::vector<std::string> notes, reasons;
 };
 
@@ -53,6 +55,7 @@ struct Structuration {
 };
 
 struct ProtocolReading {
+  bool sheared_evenly = false;  ///< of the record
   std::vector<SectionReading> sections;
   Structuration structuration;
   Breakdown breakdown;
@@ -63,7 +66,12 @@ struct ProtocolOptions {
   double compliance = 0.0;  ///< of the instrument: its own turn by torque [rad/(N m)]
 };
 
-/// Reads every section. `input` holds instrument, kinetics, law and what is known besides; its speed and rest are the
+/// The law of a flow curve in a record of sections, alone or among the others: the input's, and all compared where that is
+/// the default one.
+std::string law_of_section(const FitInput& input);
+
+/// Reads every section; decays by the yield stress and viscosity of the record's own flow curve, where it has a Bingham
+/// one and the input gives neither. `input` holds instrument, kinetics, law and what is known besides; its speed and rest are the
 /// sections'. Throws std::invalid_argument for an instrument that cannot be.
 ProtocolReading read_protocol(const ProtocolRecord& record, const FitInput& input,
                               const ProtocolOptions& options = {});

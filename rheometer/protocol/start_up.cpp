@@ -3,8 +3,8 @@
 #include <numbers>
 
 #include "rheometer/protocol/protocol.hpp"
-#include "rheometer/records/text.hpp"
 #include "rheometer/regression/statistics.hpp"
+#include "rheometer/tables/text.hpp"
 
 namespace tremie {
 

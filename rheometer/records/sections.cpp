@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "rheometer/records/instrument_export.hpp"
 #include "rheometer/records/torque_record.hpp"
 
 namespace tremie {
@@ -30,12 +29,16 @@ std::size_t end_of_constant(const std::vector<double>& omega, std::size_t begin,
   return i;
 }
 
-/// A slow ramp keeps its speed for a few rows too, but drifts through all of the tolerance.
+/// A slow ramp keeps its speed for a few rows too, but drifts through all of the tolerance; so does the turn between a
+/// ramp up and one down, there and back.
 bool drifts(const std::vector<double>& omega, std::size_t begin, std::size_t end) {
   const std::size_t third = std::max<std::size_t>(1, (end - begin) / 3);
-  double first = 0.0, last = 0.0;
-  for (std::size_t i = 0; i < third; ++i) first += omega[begin + i], last += omega[end - 1 - i];
-  return std::abs(last - first) > drift * first;
+  double first = 0.0, last = 0.0, middle = 0.0;
+  const auto n = static_cast<double>(third), between = static_cast<double>(end - begin) - 2.0 * n;
+  for (std::size_t i = 0; i < third; ++i) first += omega[begin + i] / n, last += omega[end - 1 - i] / n;
+  for (std::size_t i = begin + third; i + third < end; ++i) middle += omega[i] / between;
+  const bool turns = between > 0.0 && std::abs(middle - 0.5 * (first + last)) > drift * first;
+  return std::abs(last - first) > drift * first || turns;
 }
 
 std::vector<Piece> pieces_of(const std::vector<double>& omega, std::size_t begin, std::size_t end) {
@@ -206,15 +209,51 @@ ProtocolRecord protocol_of(const NumberTable& table) {
   return r;
 }
 
+namespace {
+
+/// Rows that are slower than 5e-4 of the fastest one are a rest where the instrument stands still and nothing holds a
+/// torque. A sweep over decades passes there too, its speed in order, and a slow step or a creep test holds its speed or
+/// torque.
+bool is_rest(const ProtocolRecord& r, std::size_t begin, std::size_t end, double fastest, double largest) {
+  constexpr double standing = 1e-6, no_torque = 0.05, held = 0.05, high = 0.2;
+  const auto rows = static_cast<double>(end - begin);
+  double speed = 0.0, torque = 0.0, low = HUGE_VAL, top = -HUGE_VAL, slowest = HUGE_VAL, quickest = 0.0;
+  for (std::size_t i = begin; i < end; ++i) {
+    speed += r.omega[i] / rows, torque += r.torque[i] / rows;
+    low = std::min(low, r.torque[i]), top = std::max(top, r.torque[i]);
+    slowest = std::min(slowest, r.omega[i]), quickest = std::max(quickest, r.omega[i]);
+  }
+  if (torque <= no_torque * largest) return true;
+  if (speed <= standing * fastest)
+    return !(end - begin >= fewest_rows && torque > high * largest && top - low < held * torque);
+  std::size_t up = 0, down = 0;
+  for (std::size_t i = begin + (begin == 0); i < end; ++i)
+    (r.omega[i] > r.omega[i - 1] ? up : down) += r.omega[i] != r.omega[i - 1];
+  const bool in_order = std::max(up, down) >= 3 && 5 * std::min(up, down) <= up + down;
+  const bool constant = end - begin >= fewest_rows && quickest - slowest <= 2.0 * same_speed * speed;
+  return !in_order && !constant;
+}
+
+}  // namespace
+
 std::vector<Section> find_sections(const ProtocolRecord& r) {
   std::vector<Section> sections;
   if (r.omega.empty()) return sections;
-  const double fastest = highest(r.omega, 0, r.omega.size());
-  const auto rests = [&](std::size_t i) { return !(r.omega[i] > 5e-4 * fastest); };
-  for (std::size_t begin = 0, end = 0; begin < r.omega.size(); begin = end) {
-    for (end = begin + 1; end < r.omega.size() && rests(end) == rests(begin); ++end) {
+  const std::size_t rows = r.omega.size();
+  const double fastest = highest(r.omega, 0, rows), largest = highest(r.torque, 0, rows);
+  std::vector<char> rests(rows, 0);
+  for (std::size_t begin = 0, end = 0; begin < rows; begin = end) {
+    const auto slow = [&](std::size_t i) { return !(r.omega[i] > 5e-4 * fastest); };
+    for (end = begin + 1; end < rows && slow(end) == slow(begin); ++end) {
     }
-    if (rests(begin))
+    if (slow(begin) && is_rest(r, begin, end, fastest, largest))
+      std::fill(rests.begin() + static_cast<std::ptrdiff_t>(begin),
+                rests.begin() + static_cast<std::ptrdiff_t>(end), 1);
+  }
+  for (std::size_t begin = 0, end = 0; begin < rows; begin = end) {
+    for (end = begin + 1; end < rows && rests[end] == rests[begin]; ++end) {
+    }
+    if (rests[begin])
       sections.push_back({.kind = SectionKind::rest, .begin = begin, .end = end});
     else
       add_shear(r.omega, begin, end, sections);
@@ -223,10 +262,58 @@ std::vector<Section> find_sections(const ProtocolRecord& r) {
   return sections;
 }
 
-ProtocolRecord parse_protocol_record(std::string_view bytes, const std::string& name, double torque_offset) {
-  const std::string text = decoded_text(bytes, name);
-  const auto plain = plain_export(text, name);
-  const NumberTable table = parse_number_table(plain ? plain->text : text, name, torque_quantities());
+std::size_t peak_of(const ProtocolRecord& r, const Section& s) {
+  std::size_t peak = s.begin;
+  const std::size_t limit = s.begin + std::max<std::size_t>(3, (s.end - s.begin) / 10);
+  for (std::size_t i = s.begin; i < std::min(limit, s.end); ++i)
+    if (r.torque[i] > r.torque[peak]) peak = i;
+  return peak;
+}
+
+TorqueRecord decay_of(const ProtocolRecord& r, const Section& s) {
+  TorqueRecord d;
+  d.kind = RecordKind::torque_decay;
+  d.speed = s.omega;
+  d.rest = s.rest_before;
+  d.sheared_evenly = r.sheared_evenly;
+  const std::size_t peak = peak_of(r, s);
+  for (std::size_t i = peak; i < s.end; ++i) {
+    d.time.push_back(r.time[i] - r.time[peak]);
+    d.torque.push_back(r.torque[i]);
+    d.line.push_back(r.line[i]);
+  }
+  return d;
+}
+
+TorqueRecord flow_curve_of(const ProtocolRecord& r, const Section& s) {
+  TorqueRecord c;
+  c.kind = RecordKind::flow_curve;
+  c.sheared_evenly = r.sheared_evenly;
+  const auto add = [&](double omega, double torque, long line) {
+    c.omega.push_back(omega);
+    c.torque.push_back(torque);
+    c.line.push_back(line);
+  };
+  if (!s.stepped) {
+    for (std::size_t i = s.begin; i < s.end; ++i) add(r.omega[i], r.torque[i], r.line[i]);
+    return c;
+  }
+  for (std::size_t from = s.begin, to = from; from < s.end; from = to) {
+    for (to = from + 1; to < s.end && std::abs(r.omega[to] / r.omega[from] - 1.0) <= 0.03; ++to) {
+    }
+    if (to - from < 3) continue;
+    double omega = 0.0, torque = 0.0, n = 0.0;
+    for (std::size_t i = from + (to - from) / 2; i < to; ++i)
+      omega += r.omega[i], torque += r.torque[i], n += 1.0;
+    add(omega / n, torque / n, r.line[from]);
+  }
+  return c;
+}
+
+ProtocolRecord parse_protocol_record(std::string_view bytes, const std::string& name, double torque_offset,
+                                     const ReadOptions& options) {
+  bool sheared_evenly = false;
+  const NumberTable table = torque_table(bytes, name, torque_offset, options, sheared_evenly);
   for (std::size_t q = 0; q < 3; ++q)
     if (table.position[q] == 0)
       throw RecordError(at_position(name, std::max(1L, table.header_line), 1,
@@ -234,8 +321,8 @@ ProtocolRecord parse_protocol_record(std::string_view bytes, const std::string& 
                                         std::string(torque_quantities()[q].name)));
   if (table.line.empty()) throw RecordError(at_position(name, table.header_line, 1, "a header without rows"));
   ProtocolRecord record = protocol_of(table);
-  if (plain) record.understood = plain->understood;
-  for (double& torque : record.torque) torque -= torque_offset;
+  record.understood = table.understood;
+  record.sheared_evenly = sheared_evenly;
   const double fastest = highest(record.omega, 0, record.omega.size());
   for (std::size_t i = 0; i < record.torque.size(); ++i)
     if (record.torque[i] < 0.0 && record.omega[i] > 5e-4 * fastest)

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "rheometer/records/table.hpp"
+#include "rheometer/records/torque_record.hpp"
 
 namespace tremie {
 
@@ -20,6 +20,7 @@ struct ProtocolRecord {
   std::vector<long> line;
   std::vector<std::size_t> restarts;    ///< rows where the file's clock starts again
   std::vector<std::string> understood;  ///< a sentence each
+  bool sheared_evenly = false;          ///< speed and torque are those of evenly_sheared() (instrument.hpp)
 };
 
 enum class SectionKind { rest, start_up, constant_rate, flow_curve_up, flow_curve_down, other };
@@ -40,13 +41,23 @@ std::string_view name_of(SectionKind kind);
 /// Reads an export with time, speed and torque. `torque_offset` [N m] of the unloaded instrument is taken off. Throws
 /// RecordError for anything else, and for a negative torque in shear.
 ProtocolRecord parse_protocol_record(std::string_view text, const std::string& name,
-                                     double torque_offset = 0.0);
+                                     double torque_offset = 0.0, const ReadOptions& options = {});
 
 /// The columns of a table of torque_quantities as they stand, time carried on and speeds without their sign.
 ProtocolRecord protocol_of(const NumberTable& table);
 
-/// Sections in the order of time that cover all rows. A rest is slower than 5e-4 of the highest speed; a speed is constant
+/// Sections in the order of time that cover all rows. In a rest the instrument stands still, slower than 5e-4 of
+/// the highest speed, and holds no torque; a speed is constant
 /// within 3 %; rows in which the vane gathers speed belong to what follows.
 std::vector<Section> find_sections(const ProtocolRecord& record);
+
+/// The row of the largest torque while the vane gathers speed or up to a tenth of the section: there a decay begins.
+std::size_t peak_of(const ProtocolRecord& record, const Section& section);
+
+/// The section from its peak on, time from there.
+TorqueRecord decay_of(const ProtocolRecord& record, const Section& section);
+
+/// Rows of a ramp; of steps the mean of the last half of each.
+TorqueRecord flow_curve_of(const ProtocolRecord& record, const Section& section);
 
 }  // namespace tremie

@@ -6,46 +6,26 @@
 #include <fstream>
 
 #include "libmpm/constitutive/constants.hpp"
-#include "rheometer/records/instrument_export.hpp"
 #include "rheometer/records/sections.hpp"
-#include "rheometer/records/table.hpp"
+#include "rheometer/tables/table.hpp"
+#include "rheometer/tables/text.hpp"
 
 namespace tremie {
 
-const std::vector<ColumnQuantity>& torque_quantities() {
-  static const std::vector<ColumnQuantity> all{
-      {"time",
-       {{"s", 1.0}, {"sec", 1.0}, {"ms", 1e-3}, {"min", 60.0}, {"h", 3600.0}},
-       "time_s, time_ms, time_min or time_h"},
-      {"speed",
-       {{"rev/s", two_pi},
-        {"rps", two_pi},
-        {"1/s", two_pi},
-        {"hz", two_pi},
-        {"rpm", two_pi / 60.0},
-        {"rev/min", two_pi / 60.0},
-        {"1/min", two_pi / 60.0},
-        {"u/min", two_pi / 60.0},
-        {"rad/s", 1.0},
-        {"deg/s", two_pi / 360.0}},
-       "speed_rev_per_s, speed_rpm, speed_rad_per_s or speed_deg_per_s"},
-      {"torque",
-       {{"nm", 1.0}, {"mnm", 1e-3}, {"knm", 1e3}, {"nmm", 1e-3}, {"ncm", 1e-2}, {"unm", 1e-6}},
-       "torque_N_m, torque_mN_m, torque_N_cm or torque_N_mm"}};
-  return all;
-}
-
 namespace {
+
+[[noreturn]] void fail_negative(const std::string& quantity, long line, std::size_t position,
+                                const std::string& name) {
+  throw RecordError(at_position(
+      name, line, position,
+      quantity + " is negative; give its magnitude, 0 or more" +
+          (quantity == "the torque" ? ", or the offset of the unloaded instrument, --torque-offset" : "")));
+}
 
 void require_not_negative(const std::vector<double>& column, const NumberTable& table, std::size_t position,
                           const char* quantity, const std::string& name) {
   for (std::size_t i = 0; i < column.size(); ++i)
-    if (column[i] < 0.0)
-      throw RecordError(at_position(name, table.line[i], position,
-                                    std::string(quantity) + " is negative; give its magnitude, 0 or more" +
-                                        (quantity == std::string_view("the torque")
-                                             ? ", or the offset of the unloaded instrument, --torque-offset"
-                                             : "")));
+    if (column[i] < 0.0) fail_negative(quantity, table.line[i], position, name);
 }
 
 /// A wrong unit in the header shows as a size that no rheometer has.
@@ -56,88 +36,139 @@ void require_below(const std::vector<double>& column, const NumberTable& table, 
       throw RecordError(at_position(name, table.line[i], position, what + "; is the header's unit right?"));
 }
 
-/// The row at which the material begins to break down: the largest torque of the rows in which the vane gathers speed.
-std::size_t first_row(const ProtocolRecord& r, const Section& s) {
-  std::size_t first = s.begin;
-  for (std::size_t i = s.begin + 1; i < s.end; ++i) {
-    if (r.torque[i] > r.torque[first]) first = i;
-    if (r.omega[i] > 0.97 * s.omega) break;
-  }
-  return first;
+bool is_flow_curve(const Section& s) {
+  return s.kind == SectionKind::flow_curve_up || s.kind == SectionKind::flow_curve_down;
 }
 
-/// Keeps the shear at a constant rate as a torque decay, the rows in which the vane gathers speed with it.
-double keep_decay(NumberTable& table, const std::string& name, std::vector<std::string>& understood) {
-  ProtocolRecord record = protocol_of(table);
-  const std::vector<Section> sections = find_sections(record);
-  const Section* found = nullptr;
+/// The first section that is a decay, at a constant rate rather than a start-up; else the first flow curve.
+const Section* section_to_fit(const std::vector<Section>& sections) {
+  const Section *decay = nullptr, *curve = nullptr;
   for (const Section& s : sections) {
     const bool shear = s.kind == SectionKind::constant_rate || s.kind == SectionKind::start_up;
     if (shear && s.end - s.begin >= 8 &&
-        (!found || (found->kind == SectionKind::start_up && s.kind != found->kind)))
-      found = &s;
+        (!decay || (decay->kind == SectionKind::start_up && s.kind != decay->kind)))
+      decay = &s;
+    if (is_flow_curve(s) && !curve) curve = &s;
   }
+  return decay ? decay : curve;
+}
+
+/// One section of a record with time and speed, as --protocol reads it.
+TorqueRecord one_section(const NumberTable& table, const std::string& name, bool sheared_evenly) {
+  ProtocolRecord record = protocol_of(table);
+  record.sheared_evenly = sheared_evenly;
+  const std::vector<Section> sections = find_sections(record);
+  const Section* found = section_to_fit(sections);
   if (!found)
-    throw RecordError(
-        at_position(name, table.header_line, 1,
-                    "time, speed and torque, but no 8 rows of one speed (within 3 %): no torque decay; for "
-                    "a flow curve leave the time column out, or give --protocol"));
-  const std::size_t begin = first_row(record, *found);
-  understood.push_back("first section of constant speed: lines " + std::to_string(table.line[begin]) +
-                       " to " + std::to_string(table.line[found->end - 1]) + ", " +
-                       std::to_string(found->omega / two_pi) + " rev/s; the other " +
-                       std::to_string(table.line.size() - (found->end - begin)) +
-                       " rows are not used (--protocol reads them all)");
-  const auto cut = [&](auto& v) {
-    v = {v.begin() + static_cast<std::ptrdiff_t>(begin), v.begin() + static_cast<std::ptrdiff_t>(found->end)};
-  };
-  table.column[0] = record.time;
-  if (begin > found->begin) {  // the breakdown starts here; else the shear starts with the section
-    understood.push_back("time: counted from the largest torque while the vane gathers speed, line " +
-                         std::to_string(table.line[begin]));
-    for (double& t : table.column[0]) t -= record.time[begin];
+    throw RecordError(at_position(
+        name, table.header_line, 1,
+        "time, speed and torque, but no 8 rows of one speed (within 3 %) and no ramp or steps: neither a "
+        "torque decay nor a flow curve; --protocol reads every section"));
+  const bool curve = is_flow_curve(*found);
+  TorqueRecord one = curve ? flow_curve_of(record, *found) : decay_of(record, *found);
+  const double speed = sheared_evenly ? found->omega / evenly_sheared_speed : found->omega / two_pi;
+  const char* unit = sheared_evenly ? " 1/s" : " rev/s";
+  one.is_section = true;
+  for (const Section& s : sections)
+    if (!curve && is_flow_curve(s)) one.flow_curves.push_back(flow_curve_of(record, s));
+  one.understood = table.understood;
+  one.understood.push_back(
+      std::string(curve ? "first flow curve" : "first section of constant speed") + ": lines " +
+      std::to_string(table.line[curve ? found->begin : peak_of(record, *found)]) + " to " +
+      std::to_string(table.line[found->end - 1]) + ", " + (curve ? "up to " : "") + text_of("%.6g", speed) +
+      unit + "; the other " + std::to_string(table.line.size() - (found->end - found->begin)) +
+      " rows are not used (--protocol reads them all)");
+  if (!curve && peak_of(record, *found) > found->begin)
+    one.understood.push_back("time: counted from the largest torque while the vane gathers speed, line " +
+                             std::to_string(one.line.front()));
+  return one;
+}
+
+/// "line 1 has 'a', 'b'".
+std::string seen(const NumberTable& table) {
+  std::string text = "line " + std::to_string(table.header_line) + " has ";
+  for (std::size_t i = 0; i < table.header.size() && i < 12; ++i)
+    text += (i > 0 ? ", '" : "'") + table.header[i].substr(0, 40) + "'";
+  return text + (table.header.size() > 12 ? ", ..." : "");
+}
+
+/// Shear rates and stresses in the columns of speed and torque.
+void take_shear(NumberTable& table) {
+  for (double& rate : table.column[q_shear_rate]) rate *= evenly_sheared_speed;
+  for (const auto& [to, from] : {std::pair(q_speed, q_shear_rate), std::pair(q_torque, q_shear_stress)}) {
+    table.column[to].swap(table.column[from]);
+    table.position[to] = table.position[from];
   }
-  for (auto& column : table.column) cut(column);
-  cut(table.line);
-  table.column[1].clear();
-  table.position[1] = 0;
-  return found->omega;
 }
 
 }  // namespace
 
-TorqueRecord parse_torque_record(std::string_view bytes, const std::string& name, double torque_offset) {
-  const std::string text = decoded_text(bytes, name);
-  const auto plain = plain_export(text, name);
-  NumberTable table = parse_number_table(plain ? plain->text : text, name, torque_quantities());
-  for (double& torque : table.column[2]) torque -= torque_offset;
-  TorqueRecord record;
-  if (plain) record.understood = plain->understood;
-  if (plain && table.position[0] != 0 && table.position[1] != 0 && !table.line.empty())
-    record.speed = keep_decay(table, name, record.understood);
-  const bool has_time = table.position[0] != 0, has_speed = table.position[1] != 0;
-  const std::string kinds = "a flow curve has speed_rev_per_s,torque_N_m, a torque decay time_s,torque_N_m";
-  if (table.position[2] == 0)
-    throw RecordError(at_position(name, table.header_line, 1, "no torque column in the header; " + kinds));
-  if (has_time == has_speed)
-    throw RecordError(at_position(
-        name, 1, 1,
-        std::string(has_time ? "both a time and a speed column" : "neither a time nor a speed column") +
-            "; " + kinds));
+void require_kinds(const NumberTable& table, const std::string& name) {
+  const bool has_time = table.position[q_time] != 0, has_speed = table.position[q_speed] != 0;
+  const std::string kinds =
+      "; " + seen(table) +
+      "; a flow curve has speed_rev_per_s,torque_N_m or shear_rate_per_s,shear_stress_Pa, a torque decay "
+      "time_s,torque_N_m; another column is named by --column \"torque=2 [mN m]\"";
+  if (table.position[q_torque] == 0)
+    throw RecordError(at_position(name, table.header_line, 1, "no torque column in the header" + kinds));
+  if (!has_time && !has_speed)
+    throw RecordError(at_position(name, table.header_line, 1, "neither a time nor a speed column" + kinds));
   if (table.line.empty()) throw RecordError(at_position(name, table.header_line, 1, "a header without rows"));
+}
 
-  record.kind = has_time ? RecordKind::torque_decay : RecordKind::flow_curve;
-  require_not_negative(table.column[2], table, table.position[2], "the torque", name);
-  if (has_speed) require_not_negative(table.column[1], table, table.position[1], "the speed", name);
-  require_below(table.column[2], table, table.position[2], 1e4, "the torque is above 10000 N.m", name);
-  require_below(table.column[1], table, table.position[1], 1e3, "the speed is above 1000 rad/s", name);
-  for (std::size_t i = 1; has_time && i < table.line.size(); ++i)
-    if (table.column[0][i] < table.column[0][i - 1])
-      throw RecordError(at_position(name, table.line[i], table.position[0],
+NumberTable torque_table(std::string_view text, const std::string& name, double torque_offset,
+                         const ReadOptions& options, bool& sheared_evenly) {
+  NumberTable table = parse_torque_table(text, name, options);
+  const bool shear = table.position[q_shear_stress] != 0 && table.position[q_torque] == 0;
+  if (shear && torque_offset != 0.0)
+    throw RecordError(at_position(name, table.header_line, table.position[q_shear_stress],
+                                  "a torque offset needs the torque; the record has shear stresses"));
+  if (!shear)
+    for (double& torque : table.column[q_torque]) torque -= torque_offset;
+  sheared_evenly = shear || options.stress_constant;
+  if (shear) {
+    take_shear(table);
+  } else if (options.stress_constant) {
+    for (double& torque : table.column[q_torque]) torque *= *options.stress_constant;
+    for (double& speed : table.column[q_speed])
+      speed *= options.strain_constant.value_or(1.0) * evenly_sheared_speed;
+  }
+  return table;
+}
+
+TorqueRecord parse_torque_record(std::string_view bytes, const std::string& name, double torque_offset,
+                                 const ReadOptions& options) {
+  bool sheared_evenly = false;
+  NumberTable table = torque_table(bytes, name, torque_offset, options, sheared_evenly);
+  require_kinds(table, name);
+  const bool has_speed = table.position[q_speed] != 0, both = has_speed && table.position[q_time] != 0;
+  const char* stress = sheared_evenly ? "the shear stress" : "the torque";
+  if (has_speed && !both)
+    require_not_negative(table.column[q_speed], table, table.position[q_speed], "the speed", name);
+  if (!sheared_evenly) {
+    require_below(table.column[q_torque], table, table.position[q_torque], 1e4,
+                  "the torque is above 10000 N.m", name);
+    require_below(table.column[q_speed], table, table.position[q_speed], 1e3, "the speed is above 1000 rad/s",
+                  name);
+  }
+  TorqueRecord record;
+  if (both) {
+    record = one_section(table, name, sheared_evenly);
+    for (std::size_t i = 0; i < record.torque.size(); ++i)
+      if (record.torque[i] < 0.0) fail_negative(stress, record.line[i], table.position[q_torque], name);
+    return record;
+  }
+  require_not_negative(table.column[q_torque], table, table.position[q_torque], stress, name);
+  for (std::size_t i = 1; !has_speed && i < table.line.size(); ++i)
+    if (table.column[q_time][i] < table.column[q_time][i - 1])
+      throw RecordError(at_position(name, table.line[i], table.position[q_time],
                                     "time runs backwards; the rows must ascend in time"));
-  record.time = std::move(table.column[0]);
-  record.omega = std::move(table.column[1]);
-  record.torque = std::move(table.column[2]);
+  record.kind = has_speed ? RecordKind::flow_curve : RecordKind::torque_decay;
+  record.sheared_evenly = sheared_evenly;
+  record.understood = std::move(table.understood);
+  record.time = std::move(table.column[q_time]);
+  record.omega = std::move(table.column[q_speed]);
+  record.torque = std::move(table.column[q_torque]);
   record.line = std::move(table.line);
   return record;
 }
@@ -152,8 +183,8 @@ std::string read_text_file(const std::string& path) {
   return text;
 }
 
-TorqueRecord read_torque_record(const std::string& path, double torque_offset) {
-  return parse_torque_record(read_text_file(path), path, torque_offset);
+TorqueRecord read_torque_record(const std::string& path, double torque_offset, const ReadOptions& options) {
+  return parse_torque_record(read_text_file(path), path, torque_offset, options);
 }
 
 }  // namespace tremie

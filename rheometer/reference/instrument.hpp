@@ -4,6 +4,8 @@
 
 #include <numbers>
 
+#include "rheometer/records/torque_record.hpp"
+
 namespace tremie {
 
 /// Vane (as the cylinder that it sweeps) in a container; the ICAR rheometer's by default. No end effects.
@@ -16,6 +18,17 @@ struct Instrument {
 /// Angular speed [rad/s] of n [rev/s].
 inline double angular_speed(double revolutions_per_second) {
   return 2.0 * std::numbers::pi * revolutions_per_second;
+}
+
+/// A gap so narrow that its shear is even, of which the torque [N m] is the shear stress [Pa] and the speed [rad/s] the
+/// shear rate [1/s] times evenly_sheared_speed: exact for a Bingham material, within 1e-5 for any.
+inline Instrument evenly_sheared() {
+  const double outer = 1.0 + evenly_sheared_gap;
+  const double height = (1.0 - 1.0 / (outer * outer)) / (4.0 * std::numbers::pi * evenly_sheared_speed);
+  return {1.0, height, outer};
+}
+inline bool is_evenly_sheared(const Instrument& instrument) {
+  return instrument.vane_radius == 1.0 && instrument.container_radius == 1.0 + evenly_sheared_gap;
 }
 
 /// Shear stress [Pa] on the cylinder of radius r [m] that carries the torque T [N m], equation (6).

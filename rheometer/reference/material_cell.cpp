@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "rheometer/records/table.hpp"
+#include "rheometer/tables/table.hpp"
 #include "rheometer/records/torque_record.hpp"
 #include "rheometer/reference/flocculation_ode.hpp"
 #include "rheometer/reference/references.hpp"

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "rheometer/records/number_rows.hpp"
+#include "rheometer/tables/number_rows.hpp"
 #include "rheometer/reference/reiner_riwlin.hpp"
 #include "rheometer/vane/table.hpp"
 

@@ -7,7 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "rheometer/records/number_rows.hpp"
+#include "rheometer/tables/number_rows.hpp"
 #include "rheometer/vane/table.hpp"
 
 namespace tremie {

@@ -6,7 +6,7 @@
 
 #include "libmpm/constitutive/constants.hpp"
 #include "rheometer/fits/flow_law.hpp"
-#include "rheometer/records/text.hpp"
+#include "rheometer/tables/text.hpp"
 
 namespace tremie {
 namespace {
@@ -37,6 +37,10 @@ FitOption number(Text name, FitOption::Member member, Text unit, Text help, FitO
 FitOption word(Text name, FitOption::Member member, const std::vector<std::string>& words, Text help,
                FitOption::Input input) {
   return {name, member, "", help, input, words};
+}
+
+FitOption text(Text name, FitOption::Member member, Text help, FitOption::Input input) {
+  return {name, member, "", help, input};
 }
 
 FitOption flag(Text name, FitOption::Member member, Text help) { return {name, member, "", help}; }
@@ -72,7 +76,21 @@ const std::vector<FitOption>& fit_options() {
       word("blades", &O::blades, {"none", "computed"},
            "what blades take less than the cylinder that they span; with --ends computed for a real vane",
            {11, "blades"}),
-      number("max_aggregate", &O::max_aggregate, "m", "largest grain, to judge the gap by: \"16 mm\"")};
+      number("max_aggregate", &O::max_aggregate, "m", "largest grain, to judge the gap by: \"16 mm\""),
+      text("geometry", &O::geometry,
+           "in place of the vane's lengths: a name of reference_data/geometries (fann_r1b1, cc27, ...), or "
+           "\"cone_plate, 25 mm, 1 deg\", \"parallel_plates, 25 mm, 1 mm\", \"cylinders, R_i, R_o, height\", "
+           "\"double_gap, R_1, R_2, R_3, R_4, height\", \"constants, Pa/(N.m), 1/s by rad/s\"",
+           {14, "geometry"}),
+      text("column", &O::column,
+           "the column of a quantity, where its name is not known: \"torque=3; speed=Kanal 2 [rpm]\"",
+           {15, "column"}),
+      word("decimal", &O::decimal, {"auto", "point", "comma"},
+           "decimal mark of the record, where its numbers do not tell", {16, "decimal"}),
+      number("torque_per_degree", &O::torque_per_degree, "N.m",
+             "of an instrument with a dial: \"0.036379 mN.m\"", {17, "torque_per_degree_N_m"}),
+      number("full_scale_torque", &O::full_scale_torque, "N.m",
+             "of readings in %: \"0.7187 mN.m\" (Brookfield RV)", {18, "full_scale_torque_N_m"})};
   return all;
 }
 
@@ -92,8 +110,10 @@ void set_option(FitOptions& options, const FitOption& option, double value) {
 void set_option(FitOptions& options, const FitOption& option, const std::string& word) {
   std::string allowed;
   for (const std::string& w : option.words) allowed += (allowed.empty() ? "\"" : ", \"") + w + "\"";
-  require(std::find(option.words.begin(), option.words.end(), word) != option.words.end(),
-          "\"" + word + "\" is not allowed; allowed: " + allowed);
+  require(option.is_word(), "\"" + word + "\" is a text; it takes none");
+  require(
+      option.words.empty() || std::find(option.words.begin(), option.words.end(), word) != option.words.end(),
+      "\"" + word + "\" is not allowed; allowed: " + allowed);
   options.*std::get<std::string FitOptions::*>(option.member) = word;
 }
 
@@ -102,7 +122,15 @@ void set_option(FitOptions& options, const FitOption& option, bool flag) {
   options.*std::get<bool FitOptions::*>(option.member) = flag;
 }
 
+bool has_default_lengths(const FitOptions& o) {
+  const Instrument usual;
+  return o.vane_radius == usual.vane_radius && o.vane_height == usual.vane_height &&
+         o.container_radius == usual.container_radius;
+}
+
 void check(const FitOptions& o, std::size_t records) {
+  if (!o.geometry.empty() && !has_default_lengths(o))
+    throw std::invalid_argument("--geometry stands for the vane's lengths; give it or them, not both");
   if (o.protocol && records > 1)
     throw std::invalid_argument("--protocol reads one record; " + std::to_string(records) + " are given");
   if (o.blades != "none" && (o.protocol || o.law != flow_laws().front().name))

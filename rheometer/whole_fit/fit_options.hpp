@@ -25,7 +25,13 @@ struct FitOptions {
   double torque_offset = 0.0;          ///< [N m] with its sign
   std::string ends = "none", blades = "none";
   std::optional<double> max_aggregate;
+  std::string geometry;  ///< geometries.hpp; empty: the three lengths above
+  std::string column, decimal = "auto";
+  std::optional<double> torque_per_degree, full_scale_torque;  ///< of a dial, of readings in % [N m]
 };
+
+/// Whether the three lengths are those of the default instrument.
+bool has_default_lengths(const FitOptions& options);
 
 enum class OptionRange { positive, not_negative, any };
 
@@ -44,7 +50,7 @@ struct FitOption {
   std::string unit;  ///< SI; empty for a word or a flag
   std::string help;
   Input input = {};
-  std::vector<std::string> words = {};        ///< that are allowed
+  std::vector<std::string> words = {};        ///< that are allowed; none: any text
   OptionRange range = OptionRange::positive;  ///< of a number
 
   bool is_flag() const { return std::holds_alternative<bool FitOptions::*>(member); }

@@ -4,38 +4,25 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "rheometer/records/text.hpp"
+#include "rheometer/tables/text.hpp"
 #include "rheometer/vane/vane_ends.hpp"
 #include "rheometer/whole_fit/fit_with_blades.hpp"
+#include "rheometer/whole_fit/record_reading.hpp"
 
 namespace tremie {
 namespace {
-
-struct Table {
-  std::string text, name;
-};
 
 /// What all fits of a call share.
 struct Fitting {
   const FitOptions& options;
   const std::vector<std::filesystem::path>& data_folders;
+  RecordReading reading;
 
+  const Geometry& geometry() const { return reading.geometry; }
   bool computed_ends() const { return options.ends == "computed"; }
 
-  /// The first table of reference_data/`folder`, which the option of the vane reads.
-  Table table(const char* folder, const char* option) const {
-    for (const auto& data : data_folders) {
-      std::error_code error;
-      for (const auto& entry : std::filesystem::directory_iterator(data / folder, error))
-        if (entry.path().extension() == ".csv")
-          return {read_text_file(entry.path().string()), entry.path().filename().string()};
-    }
-    const std::string name = option;
-    throw RecordError(name + " computed: its table, reference_data/" + folder +
-                      "/*.csv, is not there; allowed without it: " + name + " none");
-  }
-  Table ends() const { return table("vane_ends", "--ends"); }
-  Table blades() const { return table("vane_blades", "--blades"); }
+  DataTable ends() const { return data_table(data_folders, "vane_ends", "--ends computed"); }
+  DataTable blades() const { return data_table(data_folders, "vane_blades", "--blades computed"); }
 };
 
 /// Faults of a fit with the name of what it is of, if it has one.
@@ -48,11 +35,50 @@ auto named(const std::string& name, Call call) {
   }
 }
 
-TorqueRecord read(const RecordSource& source, double torque_offset) {
-  if (!source.record) return read_torque_record(source.name, torque_offset);
+TorqueRecord read(const Fitting& f, const RecordSource& source) {
+  const double torque_offset = f.options.torque_offset;
+  if (!source.record) return read_torque_record(source.name, torque_offset, f.reading.options);
   TorqueRecord record = *source.record;
   for (double& torque : record.torque) torque -= torque_offset;
+  if (!f.reading.options.stress_constant) return record;
+  for (double& torque : record.torque) torque *= *f.reading.options.stress_constant;
+  for (double& speed : record.omega) speed *= *f.reading.options.strain_constant * evenly_sheared_speed;
+  record.sheared_evenly = true;
   return record;
+}
+
+// --- evenly sheared
+
+/// Of parallel plates: the part of the stress that goes as the rate to the power n is 3/(n + 3) of the rim's.
+void correct_for_plates(FitResult& result) {
+  const auto scale = [](std::optional<ParameterEstimate>& e, double factor) {
+    if (!e || e->given) return;
+    e->value *= factor;
+    if (e->ci95) e->ci95 = Interval{e->ci95->low * factor, e->ci95->high * factor};
+  };
+  scale(result.mu, 4.0 / 3.0);
+  if (const auto& n = result.of_law["flow_index"])
+    scale(result.of_law["consistency"], (n->value + 3.0) / 3.0);
+  result.notes.push_back(
+      "parallel plates: corrected for the rate that falls from the rim to the axis, by the law fitted");
+}
+
+/// The fit of a record whose shear is even: no gap, no plug, no vane enters it.
+FitResult fit_evenly_sheared(const Fitting& f, const TorqueRecord& record, FitInput in) {
+  if (f.options.ends != "none" || f.options.blades != "none")
+    throw std::invalid_argument("--ends and --blades are a vane's; this record has shear rates and stresses");
+  if (f.geometry().plates && record.kind != RecordKind::flow_curve)
+    throw std::invalid_argument(
+        "a decay between parallel plates is not read: the rate falls from the rim to the axis");
+  if (f.geometry().plates && in.mu) *in.mu *= 0.75;
+  in.instrument = evenly_sheared();
+  FitResult result = fit(record, in);
+  if (f.geometry().plates && in.mu && result.mu) result.mu->value /= 0.75;
+  if (f.geometry().plates) correct_for_plates(result);
+  std::erase_if(result.notes, [](const std::string& note) { return note.starts_with("plug:"); });
+  result.sheared_evenly = true;
+  result.plug.reset(), result.plug_below.reset(), result.sheared_radius.reset();
+  return result;
 }
 
 // --- blades and ends of a fit
@@ -88,6 +114,7 @@ void note_beyond_blades(const TorqueRecord& record, const FitInput& in, const Bl
 FitResult fit_vane(const Fitting& f, const TorqueRecord& record, const FitInput& in) {
   if (f.options.blades == "none") {
     FitResult result = fit(record, in);
+    if (f.geometry().cylinders && f.options.ends == "none") return result;
     result.notes.push_back(
         f.options.ends == "none"
             ? taken_for_a_cylinder
@@ -125,17 +152,44 @@ TorqueRecord with_even_ends(const Fitting& f, const TorqueRecord& record, const 
   return even;
 }
 
+/// Yield stress and viscosity of a decay by the last Bingham flow curve of the same file, as --protocol takes them.
+void take_own_flow_curve(const TorqueRecord& record, FitInput& in, std::vector<std::string>& notes) {
+  if (in.tau_0 || in.mu) return;
+  for (auto curve = record.flow_curves.rbegin(); curve != record.flow_curves.rend(); ++curve) try {
+      FitInput of_curve = in;
+      of_curve.law = law_of_section(in);
+      const FitResult result = fit(*curve, of_curve);
+      if (!result.reasons.empty() || !result.tau_0 || !result.mu) continue;
+      in.tau_0 = std::max(0.0, result.tau_0->value), in.mu = result.mu->value;
+      notes.push_back(text_of("yield_stress, plastic_viscosity: of the flow curve on lines %ld to %ld",
+                              curve->line.front(), curve->line.back()));
+      return;
+    } catch (const std::invalid_argument&) {  // too few rows: no flow curve
+    }
+}
+
 /// `factor`: of the ends, which is in the height of `in` already; 1 for none.
 FitResult read_and_fit(const Fitting& f, const RecordSource& source, FitInput in, double factor) {
   return named(source.name, [&] {
-    const TorqueRecord record = read(source, f.options.torque_offset);
+    const TorqueRecord record = read(f, source);
+    if (in.omega && record.sheared_evenly) *in.omega *= f.geometry().strain_constant * evenly_sheared_speed;
+    if (in.omega && !(*in.omega > 0.0)) in.omega.reset();  // a record of shear rates has no speed
     if (!in.omega && record.speed > 0.0) in.omega = record.speed;
-    FitResult result = fit_vane(f, record, in);
+    if (!in.rest && record.rest > 0.0) in.rest = record.rest;
+    if (record.is_section && record.kind == RecordKind::flow_curve) in.law = law_of_section(in);
+    std::vector<std::string> notes{"geometry: " +
+                                   geometry_words(f.reading, f.options, record.sheared_evenly)};
+    notes.insert(notes.end(), record.understood.begin(), record.understood.end());
+    FitInput of_curve = in;
+    if (record.sheared_evenly) of_curve.instrument = evenly_sheared();
+    take_own_flow_curve(record, of_curve, notes);
+    in.tau_0 = of_curve.tau_0, in.mu = of_curve.mu;
+    FitResult result = record.sheared_evenly ? fit_evenly_sheared(f, record, in) : fit_vane(f, record, in);
     if (f.computed_ends() && factor != 1.0 && record.kind == RecordKind::flow_curve && result.tau_0 &&
         result.mu && result.mu->value > 0.0)
       result = fit_vane(f, with_even_ends(f, record, in, factor, result), in);
     note_beyond_ends(f, in, result);
-    result.notes.insert(result.notes.begin(), record.understood.begin(), record.understood.end());
+    result.notes.insert(result.notes.begin(), notes.begin(), notes.end());
     return result;
   });
 }
@@ -188,10 +242,25 @@ std::vector<MoveByEnds> moves_by_ends(const Fitting& f, const RecordSource& sour
   return moves;
 }
 
+void set_geometry(const Fitting& f, bool sheared_evenly, RecordFits& all) {
+  all.geometry = geometry_words(f.reading, f.options, sheared_evenly);
+  all.default_geometry = !sheared_evenly && f.reading.default_geometry;
+  if (sheared_evenly) all.instrument = evenly_sheared();
+}
+
 ProtocolFit fit_protocol(const Fitting& f, const std::string& file, const FitInput& in) {
   return named(file, [&] {
-    ProtocolFit p{parse_protocol_record(read_text_file(file), file, f.options.torque_offset), {}};
-    p.reading = read_protocol(p.record, in, {.compliance = f.options.instrument_compliance});
+    ProtocolFit p{
+        parse_protocol_record(read_text_file(file), file, f.options.torque_offset, f.reading.options), {}};
+    if (p.record.sheared_evenly && (f.options.ends != "none" || f.geometry().plates))
+      throw std::invalid_argument(f.geometry().plates
+                                      ? "--protocol does not read parallel plates"
+                                      : "--ends is a vane's; this record has shear rates and stresses");
+    p.record.understood.insert(p.record.understood.begin(),
+                               "geometry: " + geometry_words(f.reading, f.options, p.record.sheared_evenly));
+    FitInput of_record = in;
+    if (p.record.sheared_evenly) of_record.instrument = evenly_sheared();
+    p.reading = read_protocol(p.record, of_record, {.compliance = f.options.instrument_compliance});
     return p;
   });
 }
@@ -201,8 +270,9 @@ ProtocolFit fit_protocol(const Fitting& f, const std::string& file, const FitInp
 RecordFits fit_records(const std::vector<RecordSource>& sources, const FitOptions& options,
                        const std::vector<std::filesystem::path>& data_folders) {
   check(options, sources.size());
-  const Fitting f{options, data_folders};
+  const Fitting f{options, data_folders, reading_of(options, data_folders)};
   FitInput in = input_of(options);
+  if (f.geometry().cylinders) in.instrument = *f.geometry().cylinders;
   named("the instrument", [&] { check(in.instrument); });
   RecordFits all;
   all.options = options;
@@ -212,6 +282,7 @@ RecordFits fit_records(const std::vector<RecordSource>& sources, const FitOption
   if (options.protocol) {
     all.protocol = fit_protocol(f, sources.front().name, in);
     all.reasons = all.protocol->reading.reasons;
+    set_geometry(f, all.protocol->record.sheared_evenly, all);
     return all;
   }
   for (const RecordSource& source : sources) {
@@ -219,6 +290,7 @@ RecordFits fit_records(const std::vector<RecordSource>& sources, const FitOption
     for (const auto& why : all.fits.back().reasons)
       all.reasons.push_back(sources.size() > 1 ? source.name + ": " + why : why);
   }
+  set_geometry(f, all.fits.front().sheared_evenly, all);
   if (sources.size() > 1)
     all.means = replicate_means(all.fits);
   else

@@ -37,6 +37,8 @@ struct RecordFits {
   FitOptions options;
   double end_factor = 1.0;           ///< torque of side and ends over that of the side
   Instrument instrument;             ///< of the fits, the end factor in the vane's height
+  std::string geometry;              ///< in words, and whether it is the default one
+  bool default_geometry = false;     ///< nothing is said of the geometry, and the record needs it
   std::vector<FitResult> fits;       ///< one a record; none of a protocol
   std::vector<MoveByEnds> moves;     ///< of a single record with ends
   std::vector<ReplicateMean> means;  ///< of several records

@@ -46,6 +46,9 @@ TEST(Keys, TheNearestWordIsTheOneThatHoldsWhatWasTyped) {
   EXPECT_EQ(nearest("vane", known), "icar_vane");
   EXPECT_EQ(nearest("slump", known), "slump_flow");
   EXPECT_EQ(nearest("sel", known), "cell");
+  EXPECT_EQ(nearest("slumpflow", known), "slump_flow");
+  for (const char* far : {"marsh_cone", "gravity", "triaxial", "penetrometer"})
+    EXPECT_EQ(nearest(far, known), "") << far;
 }
 
 TEST(Keys, RepeatedTables) {

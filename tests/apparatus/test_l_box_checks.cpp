@@ -5,6 +5,7 @@
 #include <atomic>
 
 #include "apparatus/l_box/checks.hpp"
+#include "apparatus/l_box/reading.hpp"
 #include "apparatus/parts/bars.hpp"
 #include "apparatus/registry/registry.hpp"
 
@@ -34,6 +35,51 @@ TEST(LBoxChecks, CellsThatDoNotResolveTheDepthAreMarked) {
   EXPECT_TRUE(reasons("20 mm").empty());
   for (const char* cell : {"50 mm", "100 mm", "[\"50 mm\", \"20 mm\"]", "[\"20 mm\", \"50 mm\"]"})
     EXPECT_EQ(reasons(cell).size(), 1u) << cell;
+}
+
+// A gate that does not open lets nothing through in a minute, on the default cells and on coarser ones.
+TEST(LBoxChecks, NothingPassesAShutGate) {
+  for (const char* cell : {"25 mm", "10 mm"}) {
+    const auto outcome = scene::run(scene::read_text(
+        plane, "plane.toml",
+        {std::string("model.cell=") + cell, "test.duration=60 s", "test.gate_speed=1e-9 m/s"}));
+    EXPECT_EQ(scene::find_number(outcome, "volume_in_channel_m3"), 0.0) << cell;
+    EXPECT_NEAR(*scene::find_number(outcome, "h1_mm"), 600.0, 0.6) << cell;
+    EXPECT_TRUE(outcome.checks.reasons.empty()) << cell;
+  }
+}
+
+// Any box has a face of the grid where its gate stands, within a hundredth of the column.
+TEST(LBoxChecks, TheGateStandsOnAFaceOfTheGrid) {
+  for (const auto& [column, channel] : {std::pair{0.1, 0.7}, {0.097, 0.713}, {0.12, 0.55}})
+    for (double cell : {0.025, 0.015, 0.0125, 0.01, 0.00625, 0.005}) {
+      const Axis axis = l_box::along_the_channel({.column_length = column, .channel_length = channel}, cell);
+      EXPECT_NEAR(axis.length(), column + channel, 1e-12);
+      EXPECT_NEAR(axis.h / cell, 1.0, 0.3) << cell;
+      EXPECT_NEAR(l_box::place_of_gate(axis) / column, 1.0, 0.01) << column << " " << cell;
+    }
+}
+
+// 1 of 4 points crosses half a metre up, while the opening reaches up to 0.15 m: a quarter went through. One that comes out
+// below it did not.
+TEST(LBoxChecks, WhatCrossesTheWallAboveTheOpeningIsCounted) {
+  Body<PlaneStrain> body;
+  body.grid.axes[0] = l_box::along_the_channel({}, 0.01);
+  body.grid.axes[1] = {.h = 0.01};
+  for (double y : {0.5, 0.3, 0.1, 0.05}) add_point<2>(body.points, {0.099, y}, 1.0, 1e-4, 0.0);
+  const auto from = body.points.x;
+  body.points.x[0][0] = body.points.x[3][0] = 0.101;
+  EXPECT_NEAR(l_box::share_through_the_wall(body, from, 0.15), 0.25, 1e-12);
+}
+
+// A thousandth through the wall is nothing, three thousandths are a leak.
+TEST(LBoxChecks, ConcreteThatGoesThroughTheWallIsMarked) {
+  for (const auto& [through, marked] : {std::pair{0.003, true}, {0.001, false}}) {
+    l_box::Outcome outcome;
+    outcome.series.resize(2);
+    outcome.series.back().through_the_wall = through;
+    EXPECT_EQ(!l_box::went_through_the_wall({{}, outcome}).empty(), marked) << through;
+  }
 }
 
 // While the column is high nothing is thin.

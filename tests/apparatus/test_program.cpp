@@ -135,6 +135,47 @@ TEST_F(Program, OutputThatIsLostIsAFault) {
   EXPECT_EQ(tremie("check quick.toml > /dev/full").code, 1);
 }
 
+// Against 540 mm of a mix of 1 MPa: 567 mm at 20 kPa, 654 mm at 5 kPa (20 and 60 % of the volume); at 100 Pa there is no body.
+TEST_F(Program, AMixThatItsWeightSqueezesIsFlaggedOrEnded) {
+  for (const char* K : {"20 kPa", "5 kPa", "100 Pa"}) {
+    const Result result =
+        tremie("run quick.toml --out soft --force --quiet --set mix.bulk_modulus='" + std::string(K) + "'");
+    EXPECT_EQ(result.code, 3) << K;
+    EXPECT_NE(result.text.find("larger mix.bulk_modulus"), std::string::npos) << K << result.text;
+  }
+  EXPECT_NE(test::read_file(folder_ / "soft/summary.json").find("the run ends there"), std::string::npos);
+  EXPECT_EQ(tremie("run quick.toml --out soft --force --quiet --set mix.bulk_modulus='50 kPa'").code, 0);
+}
+
+TEST_F(Program, ABodyThatDoesNotMoveIsToldAsSuch) {
+  const Result result = tremie("run quick.toml --out still --set mix.yield_stress='54 kPa'");
+  EXPECT_NE(result.text.find("moved           no"), std::string::npos) << result.text;
+  const auto note = result.text.find("54 kPa is unusual");
+  EXPECT_NE(note, std::string::npos) << result.text;
+  EXPECT_EQ(result.text.find("is unusual", note + 10), std::string::npos) << result.text;
+}
+
+TEST_F(Program, MoreThreadsThanProcessorsAreNotedOnce) {
+  const std::string run = "run quick.toml --out t --force --threads 64";
+  const Result result = tremie(run);
+  EXPECT_EQ(result.text.find("note: --threads"), result.text.rfind("note: --threads")) << result.text;
+  EXPECT_EQ(tremie(run + " --quiet").text.find("note"), std::string::npos);
+}
+
+// A message that nobody can read changes no exit code; it once ended the program with 134.
+TEST_F(Program, ClosedAndFullStreamsKeepTheExitCode) {
+  test::write_file(folder_ / "bad.toml", "apparatus = \"slump_flow\"\nmix = \"nix\"\n");
+  for (const auto& [arguments, code] :
+       std::vector<std::pair<std::string, int>>{{"run quick.toml --out a --force", 0},
+                                                {"run bad.toml", 2},
+                                                {"check bad.toml", 2},
+                                                {"new nix", 2},
+                                                {"rum", 2}}) {
+    for (const char* streams : {" 2>&-", " 2>/dev/full", " >&-", " >/dev/full", " >&- 2>&-"})
+      EXPECT_EQ(tremie(arguments + streams).code, code) << arguments << streams;
+  }
+}
+
 TEST_F(Program, WhatASchemeCannotRunIsToldWithItsPlace) {
   test::write_file(
       folder_ / "bad.toml",

@@ -328,7 +328,9 @@ TEST(RunFolder, AnEarlierResultIsReplacedOnlyWhenAsked) {
 TEST(RunFolder, AnEmptyFolderIsFilled) {
   const test::TemporaryFolder folder;
   publish(folder.path(), "1", false);
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 2);
+  for (const char* name : {"scene.toml", "summary.json", ".tremie"})
+    EXPECT_TRUE(std::filesystem::exists(folder / name)) << name;
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 3);
 }
 
 TEST(RunFolder, WhatIsNoResultIsNeverReplaced) {
@@ -338,6 +340,72 @@ TEST(RunFolder, WhatIsNoResultIsNeverReplaced) {
   EXPECT_THROW(RunFolder(folder / "thesis.txt", true), scene::InputError);
   EXPECT_THROW(RunFolder(folder / "thesis.txt/run", true), scene::InputError);
   EXPECT_EQ(test::read_file(folder / "thesis.txt"), "years of work");
+}
+
+/// Whether the folder is refused, with and without --force, by a message that names this.
+void expect_refused(const std::filesystem::path& folder, const std::string& name,
+                    const std::vector<std::filesystem::path>& inputs = {}) {
+  for (const bool replace : {false, true}) try {
+      RunFolder(folder, replace, inputs);
+      FAIL() << name << " is not refused";
+    } catch (const scene::InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(name), std::string::npos) << error.what();
+    }
+}
+
+TEST(RunFolder, AForeignOrChangedFileBesideAResultIsNamedAndKept) {
+  const test::TemporaryFolder folder;
+  publish(folder / "run", "1", false);
+  for (const char* name : {"notes.txt", "My record.csv", "scene_old.toml", "sub/deep.txt"}) {
+    std::filesystem::create_directories((folder / "run" / name).parent_path());
+    test::write_file(folder / "run" / name, "mine");
+    expect_refused(folder / "run", std::string(name).substr(0, 3));
+    EXPECT_EQ(test::read_file(folder / "run" / name), "mine");
+    std::filesystem::remove_all(folder / "run" / *std::filesystem::path(name).begin());
+  }
+  std::filesystem::create_directory_symlink(folder.path(), folder / "run/frames");
+  expect_refused(folder / "run", "frames");
+  std::filesystem::remove(folder / "run/frames");
+  publish(folder / "run", "2", true);
+  test::write_file(folder / "run/scene.toml", "changed");
+  expect_refused(folder / "run", "scene.toml");
+}
+
+TEST(RunFolder, WhatACommandReadsIsNotReplaced) {
+  const test::TemporaryFolder folder;
+  publish(folder / "run", "1", false);
+  std::filesystem::create_directory_symlink(folder / "run", folder / "link");
+  expect_refused(folder / "run", "scene.toml", {folder / "run/scene.toml"});
+  expect_refused(folder / "link", "scene.toml", {folder / "run/scene.toml"});
+  expect_refused(folder / "run", "link", {folder / "link"});
+  publish(folder / "other", "1", false);
+  EXPECT_NO_THROW(RunFolder(folder / "other", true, {folder / "run"}));
+}
+
+TEST(RunFolder, ALinkIsFollowedAndADanglingOneRefused) {
+  const test::TemporaryFolder folder;
+  publish(folder / "run", "1", false);
+  std::filesystem::create_directory_symlink("run", folder / "link");
+  std::filesystem::create_directory_symlink("nowhere", folder / "dangling");
+  publish(folder / "link", "2", true);
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
+  EXPECT_EQ(test::read_file(folder / "run/summary.json"), "2");
+  expect_refused(folder / "dangling", "nowhere");
+  expect_refused(folder / "dangling/deeper", "nowhere");
+}
+
+TEST(RunFolder, WhatOthersPutThereDuringTheRunStays) {
+  const test::TemporaryFolder folder;
+  publish(folder / "run", "1", false);
+  {
+    RunFolder run(folder / "run", true);
+    io::write_text(run.staging() / "summary.json", "2");
+    test::write_file(folder / "run/notes.txt", "mine");
+    run.publish();
+  }
+  EXPECT_EQ(test::read_file(folder / "run/summary.json"), "2");
+  EXPECT_EQ(test::read_file(folder / "run/notes.txt"), "mine");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
 }
 
 }  // namespace

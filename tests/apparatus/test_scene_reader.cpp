@@ -8,6 +8,7 @@
 
 #include "apparatus/parts/cone/cone_test.hpp"
 #include "apparatus/registry/registry.hpp"
+#include "apparatus/registry/usual_ranges.hpp"
 #include "apparatus/scene/resolved.hpp"
 #include "tests/apparatus/complaint.hpp"
 #include "tests/apparatus/temporary_folder.hpp"
@@ -27,6 +28,47 @@ using test::complaint;
 using test::says;
 
 const cone::Scene& slump(const Scene& scene) { return std::any_cast<const cone::Scene&>(scene.test); }
+
+/// The notes on a slump flow of Mix A with these values set, each with this part.
+int notes_with(const std::vector<std::string>& overrides, const std::string& part) {
+  int n = 0;
+  for (const auto& note : read_text(mix_a, "a.toml", overrides).notes)
+    n += note.find(part) != std::string::npos ? 1 : 0;
+  return n;
+}
+
+TEST(SceneReader, AValueThatNoConcreteHasIsNotedOnceWithItsLikelySlip) {
+  EXPECT_TRUE(read_text(mix_a, "a.toml").notes.empty());
+  EXPECT_TRUE(
+      read_text(thixotropic, "a.toml", {"test.rest=240 s", "mix.yield_stress=1.5 kPa"}).notes.empty());
+  EXPECT_EQ(notes_with({"mix.yield_stress=54 kPa"}, "54 kPa is unusual"), 1);
+  EXPECT_EQ(notes_with({"mix.yield_stress=54 kPa"}, "kPa may stand for Pa"), 1);
+  EXPECT_EQ(notes_with({"mix.density=2.4 kg/m3"}, "kg/m3 may stand for g/cm3"), 1);
+  EXPECT_EQ(notes_with({"mix.plastic_viscosity=35.8 mPa.s"}, "mPa.s may stand for Pa.s"), 1);
+  EXPECT_EQ(notes_with({"cone.height=300 cm"}, "cm may stand for mm"), 1);
+  EXPECT_EQ(notes_with({"test.lift_speed=15 m/s"}, "m/s may stand for cm/s"), 1);
+  EXPECT_EQ(notes_with({"measured.spread=590 cm"}, "cm may stand for mm"), 1);
+}
+
+TEST(SceneReader, TheDefaultsOfEveryApparatusAreUsual) {
+  for (const Apparatus& apparatus : all_apparatus())
+    for (const UsualRange& range : usual_ranges()) {
+      const std::string key = range.key;
+      const Section* section = find_section(apparatus.keys.schema, key.substr(0, key.rfind('.')));
+      const Key* about = section ? find_key(*section, key.substr(key.rfind('.') + 1)) : nullptr;
+      if (!about || about->fallback.empty() || about->fallback[0] == '[') continue;
+      const double value = parse_quantity(about->fallback, about->dimension);
+      EXPECT_TRUE(value == 0.0 || (value >= range.low && value <= range.high))
+          << apparatus.keys.name << " " << key;
+    }
+}
+
+// 2400 kg/m3 times 9.81 m/s2 times 0.3 m are 7.06 kPa: 1 - exp(-7.06/50) = 13.2 %; below 2 % nothing is said.
+TEST(SceneReader, WhatASoftMixLosesByItsWeightIsNoted) {
+  EXPECT_EQ(notes_with({"mix.bulk_modulus=50 kPa"}, "takes 13 % of the volume at the foot"), 1);
+  EXPECT_EQ(notes_with({"mix.bulk_modulus=400 kPa"}, "bulk_modulus"), 0);
+  EXPECT_EQ(notes_with({"preset=paper"}, "33.3 kPa is soft"), 1);
+}
 
 TEST(SceneReader, DefaultsAreTheDocumentedOnes) {
   const Scene scene = read_text(thixotropic, "a.toml");

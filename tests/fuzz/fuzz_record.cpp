@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "rheometer/records/table.hpp"
+#include "rheometer/tables/table.hpp"
 #include "rheometer/records/torque_record.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "rheometer/fits/fit.hpp"
-#include "rheometer/records/instrument_export.hpp"
+#include "rheometer/records/torque_record.hpp"
 
 namespace tremie {
 namespace {

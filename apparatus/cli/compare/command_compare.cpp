@@ -9,6 +9,7 @@
 #include "apparatus/cli/commands.hpp"
 #include "apparatus/cli/options/command.hpp"
 #include "apparatus/cli/options/json_option.hpp"
+#include "apparatus/cli/process/say.hpp"
 #include "apparatus/report/compare/comparison.hpp"
 #include "apparatus/report/rheometer_files.hpp"
 #include "apparatus/report/run_folder.hpp"
@@ -57,16 +58,16 @@ bool states_errors(const report::Comparison& comparison) {
 }
 
 void print_text(const report::Comparison& comparison) {
-  fmt::print("{}\n", report::comparison_headline(comparison));
-  if (states_errors(comparison)) fmt::print("{}\n", report::error_sentence(comparison));
-  if (const auto text = report::scene_sentence(comparison); !text.empty()) fmt::print("{}\n", text);
+  say("{}\n", report::comparison_headline(comparison));
+  if (states_errors(comparison)) say("{}\n", report::error_sentence(comparison));
+  if (const auto text = report::scene_sentence(comparison); !text.empty()) say("{}\n", text);
   std::size_t longest = 0;
   for (const auto& row : comparison.results) longest = std::max(longest, row.key.size());
   for (const auto& row : comparison.results) {
     if (!row.differs) continue;
     std::vector<std::string> values;
     for (std::size_t i = 0; i < row.texts.size(); ++i) values.push_back(value_text(row, i));
-    fmt::print("{:<{}}  {}\n", row.key, longest, fmt::join(values, " | "));
+    say("{:<{}}  {}\n", row.key, longest, fmt::join(values, " | "));
   }
 }
 
@@ -74,15 +75,17 @@ int run_comparison(const CompareOptions& options) {
   const Stopwatch watch;
   const auto comparison = report::compare(options.folders);
   const HeldInterrupts held;  // outlives the folder
-  report::RunFolder folder(options.out, options.force);
+  report::RunFolder folder(
+      options.out, options.force,
+      std::vector<std::filesystem::path>(options.folders.begin(), options.folders.end()));
   write(comparison, options, watch, folder.staging());
   folder.publish();
   const auto reasons = report::comparison_reasons(comparison);
-  for (const auto& reason : reasons) fmt::print(stderr, "not to be trusted: {}\n", reason);
+  for (const auto& reason : reasons) say(stderr, "not to be trusted: {}\n", reason);
   if (options.json) print_result_as_json(folder.target());
   if (!options.quiet && !options.json) {
     print_text(comparison);
-    fmt::print("written to {}\n", folder.target().string());
+    say("written to {}\n", folder.target().string());
   }
   return reasons.empty() ? done : not_to_be_trusted;
 }

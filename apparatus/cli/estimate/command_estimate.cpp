@@ -1,12 +1,15 @@
 // tremie estimate: yield stress and plastic viscosity from a spread or a slump, in milliseconds.
 
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <fstream>
 #include <memory>
 
 #include "apparatus/cli/commands.hpp"
 #include "apparatus/cli/options/command.hpp"
 #include "apparatus/cli/options/quantity.hpp"
+#include "apparatus/cli/process/say.hpp"
 #include "apparatus/estimate/estimate.hpp"
 #include "apparatus/estimate/estimate_json.hpp"
 #include "apparatus/estimate/rheograph.hpp"
@@ -53,20 +56,21 @@ estimate::Measured measured_of(const EstimateOptions& o, const estimate::Mould& 
 void print_interval(const char* name, const std::optional<estimate::Interval>& i, const char* unit,
                     const char* none) {
   if (i)
-    fmt::print("{:<24} {} {} [{}, {}]\n", name, scene::rounded(i->value, 3), unit, scene::rounded(i->low, 3),
-               scene::rounded(i->high, 3));
+    say("{:<24} {} {} [{}, {}]\n", name, scene::rounded(i->value, 3), unit, scene::rounded(i->low, 3),
+        scene::rounded(i->high, 3));
   else
-    fmt::print("{:<24} {}\n", name, none);
+    say("{:<24} {}\n", name, none);
 }
 
 void print_text(const EstimateOptions& o, const estimate::Measured& m, const estimate::MixEstimate& e) {
+  answer("");
   print_interval("yield stress", e.tau_0, "Pa", "not in the table");
   print_interval("plastic viscosity", e.mu, "Pa.s",
                  o.t500.empty() ? "takes --t500" : "not told by this t500");
   if (m.spread) {
-    fmt::print("{:<24} {} Pa (thin layer at rest, Roussel and Coussot)\n", "by the closed forms",
-               scene::rounded(*e.tau_0_thin_layer, 3));
-    fmt::print("{:<24} {} Pa (with the plug's normal stress)\n", "", scene::rounded(*e.tau_0_plug, 3));
+    say("{:<24} {} Pa (thin layer at rest, Roussel and Coussot)\n", "by the closed forms",
+        scene::rounded(*e.tau_0_thin_layer, 3));
+    say("{:<24} {} Pa (with the plug's normal stress)\n", "", scene::rounded(*e.tau_0_plug, 3));
   }
   std::string read;
   const auto add = [&](bool given, const char* name, double error, const char* unit) {
@@ -75,8 +79,8 @@ void print_text(const EstimateOptions& o, const estimate::Measured& m, const est
   add(m.spread.has_value(), "spread", 1e3 * m.spread_error, "mm");
   add(m.slump.has_value(), "slump", 1e3 * m.slump_error, "mm");
   add(m.t500.has_value(), "t500", m.t500_error, "s");
-  fmt::print("{:<24} 95 %; {:.0f} kg/m3{} (one standard error), at rest, a floor that holds\n", "intervals",
-             m.density, read);
+  say("{:<24} 95 %; {:.0f} kg/m3{} (one standard error), at rest, a floor that holds\n", "intervals",
+      m.density, read);
 }
 
 /// The published mixes of reference_data that have a yield stress and a viscosity.
@@ -101,6 +105,17 @@ std::vector<estimate::NamedMix> published_mixes() {
   return mixes;
 }
 
+/// Whether a file is an SVG that was drawn here.
+bool is_rheograph(const std::filesystem::path& file) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(std::filesystem::symlink_status(file, error))) return false;
+  std::ifstream stream(file, std::ios::binary);
+  std::string begin(400, '\0');
+  stream.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  return begin.starts_with("<svg") &&
+         begin.find("Slump flow and t500 of fresh concrete") != std::string::npos;
+}
+
 /// SVG, or PDF by rsvg-convert.
 void draw_chart(const EstimateOptions& options, const estimate::SlumpTable& table,
                 const std::optional<estimate::MixEstimate>& result) {
@@ -115,7 +130,12 @@ void draw_chart(const EstimateOptions& options, const estimate::SlumpTable& tabl
     throw scene::InputError(
         "--chart: a PDF takes rsvg-convert (librsvg2-bin), which is not installed here; a file.svg "
         "takes nothing");
-  const fs::path svg = pdf ? fs::path(file.string() + ".svg") : file;
+  std::error_code error;
+  if (fs::exists(fs::symlink_status(file, error)) && !is_rheograph(file))
+    throw scene::InputError(fmt::format(
+        "--chart: {} is there already, and is no SVG of this command: not replaced", file.string()));
+  const fs::path svg =
+      pdf ? file.parent_path() / fmt::format(".{}.{}.svg", file.filename().string(), getpid()) : file;
   io::write_text(svg, estimate::rheograph_svg(table, published_mixes(), result));
   if (!pdf) return;
   const auto code = report::run_program(
@@ -137,8 +157,8 @@ int run_estimate(const EstimateOptions& options) {
   const auto measured = measured_of(options, table.mould);
   const auto result = estimate::estimate(table, measured);
   if (!options.chart.empty()) draw_chart(options, estimate::at_density(table, measured.density), result);
-  options.json ? fmt::print("{}\n", estimate::estimate_json(result)) : print_text(options, measured, result);
-  for (const auto& reason : result.reasons) fmt::print(stderr, "not to be trusted: {}\n", reason);
+  options.json ? answer(estimate::estimate_json(result) + "\n") : print_text(options, measured, result);
+  for (const auto& reason : result.reasons) say(stderr, "not to be trusted: {}\n", reason);
   return result.reasons.empty() ? done : not_to_be_trusted;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "apparatus/cli/fit/fit_protocol.hpp"
+#include "apparatus/cli/process/say.hpp"
 #include "apparatus/scene/units.hpp"
 
 namespace tremie::cli {
@@ -14,15 +15,14 @@ using scene::rounded;
 void print_estimate(const std::string& name, const std::optional<ParameterEstimate>& e,
                     const std::string& unit) {
   if (!e)
-    fmt::print("{:<22} not told by this record\n", name);
+    say("{:<22} not told by this record\n", name);
   else if (e->given)
-    fmt::print("{:<22} {} {} (given)\n", name, rounded(e->value, 4), unit);
+    say("{:<22} {} {} (given)\n", name, rounded(e->value, 4), unit);
   else if (!e->ci95)
-    fmt::print("{:<22} {} {} (no interval: as many readings as parameters)\n", name, rounded(e->value, 4),
-               unit);
+    say("{:<22} {} {} (no interval: as many readings as parameters)\n", name, rounded(e->value, 4), unit);
   else
-    fmt::print("{:<22} {} {} [{}, {}]\n", name, rounded(e->value, 4), unit, rounded(e->ci95->low, 4),
-               rounded(e->ci95->high, 4));
+    say("{:<22} {} {} [{}, {}]\n", name, rounded(e->value, 4), unit, rounded(e->ci95->low, 4),
+        rounded(e->ci95->high, 4));
 }
 
 std::string unit_on_screen(const FitParameter& parameter) {
@@ -35,14 +35,14 @@ namespace {
 
 void print_candidates(const FitResult& r) {
   if (r.candidates.size() > 1) {
-    fmt::print("{:<22} {:>10} {:>9} {:>11} {:>8} {:>8}\n", "model", "parameters", "scatter", "correlation",
-               "AICc", "fits");
+    say("{:<22} {:>10} {:>9} {:>11} {:>8} {:>8}\n", "model", "parameters", "scatter", "correlation", "AICc",
+        "fits");
     for (const Candidate& c : r.candidates)
-      fmt::print("{:<22} {:>10} {:>7.2f} % {:>11.2f} {:>8} {:>8}\n", (c.chosen ? "* " : "  ") + c.name,
-                 c.parameters, 100.0 * c.scatter, c.correlation,
-                 c.difference ? fmt::format("+{:.1f}", *c.difference) : "-", c.fits ? "yes" : "no");
+      say("{:<22} {:>10} {:>7.2f} % {:>11.2f} {:>8} {:>8}\n", (c.chosen ? "* " : "  ") + c.name, c.parameters,
+          100.0 * c.scatter, c.correlation, c.difference ? fmt::format("+{:.1f}", *c.difference) : "-",
+          c.fits ? "yes" : "no");
   }
-  if (!r.choice.empty()) fmt::print("{:<22} {}\n", "chosen", r.choice);
+  if (!r.choice.empty()) say("{:<22} {}\n", "chosen", r.choice);
 }
 
 void print_result(const FitResult& r) {
@@ -51,41 +51,40 @@ void print_result(const FitResult& r) {
     if (const auto e = value_of(r, p); e || p.member) print_estimate(p.label, e, unit_on_screen(p));
   if (r.apparent) {
     const ApparentAlpha& all = r.apparent->windows.back();
-    fmt::print("{:<22} {:.4g} (exponential over {:.4g} s, shear rate 2 Omega/(1 - Ri^2/Ro^2) = {:.4g} 1/s)\n",
-               "apparent alpha", all.alpha_newtonian_rate, all.window, r.apparent->newtonian_rate);
+    say("{:<22} {:.4g} (exponential over {:.4g} s, shear rate 2 Omega/(1 - Ri^2/Ro^2) = {:.4g} 1/s)\n",
+        "apparent alpha", all.alpha_newtonian_rate, all.window, r.apparent->newtonian_rate);
   }
   if (r.exponent) print_estimate("exponent n", r.exponent, "");
-  if (r.plug) fmt::print("{:<22} {}\n", "plug", *r.plug ? "yes" : "no");
-  fmt::print("{:<22} {} used, {} dropped, scatter {:.2g} %\n", "readings", r.readings, r.dropped_count,
-             100.0 * r.scatter);
+  if (r.plug) say("{:<22} {}\n", "plug", *r.plug ? "yes" : "no");
+  say("{:<22} {} used, {} dropped, scatter {:.2g} %\n", "readings", r.readings, r.dropped_count,
+      100.0 * r.scatter);
   constexpr std::size_t most = 10;
   for (std::size_t i = 0; i < std::min(most, r.dropped.size()); ++i)
-    fmt::print("{:<22} line {}: {}\n", "dropped", r.dropped[i].line, r.dropped[i].reason);
-  if (r.dropped.size() > most) fmt::print("{:<22} and more, named in summary.json\n", "dropped");
-  for (const auto& note : r.notes) fmt::print("{:<22} {}\n", "note", note);
+    say("{:<22} line {}: {}\n", "dropped", r.dropped[i].line, r.dropped[i].reason);
+  if (r.dropped.size() > most) say("{:<22} and more, named in summary.json\n", "dropped");
+  for (const auto& note : r.notes) say("{:<22} {}\n", "note", note);
 }
 
 std::string percent(const std::optional<double>& v) { return v ? fmt::format("{:.2g} %", 100.0 * *v) : "-"; }
 
 void print_means(const RecordFits& fits) {
-  fmt::print("--- mean of {} records\n{:<22} {:>10} {:>24} {:>9} {:>9} {:>13}\n", fits.fits.size(), "",
-             "mean", "95 %", "between", "within", "laboratories");
+  say("--- mean of {} records\n{:<22} {:>10} {:>24} {:>9} {:>9} {:>13}\n", fits.fits.size(), "", "mean",
+      "95 %", "between", "within", "laboratories");
   for (const ReplicateMean& m : fits.means)
-    fmt::print("{:<22} {:>10} {:>24} {:>9} {:>9} {:>13}\n", m.parameter.name, rounded(m.mean.value, 4),
-               m.mean.ci95 ? fmt::format("[{}, {}] {}", rounded(m.mean.ci95->low, 4),
-                                         rounded(m.mean.ci95->high, 4), m.parameter.unit)
-                           : "-",
-               percent(m.between), percent(m.within), percent(m.parameter.laboratories));
-  fmt::print(
-      "between laboratories one cement paste scattered by 27 % in yield stress and 24 % in viscosity "
+    say("{:<22} {:>10} {:>24} {:>9} {:>9} {:>13}\n", m.parameter.name, rounded(m.mean.value, 4),
+        m.mean.ci95 ? fmt::format("[{}, {}] {}", rounded(m.mean.ci95->low, 4), rounded(m.mean.ci95->high, 4),
+                                  m.parameter.unit)
+                    : "-",
+        percent(m.between), percent(m.within), percent(m.parameter.laboratories));
+  say("between laboratories one cement paste scattered by 27 % in yield stress and 24 % in viscosity "
       "(Haist et al. 2020)\n");
 }
 
 void print_ends(const RecordFits& fits) {
   if (fits.options.ends == "none") return;
-  fmt::print("{:<22} {}: torque {:.4g} times that of the side", "ends", fits.options.ends, fits.end_factor);
-  for (const MoveByEnds& m : fits.moves) fmt::print("; {} {:+.1f} %", m.key, 100.0 * m.change);
-  fmt::print("\n");
+  say("{:<22} {}: torque {:.4g} times that of the side", "ends", fits.options.ends, fits.end_factor);
+  for (const MoveByEnds& m : fits.moves) say("; {} {:+.1f} %", m.key, 100.0 * m.change);
+  say("\n");
 }
 
 }  // namespace
@@ -94,10 +93,10 @@ void print_fits(const RecordFits& fits, const std::vector<std::string>& records)
   if (fits.protocol) {
     print_protocol(fits.protocol->reading);
     print_ends(fits);
-    for (const auto& note : fits.protocol->record.understood) fmt::print("{:<22} {}\n", "read", note);
+    for (const auto& note : fits.protocol->record.understood) say("{:<22} {}\n", "read", note);
   } else if (fits.fits.size() > 1) {
     for (std::size_t i = 0; i < fits.fits.size(); ++i) {
-      fmt::print("--- {}\n", records[i]);
+      say("--- {}\n", records[i]);
       print_result(fits.fits[i]);
     }
     print_means(fits);

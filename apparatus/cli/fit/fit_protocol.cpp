@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "apparatus/cli/fit/fit_output.hpp"
+#include "apparatus/cli/process/say.hpp"
 #include "apparatus/scene/units.hpp"
-#include "libmpm/constitutive/constants.hpp"
 #include "rheometer/fits/flow_law.hpp"
 
 namespace tremie::cli {
@@ -26,18 +26,21 @@ std::string fitted(const FitResult& fit, const FitParameter& p) {
 }
 
 /// What a section says, in one line.
-std::string summary_line(const SectionReading& s) {
+std::string summary_line(const SectionReading& s, bool stress) {
+  const double scale = stress ? 1.0 : 1e3;
+  const char* unit = stress ? "Pa" : "mN.m";
   std::string text;
   if (s.start_up) {
-    text =
-        fmt::format("peak {:.4g} mN.m after {:.3g} s", 1e3 * s.start_up->peak_torque, s.start_up->peak_time);
+    text = fmt::format("peak {:.4g} {} after {:.3g} s", scale * s.start_up->peak_torque, unit,
+                       s.start_up->peak_time);
     text += s.start_up->peak_inside
                 ? fmt::format(", static yield stress {}, G {}", number(s.start_up->static_yield_stress, "Pa"),
                               number(s.start_up->shear_modulus, "Pa"))
                 : ", no peak within the section";
   }
   if (s.decay) {
-    text = fmt::format("{:.4g} to {:.4g} mN.m", 1e3 * s.decay->peak_torque, 1e3 * s.decay->end_torque);
+    text =
+        fmt::format("{:.4g} to {:.4g} {}", scale * s.decay->peak_torque, scale * s.decay->end_torque, unit);
     if (s.decay->half_time) text += fmt::format(", half after {:.3g} s", *s.decay->half_time);
     if (s.decay->exponential_scatter && s.decay->power_scatter)
       text += fmt::format(", exponential {:.2g} %, power of time {:.2g} %",
@@ -56,33 +59,33 @@ std::string summary_line(const SectionReading& s) {
 }  // namespace
 
 void print_protocol(const ProtocolReading& r) {
-  fmt::print("{:>3} {:<16} {:>11} {:>9} {:>10} {:>8}  {}\n", "", "section", "lines", "from s", "rev/s",
-             "rest s", "reading");
+  const ShownUnits shown = shown_units(r.sheared_evenly);
+  say("{:>3} {:<16} {:>11} {:>9} {:>10} {:>8}  {}\n", "", "section", "lines", "from s", shown.speed_unit,
+      "rest s", "reading");
   for (std::size_t i = 0; i < r.sections.size(); ++i) {
     const SectionReading& s = r.sections[i];
     if (s.section.kind == SectionKind::rest && i + 1 < r.sections.size()) continue;  // named by what follows
     const std::string kind = std::string(name_of(s.section.kind)) + (s.section.pre_shear ? " *" : "");
-    fmt::print("{:>3} {:<16} {:>11} {:>9.5g} {:>10.4g} {:>8}  {}\n", i + 1, kind,
-               fmt::format("{}-{}", s.first_line, s.last_line), s.start, s.section.omega / two_pi,
-               s.section.rest_before > 0.0 ? fmt::format("{:.4g}", s.section.rest_before) : "",
-               summary_line(s));
-    for (const auto& note : s.notes) fmt::print("{:<22} {}\n", "", note);
+    say("{:>3} {:<16} {:>11} {:>9.5g} {:>10.4g} {:>8}  {}\n", i + 1, kind,
+        fmt::format("{}-{}", s.first_line, s.last_line), s.start, s.section.omega / shown.speed,
+        s.section.rest_before > 0.0 ? fmt::format("{:.4g}", s.section.rest_before) : "",
+        summary_line(s, r.sheared_evenly));
+    for (const auto& note : s.notes) say("{:<22} {}\n", "", note);
   }
-  fmt::print("{:<22} the pre-shear, read as a decay too\n", "*");
+  say("{:<22} the pre-shear, read as a decay too\n", "*");
   print_estimate("A_thix of the peaks", r.structuration.A_thix, "Pa/s");
   print_estimate("static, without rest", r.structuration.at_no_rest, "Pa");
   if (const auto& s = r.structuration.saturation)
-    fmt::print(
-        "{:<22} {:.4g} Pa less what is left of it after {:.3g} s ({:.2g} % scatter; the line has {:.2g} %)\n",
+    say("{:<22} {:.4g} Pa less what is left of it after {:.3g} s ({:.2g} % scatter; the line has {:.2g} %)\n",
         "static, saturating", s->end_stress, s->time, 100.0 * s->scatter,
         100.0 * r.structuration.scatter.value_or(0.0));
   print_estimate("breakdown rate k", r.breakdown.rate, "1/s");
   print_estimate("rate exponent a", r.breakdown.exponent, "");
   for (const BreakdownTime& t : r.breakdown.times)
-    fmt::print("{:<22} section {}, {:.3g} 1/s: half of the excess lost after {:.3g} s\n", "", t.section,
-               t.rate, t.half_time);
-  for (const auto& note : r.breakdown.notes) fmt::print("{:<22} {}\n", "note", note);
-  for (const auto& note : r.structuration.notes) fmt::print("{:<22} {}\n", "note", note);
+    say("{:<22} section {}, {:.3g} 1/s: half of the excess lost after {:.3g} s\n", "", t.section, t.rate,
+        t.half_time);
+  for (const auto& note : r.breakdown.notes) say("{:<22} {}\n", "note", note);
+  for (const auto& note : r.structuration.notes) say("{:<22} {}\n", "note", note);
 }
 
 }  // namespace tremie::cli

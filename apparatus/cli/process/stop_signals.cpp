@@ -40,7 +40,6 @@ void handle(int signal_number) {
 
 void stop_on_interrupt() {
   for (int signal_number : {SIGINT, SIGTERM, SIGHUP}) handle(signal_number);
-  signal(SIGPIPE, SIG_IGN);
 }
 
 }  // namespace tremie::cli

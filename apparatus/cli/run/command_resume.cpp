@@ -46,9 +46,14 @@ report::Checkpoint checked(const std::string& folder) {
     throw scene::InputError(fmt::format(
         "{}: holds no unfinished run (a run keeps its first checkpoint after output.checkpoint_interval)",
         folder));
-  auto checkpoint = report::read_checkpoint(at);
-  check_scene_beside(checkpoint);
-  return checkpoint;
+  try {
+    auto checkpoint = report::read_checkpoint(at);
+    check_scene_beside(checkpoint);
+    return checkpoint;
+  } catch (const scene::InputError&) {
+    report::refuse_where_another_goes_on(folder, at);
+    throw;
+  }
 }
 
 int resume(const ResumeOptions& options) {

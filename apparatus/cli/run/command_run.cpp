@@ -10,6 +10,7 @@
 #include "apparatus/cli/options/command.hpp"
 #include "apparatus/cli/options/json_option.hpp"
 #include "apparatus/cli/process/brief_spin.hpp"
+#include "apparatus/cli/process/say.hpp"
 #include "apparatus/cli/process/stop_signals.hpp"
 #include "apparatus/cli/run/run_and_write.hpp"
 #include "apparatus/registry/cost_estimate.hpp"
@@ -37,8 +38,8 @@ scene::Scene with_cells_for(const scene::Scene& scene, const RunOptions& options
   auto overrides = options.overrides;
   overrides.push_back(scene::cells_override(scene, choice.factor));
   if (!options.quiet && !options.json)
-    fmt::print("accuracy        {} wants {}, about {:.1f} s of CPU\n", options.accuracy, overrides.back(),
-               choice.cpu);
+    say("accuracy        {} wants {}, about {:.1f} s of CPU\n", options.accuracy, overrides.back(),
+        choice.cpu);
   std::fflush(stdout);
   return scene::read(options.scene, overrides);
 }
@@ -57,9 +58,14 @@ void check_threads(int threads) {
   if (threads > std::max(64, 4 * processors))
     throw scene::InputError(fmt::format("--threads {}: this machine has {} processors; allowed: at most {}",
                                         threads, processors, std::max(64, 4 * processors)));
+}
+
+/// Said once the program has started anew, if it does.
+void note_threads(int threads) {
+  const int processors = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   if (threads > processors)
-    fmt::print(stderr, "note: --threads {} on {} processors: slower than --threads {}\n", threads, processors,
-               processors);
+    say(stderr, "note: --threads {} on {} processors: slower than --threads {}\n", threads, processors,
+        processors);
 }
 
 int threads_for(const scene::Scene& scene, const RunOptions& options) {
@@ -68,11 +74,12 @@ int threads_for(const scene::Scene& scene, const RunOptions& options) {
 }
 
 report::RunFolder folder_of(const RunOptions& options, const scene::Scene& scene) {
-  return {options.out.empty() ? "runs/" + scene.name : options.out, options.force};
+  return {options.out.empty() ? "runs/" + scene.name : options.out, options.force, scene.files};
 }
 
 int run_cell(const RunOptions& options) {
   const auto scene = scene::read(options.scene, options.overrides, "cell");
+  say_notes(scene, screen_of(options.quiet, options.json));
   const HeldInterrupts held;  // outlives the folder
   report::RunFolder folder = folder_of(options, scene);
   return run_and_publish(
@@ -85,8 +92,10 @@ int run_scene(const RunOptions& options) {
   if (!options.accuracy.empty()) accuracy_of(options.accuracy);
   const int threads = threads_for(scene, options);
   spin_briefly(threads);
+  if (!options.quiet) note_threads(options.threads);
   report::RunFolder folder = folder_of(options, scene);
   stop_on_interrupt();
+  say_notes(scene, screen_of(options.quiet, options.json));
   if (!options.accuracy.empty()) scene = with_cells_for(scene, options);
   if (!options.force) scene::check_cost(scene, threads);
   scene::set_threads(scene, threads);

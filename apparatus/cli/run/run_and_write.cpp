@@ -7,6 +7,7 @@
 
 #include "apparatus/cli/commands.hpp"
 #include "apparatus/cli/options/json_option.hpp"
+#include "apparatus/cli/process/say.hpp"
 #include "apparatus/cli/process/stop_signals.hpp"
 #include "apparatus/cli/progress.hpp"
 #include "apparatus/cli/run/keeper.hpp"
@@ -23,22 +24,22 @@ int exit_code_of(const scene::Outcome& outcome) {
 }
 
 void print_outcome(const scene::Scene& scene, const scene::Outcome& outcome) {
-  for (const auto& line : outcome.lines) fmt::print("{}\n", line);
+  for (const auto& line : outcome.lines) say("{}\n", line);
   if (const std::string line = report::measured_line(outcome); !line.empty())
-    fmt::print("measured        {}\n", line);
-  for (const auto& line : scene::error_lines(scene, outcome)) fmt::print("error           {}\n", line);
+    say("measured        {}\n", line);
+  for (const auto& line : scene::error_lines(scene, outcome)) say("error           {}\n", line);
   if (!outcome.has_points) return;
   const Checks& c = outcome.checks;
-  fmt::print("checks          volume {:+.3g} %, mass {:.1e}, {} unconverged steps, {} points lost\n",
-             100.0 * c.volume_change, c.mass_error, c.unconverged_steps, c.points_lost);
+  say("checks          volume {:+.3g} %, mass {:.1e}, {} unconverged steps, {} points lost\n",
+      100.0 * c.volume_change, c.mass_error, c.unconverged_steps, c.points_lost);
   const Cost& cost = outcome.cost;
-  fmt::print("cost            {:.2f} s of CPU, {:.2f} s by the clock, {} steps, {} points, {:.0f} MB\n",
-             cost.cpu, cost.wall, cost.steps, cost.points, static_cast<double>(cost.peak_rss_bytes) / 1e6);
-  if (outcome.status == Status::interrupted) fmt::print("interrupted at {:.2f} s\n", cost.simulated);
+  say("cost            {:.2f} s of CPU, {:.2f} s by the clock, {} steps, {} points, {:.0f} MB\n", cost.cpu,
+      cost.wall, cost.steps, cost.points, static_cast<double>(cost.peak_rss_bytes) / 1e6);
+  if (outcome.status == Status::interrupted) say("interrupted at {:.2f} s\n", cost.simulated);
 }
 
 void print_reasons(const scene::Outcome& outcome) {
-  for (const auto& reason : outcome.checks.reasons) fmt::print(stderr, "not to be trusted: {}\n", reason);
+  for (const auto& reason : outcome.checks.reasons) say(stderr, "not to be trusted: {}\n", reason);
 }
 
 /// An accuracy that was not reached is said.
@@ -96,6 +97,17 @@ scene::Outcome run_and_write(const scene::Scene& scene, const report::RunRequest
   return outcome;
 }
 
+/// Of the interrupted run the checkpoint alone stays, for `tremie resume`.
+int leave_finished_result(const report::RunFolder& folder, Screen screen) {
+  if (screen == Screen::one_json_object) print_json_of(folder.staging());
+  std::error_code error;
+  const bool goes_on = std::filesystem::exists(folder.checkpoint() / "state", error);
+  const std::string target = folder.target().string();
+  say(stderr, "interrupted: {} keeps its earlier result{}\n", target,
+      goes_on ? "; tremie resume " + target + " goes on" : "");
+  return interrupted;
+}
+
 }  // namespace
 
 /// The relative accuracy that was asked for: "1 %".
@@ -110,10 +122,19 @@ double accuracy_of(const std::string& text) {
   return 0.01 * percent;
 }
 
+void say_notes(const scene::Scene& scene, Screen screen) {
+  if (screen == Screen::nothing) return;
+  std::FILE* const stream = screen == Screen::one_json_object ? stderr : stdout;
+  for (const auto& note : scene.notes) say(stream, "{:<15} {}\n", "note", note);
+  std::fflush(stream);
+}
+
 int run_and_publish(const scene::Scene& scene, const report::RunRequest& request, Screen screen,
                     report::RunFolder& folder, const std::optional<report::Checkpoint>& from) {
   std::vector<std::string> notes;
   const auto outcome = run_and_write(scene, request, screen != Screen::everything, folder, from, notes);
+  if (outcome.status == Status::interrupted && folder.holds_finished_result())
+    return leave_finished_result(folder, screen);
   folder.publish();
   if (outcome.status != Status::interrupted) report::remove_checkpoint(folder.target() / "checkpoint");
   print_reasons(outcome);
@@ -121,10 +142,10 @@ int run_and_publish(const scene::Scene& scene, const report::RunRequest& request
   if (screen == Screen::everything) {
     print_outcome(scene, outcome);
     const int width = outcome.has_points ? 15 : 20;  // as wide as the words before its lines
-    for (const auto& note : notes) fmt::print("{:<{}} {}\n", "note", width, note);
-    fmt::print("{:<{}} {}\n", "written to", width, folder.target().string());
+    for (const auto& note : notes) say("{:<{}} {}\n", "note", width, note);
+    say("{:<{}} {}\n", "written to", width, folder.target().string());
     if (outcome.status == Status::interrupted && scene.output.checkpoint_interval)
-      fmt::print("to go on        tremie resume {}\n", folder.target().string());
+      say("to go on        tremie resume {}\n", folder.target().string());
   }
   return exit_code_of(outcome);
 }

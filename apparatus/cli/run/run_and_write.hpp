@@ -18,6 +18,9 @@ inline Screen screen_of(bool quiet, bool json) {
   return json ? Screen::one_json_object : quiet ? Screen::nothing : Screen::everything;
 }
 
+/// What the reader noticed of a scene that it takes as it stands.
+void say_notes(const scene::Scene& scene, Screen screen);
+
 /// Runs a scene from its start, or from a checkpoint in folder.checkpoint(); fills the folder, puts it in its place,
 /// and says what came out. Returns an exit code.
 int run_and_publish(const scene::Scene& scene, const report::RunRequest& request, Screen screen,

@@ -15,6 +15,7 @@
 #include "apparatus/cli/commands.hpp"
 #include "apparatus/cli/options/command.hpp"
 #include "apparatus/cli/options/json_option.hpp"
+#include "apparatus/cli/process/say.hpp"
 #include "apparatus/cli/process/stop_signals.hpp"
 #include "apparatus/cli/program.hpp"
 #include "apparatus/report/rheometer_files.hpp"
@@ -158,21 +159,21 @@ Json results_json(const Lab& lab, const Calibration& c, const std::vector<calibr
 
 void print_advice(const std::vector<calibration::Advice>& advice) {
   for (const auto& a : advice)
-    fmt::print("{:<36} {} {:.3g} ± {:.2g} expected, test ± {:.2g}: {:.1f} bits\n", "next? " + a.test,
-               a.result, a.value, a.scatter, a.error, a.bits);
+    say("{:<36} {} {:.3g} ± {:.2g} expected, test ± {:.2g}: {:.1f} bits\n", "next? " + a.test, a.result,
+        a.value, a.scatter, a.error, a.bits);
 }
 
 void print_result(const Lab& lab, const Calibration& c) {
   for (const auto& p : c.parameters)
-    fmt::print("{:<36} {:.4g} {} [{:.4g}, {:.4g}]  {}\n", p.key, p.value, p.unit, p.low, p.high, p.told);
+    say("{:<36} {:.4g} {} [{:.4g}, {:.4g}]  {}\n", p.key, p.value, p.unit, p.low, p.high, p.told);
   for (const auto& r : c.readings)
-    fmt::print("{:<36} measured {:.4g}, best fit {:.4g}, emulator ± {:.2g}\n", r.words + ": " + r.result,
-               r.measured, r.best_fit, r.emulator_error);
+    say("{:<36} measured {:.4g}, best fit {:.4g}, emulator ± {:.2g}\n", r.words + ": " + r.result, r.measured,
+        r.best_fit, r.emulator_error);
   for (std::size_t i = 0; i < c.forecasts.size(); ++i)
     for (const auto& f : c.forecasts[i])
       if (f.value)
-        fmt::print("{:<36} {:.4g} [{:.4g}, {:.4g}]\n", lab.tests[lab.measured + i].words + ": " + f.result,
-                   *f.value, f.low, f.high);
+        say("{:<36} {:.4g} [{:.4g}, {:.4g}]\n", lab.tests[lab.measured + i].words + ": " + f.result, *f.value,
+            f.low, f.high);
 }
 
 std::string text_of(const std::filesystem::path& file) {
@@ -197,14 +198,14 @@ void write_result(const Lab& lab, const Calibration& c, const std::vector<calibr
 }
 
 int stopped() {
-  fmt::print(stderr, "interrupted: nothing written\n");
+  say(stderr, "interrupted: nothing written\n");
   return interrupted;
 }
 
 int run_calibration(const CalibrateOptions& options) {
   const Stopwatch watch;
   const Lab lab = calibration::read_lab(options.file);
-  report::RunFolder folder(options.out.empty() ? "runs/" + lab.name : options.out, options.force);
+  report::RunFolder folder(options.out.empty() ? "runs/" + lab.name : options.out, options.force, lab.files);
   stop_on_interrupt();
   calibration::Settings settings;
   settings.jobs =
@@ -213,7 +214,7 @@ int run_calibration(const CalibrateOptions& options) {
   settings.stop = &stop_requested;
   if (!options.quiet)
     settings.say = [](const std::string& text) {
-      fmt::print("{}\n", text);
+      say("{}\n", text);
       std::fflush(stdout);
     };
   const Calibration result = calibration::calibrate(lab, settings);
@@ -226,12 +227,12 @@ int run_calibration(const CalibrateOptions& options) {
   }
   write_result(lab, result, advice, watch, folder.staging());
   folder.publish();
-  for (const auto& reason : result.reasons) fmt::print(stderr, "not to be trusted: {}\n", reason);
+  for (const auto& reason : result.reasons) say(stderr, "not to be trusted: {}\n", reason);
   if (options.json) print_result_as_json(folder.target());
   if (!options.quiet) {
     print_result(lab, result);
     print_advice(advice);
-    fmt::print("{:<36} {}\n", "written to", folder.target().string());
+    say("{:<36} {}\n", "written to", folder.target().string());
   }
   return result.reasons.empty() ? done : not_to_be_trusted;
 }

@@ -4,6 +4,7 @@
 
 #include "apparatus/cli/commands.hpp"
 #include "apparatus/cli/options/command.hpp"
+#include "apparatus/cli/process/say.hpp"
 #include "apparatus/cli/program.hpp"
 
 namespace tremie::cli {
@@ -12,9 +13,9 @@ void add_command_calibrate(CLI::App& app, int& exit_code) {
   Command command(app, calibrate_command.name, calibrate_command.description);
   command.anything();
   command.run([&exit_code] {
-    fmt::print(stderr,
-               "tremie calibrate: not in this build, which lacks libopenturns-dev; apt-get install "
-               "libopenturns-dev and build again\n");
+    say(stderr,
+        "tremie calibrate: not in this build, which lacks libopenturns-dev; apt-get install "
+        "libopenturns-dev and build again\n");
     exit_code = bad_input;
   });
 }

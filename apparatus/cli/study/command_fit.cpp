@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <deque>
 #include <filesystem>
 #include <memory>
@@ -12,6 +13,7 @@
 #include "apparatus/cli/fit/fit_protocol.hpp"
 #include "apparatus/cli/options/command.hpp"
 #include "apparatus/cli/options/json_option.hpp"
+#include "apparatus/cli/process/say.hpp"
 #include "apparatus/cli/program.hpp"
 #include "apparatus/cli/study/fit_csv.hpp"
 #include "apparatus/report/fit_input.hpp"
@@ -19,6 +21,7 @@
 #include "apparatus/report/fit_page/protocol_page.hpp"
 #include "apparatus/report/fit_page/replicates_page.hpp"
 #include "apparatus/report/fit_results.hpp"
+#include "apparatus/report/folder/own_files.hpp"
 #include "apparatus/report/protocol_results.hpp"
 #include "apparatus/report/rheometer_files.hpp"
 #include "apparatus/report/run_folder.hpp"
@@ -51,6 +54,14 @@ FitOptions options_of(const Given& o) {
   return options;
 }
 
+/// With the record's name, where the message is of a record and lacks it.
+std::string with_name(const std::string& message, const std::vector<std::string>& files) {
+  const bool names = message.starts_with("--") ||
+                     std::any_of(files.begin(), files.end(),
+                                 [&](const auto& file) { return message.find(file) != std::string::npos; });
+  return names ? message : fmt::format("{}: {}", fmt::join(files, ", "), message);
+}
+
 /// Faults of the records and of the options are the user's to mend.
 RecordFits fit_files(const std::vector<std::string>& files, const FitOptions& options) {
   std::vector<RecordSource> sources;
@@ -58,9 +69,9 @@ RecordFits fit_files(const std::vector<std::string>& files, const FitOptions& op
   try {
     return fit_records(sources, options, scene::data_folders());
   } catch (const RecordError& error) {
-    throw scene::InputError(error.what());
+    throw scene::InputError(with_name(error.what(), files));
   } catch (const std::invalid_argument& error) {
-    throw scene::InputError(error.what());
+    throw scene::InputError(with_name(error.what(), files));
   }
 }
 
@@ -97,11 +108,13 @@ Files files_of(const RecordFits& fits, const Given& o) {
 int run_fit(const Given& o) {
   const Stopwatch watch;
   const FitOptions options = options_of(o);
+  const std::string name = std::filesystem::path(o.data.front()).stem().string();
+  const auto out =
+      report::resolved_folder(o.out.empty() ? "runs/" + name : o.out);  // refuses before the work
   const RecordFits fits = fit_files(o.data, options);
   const Files files = files_of(fits, o);
-  const std::string name = std::filesystem::path(o.data.front()).stem().string();
   const HeldInterrupts held;  // outlives the folder
-  report::RunFolder folder(o.out.empty() ? "runs/" + name : o.out, o.force);
+  report::RunFolder folder(out, o.force, std::vector<std::filesystem::path>(o.data.begin(), o.data.end()));
   scene::Outcome outcome;
   outcome.apparatus = "fit";
   outcome.checks.reasons = fits.reasons;
@@ -112,12 +125,12 @@ int run_fit(const Given& o) {
   summary["input"] = report::fit_input(options, o.data);
   io::write_text(folder.staging() / "summary.json", summary.dump(2) + "\n");
   folder.publish();
-  for (const auto& reason : fits.reasons) fmt::print(stderr, "not to be trusted: {}\n", reason);
+  for (const auto& reason : fits.reasons) say(stderr, "not to be trusted: {}\n", reason);
   if (o.json) {
     print_result_as_json(folder.target());
   } else if (!o.quiet) {
     print_fits(fits, o.data);
-    fmt::print("{:<22} {}\n", "written to", folder.target().string());
+    say("{:<22} {}\n", "written to", folder.target().string());
   }
   return fits.reasons.empty() ? done : not_to_be_trusted;
 }
@@ -128,7 +141,7 @@ void add_options(Command& command, Given& o) {
     const std::string name = report::command_name(option);
     if (option.is_flag())
       command.flag(name.c_str(), o.flags[i], option.help);
-    else if (option.is_word())
+    else if (!option.words.empty())
       command.choice(name.c_str(), o.texts[i], option.words, option.help);
     else
       command.option(name.c_str(), o.texts[i], option.help);

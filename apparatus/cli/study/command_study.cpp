@@ -1,11 +1,8 @@
 // tremie study STUDY.toml: many runs of a scene, its keys changed by a design.
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -15,9 +12,12 @@
 #include "apparatus/cli/options/command.hpp"
 #include "apparatus/cli/options/json_option.hpp"
 #include "apparatus/cli/process/own_file.hpp"
+#include "apparatus/cli/process/say.hpp"
 #include "apparatus/cli/process/stop_signals.hpp"
 #include "apparatus/cli/program.hpp"
+#include "apparatus/cli/study/study_folder.hpp"
 #include "apparatus/cli/study/study_progress.hpp"
+#include "apparatus/report/folder/own_files.hpp"
 #include "apparatus/report/process.hpp"
 #include "apparatus/report/rheometer_files.hpp"
 #include "apparatus/run/machine/stopwatch.hpp"
@@ -51,49 +51,6 @@ struct Job {
   fs::path folder;
   std::string fingerprint;
 };
-
-// --- folder ---------------------------------------------------------------------------------------------
-
-bool is_study_folder(const fs::path& folder) { return fs::exists(folder / "design.csv"); }
-
-void refuse(const fs::path& folder, const std::string& why) {
-  throw scene::InputError(fmt::format("--out {}: {}", folder.string(), why));
-}
-
-void remove_earlier_study(const fs::path& folder) {
-  for (const char* name : {"design.csv", "study.csv", "study.h5", "report.html", "summary.json",
-                           "journal.jsonl", "study.sbatch", "Snakefile", "study.sh", "parallel.log"})
-    fs::remove(folder / name);
-  fs::remove_all(folder / "rows");
-}
-
-void make_folder(const Job& job, const StudyOptions& options) {
-  const bool filled = fs::is_directory(job.folder) && !fs::is_empty(job.folder);
-  if (fs::exists(job.folder) && !fs::is_directory(job.folder)) refuse(job.folder, "is no folder");
-  const bool goes_on = options.resume || options.collect || options.row >= 0;
-  if (filled && !is_study_folder(job.folder)) refuse(job.folder, "holds files that are no study");
-  if (filled && !goes_on && !options.force)
-    refuse(job.folder, "holds a study; --resume goes on with it, --force starts over");
-  if (filled && !goes_on) remove_earlier_study(job.folder);
-  std::error_code error;
-  fs::create_directories(job.folder, error);
-  if (error) refuse(job.folder, "cannot be written: " + error.message());
-}
-
-/// Written once; where it is there it must be this study's. Many rows may start at once.
-void write_design(const Job& job) {
-  const fs::path file = job.folder / "design.csv";
-  const std::string csv = study::design_csv(job.definition, job.design);
-  if (!fs::exists(file)) {
-    const fs::path part = job.folder / fmt::format(".design.{}.part", getpid());
-    io::write_text(part, csv);
-    fs::rename(part, file);
-    return;
-  }
-  std::ifstream stream(file, std::ios::binary);
-  if (std::string(std::istreambuf_iterator<char>(stream), {}) != csv)
-    refuse(job.folder, "its design.csv is another study's; --force starts over");
-}
 
 // --- rows -----------------------------------------------------------------------------------------------
 
@@ -157,13 +114,14 @@ int finish(const Job& job, const StudyOptions& options, const study::RowFiles& f
   study::write_whole(job.folder / "report.html",
                      study::study_html(job.definition, job.design, collected, indices, note, reasons,
                                        "tremie study " + options.file));
-  for (const auto& reason : reasons) fmt::print(stderr, "not to be trusted: {}\n", reason);
+  finish_study_folder(job.folder);
+  for (const auto& reason : reasons) say(stderr, "not to be trusted: {}\n", reason);
   if (options.json) print_result_as_json(job.folder);
   if (!options.quiet) {
     if (const std::size_t moving = study::moving_rows(collected); moving > 0)
-      fmt::print("note            in {} of {} runs the concrete still moved at the end (test.duration)\n",
-                 moving, collected.rows.size());
-    fmt::print("written to      {}\n", job.folder.string());
+      say("note            in {} of {} runs the concrete still moved at the end (test.duration)\n", moving,
+          collected.rows.size());
+    say("written to      {}\n", job.folder.string());
   }
   return reasons.empty() ? done : not_to_be_trusted;
 }
@@ -180,8 +138,8 @@ int run_here(const Job& job, const StudyOptions& options) {
   there.insert(there.end(), files.rows.begin(), files.rows.end());
   stop_on_interrupt();
   if (!options.collect && !run_rows(job, options, journal, there)) {
-    fmt::print(stderr, "interrupted; tremie study {} --out {} --resume goes on\n", options.file,
-               job.folder.string());
+    say(stderr, "interrupted; tremie study {} --out {} --resume goes on{}\n", options.file,
+        job.folder.string(), where_the_earlier_is(job.folder));
     return interrupted;
   }
   return finish(job, options, files, journal.rows(), watch);
@@ -197,7 +155,7 @@ int run_one_row(const Job& job, const StudyOptions& options) {
   const Row row =
       study::run_row(job.definition, index, study::overrides_of(job.definition, job.design[index]));
   study::write_row_file(job.folder, job.fingerprint, row);
-  for (const auto& reason : row.reasons) fmt::print(stderr, "row {} not to be trusted: {}\n", index, reason);
+  for (const auto& reason : row.reasons) say(stderr, "row {} not to be trusted: {}\n", index, reason);
   return done;
 }
 
@@ -209,9 +167,10 @@ int hand_to_engine(const Job& job, const StudyOptions& options) {
       study::engine_script(engine, own_file().parent_path() / "tremie", fs::absolute(options.file),
                            job.folder, job.design.size(), jobs_of(options));
   io::write_text(script.file, script.text);
+  report::list_as_own(job.folder, {script.file.filename()});
   const std::string line = fmt::format("{}", fmt::join(script.start, " "));
   if (!options.submit) {
-    if (!options.quiet) fmt::print("run             {}\n", line);
+    if (!options.quiet) say("run             {}\n", line);
     return done;
   }
   const auto program = report::find_program(script.start.front());
@@ -221,7 +180,7 @@ int hand_to_engine(const Job& job, const StudyOptions& options) {
   const std::vector<std::string> arguments(script.start.begin() + 1, script.start.end());
   const auto code = report::run_program(program, arguments, job.folder, 1e9);
   if (code == 0) return done;
-  fmt::print(stderr, "tremie study: {} ended with {}\n", line, code ? fmt::format("{}", *code) : "a signal");
+  say(stderr, "tremie study: {} ended with {}\n", line, code ? fmt::format("{}", *code) : "a signal");
   return code == not_to_be_trusted ? not_to_be_trusted : fault;
 }
 
@@ -237,15 +196,12 @@ int run_study(const StudyOptions& options) {
   Job job;
   job.definition = study::read_definition(options.file);
   job.design = study::make_design(job.definition);
-  job.folder =
-      fs::absolute(options.out.empty() ? "runs/" + job.definition.name : options.out).lexically_normal();
+  job.folder = report::resolved_folder(options.out.empty() ? "runs/" + job.definition.name : options.out);
   job.fingerprint = study::fingerprint(job.definition, job.design);
-  if (options.collect && !is_study_folder(job.folder)) refuse(job.folder, "holds no study");
-  if (options.row >= 0 && !options.out.empty() && fs::exists(job.folder) && !fs::is_empty(job.folder) &&
-      !is_study_folder(job.folder) && !fs::exists(job.folder / "rows"))
-    refuse(job.folder, "holds files that are no study");
-  make_folder(job, options);
-  write_design(job);
+  if (options.collect && !is_study_folder(job.folder)) report::refuse_folder(job.folder, "holds no study");
+  const bool goes_on = options.resume || options.collect || options.row >= 0;
+  make_study_folder(job.folder, goes_on, options.force);
+  write_design(job.folder, study::design_csv(job.definition, job.design));
   if (options.row >= 0) return run_one_row(job, options);
   if (!options.engine.empty()) return hand_to_engine(job, options);
   return run_here(job, options);

@@ -13,6 +13,7 @@
 #include "apparatus/cli/commands.hpp"
 #include "apparatus/cli/options/command.hpp"
 #include "apparatus/cli/options/json_option.hpp"
+#include "apparatus/cli/process/say.hpp"
 #include "apparatus/cli/process/stop_signals.hpp"
 #include "apparatus/cli/program.hpp"
 #include "apparatus/registry/cost_estimate.hpp"
@@ -105,7 +106,7 @@ int validate(const VerifyOptions& options) {
   validation::Settings settings{std::max(1, static_cast<int>(std::thread::hardware_concurrency())),
                                 folder.staging(),
                                 [screen](const std::string& text) {
-                                  fmt::print(screen, "{}\n", text);
+                                  say(screen, "{}\n", text);
                                   std::fflush(screen);
                                 },
                                 &stop_requested};
@@ -115,10 +116,10 @@ int validate(const VerifyOptions& options) {
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
     validation::write_page(sections, wall.count(), folder.staging());
     folder.publish();
-    fmt::print(screen, "written to {}\n", (folder.target() / "VALIDATION.md").string());
-    if (options.json) fmt::print("{}\n", summary_of_sections(sections).dump(2));
+    say(screen, "written to {}\n", (folder.target() / "VALIDATION.md").string());
+    if (options.json) answer(summary_of_sections(sections).dump(2) + "\n");
   } catch (const validation::Interrupted&) {
-    fmt::print(screen, "interrupted: nothing written\n");
+    say(screen, "interrupted: nothing written\n");
     return interrupted;
   }
   return done;
@@ -141,28 +142,28 @@ int verify(const VerifyOptions& options) {
   std::vector<verification::Case> cases;
   std::vector<double> cpu;
   stop_on_interrupt();
-  fmt::print(screen, "{} cases, about {} of CPU on this machine\n", entries.size(),
-             scene::duration_text(expected_seconds(entries, options.full)));
+  say(screen, "{} cases, about {} of CPU on this machine\n", entries.size(),
+      scene::duration_text(expected_seconds(entries, options.full)));
   for (const auto& entry : entries) {
     if (stop_requested) {
-      fmt::print(screen, "interrupted: nothing written\n");
+      say(screen, "interrupted: nothing written\n");
       return interrupted;
     }
-    fmt::print(screen, "case {}: {}\n", entry.number, entry.what);
+    say(screen, "case {}: {}\n", entry.number, entry.what);
     std::fflush(screen);
     const double start = cpu_seconds();
     cases.push_back(entry.run(depth));
     cpu.push_back(cpu_seconds() - start);
     const bool kept = verification::all_kept({cases.back()});
-    fmt::print(screen, "        {} in {:.1f} s of CPU\n", kept ? "all bounds kept" : "a bound is broken",
-               cpu.back());
+    say(screen, "        {} in {:.1f} s of CPU\n", kept ? "all bounds kept" : "a bound is broken",
+        cpu.back());
     std::fflush(screen);
   }
   verification::write_document(cases, command_line(options), folder.staging());
   folder.publish();
-  for (const auto& line : verification::broken_bounds(cases)) fmt::print(stderr, "not kept: {}\n", line);
-  fmt::print(screen, "written to {}\n", (folder.target() / "VERIFICATION.md").string());
-  if (options.json) fmt::print("{}\n", summary_of_cases(entries, cases, cpu).dump(2));
+  for (const auto& line : verification::broken_bounds(cases)) say(stderr, "not kept: {}\n", line);
+  say(screen, "written to {}\n", (folder.target() / "VERIFICATION.md").string());
+  if (options.json) answer(summary_of_cases(entries, cases, cpu).dump(2) + "\n");
   return verification::all_kept(cases) ? done : not_to_be_trusted;
 }
 

@@ -7,6 +7,7 @@
 int main(int argc, char** argv) {
   return tremie::cli::run_program(argc, argv, [](CLI::App& app, int& exit_code) {
     tremie::cli::add_command_fit(app, exit_code);
+    tremie::cli::add_command_read(app, exit_code);
     tremie::cli::add_command_study(app, exit_code);
     tremie::cli::add_command_calibrate(app, exit_code);
     tremie::cli::add_command_verify(app, exit_code);

@@ -5,6 +5,8 @@
 
 #include <cstdio>
 
+#include "apparatus/cli/process/say.hpp"
+
 namespace tremie::cli {
 
 StudyProgress::StudyProgress(std::size_t rows, std::size_t there, bool quiet)
@@ -14,11 +16,11 @@ StudyProgress::StudyProgress(std::size_t rows, std::size_t there, bool quiet)
       terminal_(isatty(STDOUT_FILENO) != 0),
       start_(Clock::now()),
       last_(start_) {
-  if (!quiet_ && there_ > 0) fmt::print("{} of {} rows are there\n", there_, rows_);
+  if (!quiet_ && there_ > 0) say("{} of {} rows are there\n", there_, rows_);
 }
 
 StudyProgress::~StudyProgress() {
-  if (open_) fmt::print("\n");
+  if (open_) say("\n");
 }
 
 void StudyProgress::row_done(bool trusted) {
@@ -31,8 +33,8 @@ void StudyProgress::row_done(bool trusted) {
   last_ = now;
   const double spent = std::chrono::duration<double>(now - start_).count();
   const double left = spent / static_cast<double>(done_) * static_cast<double>(rows_ - there_ - done_);
-  fmt::print("{}{} of {} rows, {} not to be trusted, about {:.0f} s left{}", terminal_ ? "\r" : "",
-             there_ + done_, rows_, doubtful_, left, terminal_ ? "   " : "\n");
+  say("{}{} of {} rows, {} not to be trusted, about {:.0f} s left{}", terminal_ ? "\r" : "", there_ + done_,
+      rows_, doubtful_, left, terminal_ ? "   " : "\n");
   std::fflush(stdout);
   open_ = terminal_;
 }

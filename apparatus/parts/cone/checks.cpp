@@ -44,6 +44,11 @@ std::string few_cells(const View& j) {
   const double across = j.scene.cone.bottom_radius / j.scene.model.cell[0],
                up = j.scene.cone.height / j.scene.model.cell[1];
   if (std::min(across, up) >= least) return {};
+  const double flat = j.scene.cone.height / j.scene.cone.bottom_radius;
+  if (up < least && flat < 0.5)
+    return fmt::format(
+        "the cone is {:.3g} mm high, {:.2g} of its foot's radius: no slump can be read of it (cone.height)",
+        1e3 * j.scene.cone.height, flat);
   return fmt::format(
       "the cone is {:.2g} cells from its axis to its rim and {:.2g} high, less than {:g}: a smaller "
       "model.cell",

@@ -99,7 +99,8 @@ py::list option_rows() {
   using namespace py::literals;
   py::list rows;
   for (const FitOption& o : fit_options())
-    rows.append(py::dict("name"_a = o.name, "unit"_a = o.unit, "words"_a = o.words, "help"_a = o.help));
+    rows.append(py::dict("name"_a = o.name, "unit"_a = o.unit, "words"_a = o.words, "help"_a = o.help,
+                         "flag"_a = o.is_flag()));
   return rows;
 }
 
@@ -116,12 +117,15 @@ RecordSource record_of(bool is_decay, const Numbers& x, const Numbers& torque) {
 py::dict curve_of(FitResult& fit) {
   py::dict curve;
   const bool decay = fit.kind == RecordKind::torque_decay;
+  const ShownUnits shown = shown_units(fit.sheared_evenly);
+  const std::string torque = fit.sheared_evenly ? "shear_stress" : "torque",
+                    unit = fit.sheared_evenly ? "_Pa" : "_N_m";
   if (!decay)
-    for (double& speed : fit.curve.x) speed /= two_pi;
-  curve[decay ? "time_s" : "speed_rev_per_s"] = array_of(std::move(fit.curve.x));
-  curve["torque_N_m"] = array_of(std::move(fit.curve.observed));
-  curve["torque_fit_N_m"] = array_of(std::move(fit.curve.fitted));
-  curve["torque_fit_error_N_m"] = array_of(std::move(fit.curve.standard_error));
+    for (double& speed : fit.curve.x) speed /= shown.speed;
+  curve[decay ? "time_s" : shown.speed_key] = array_of(std::move(fit.curve.x));
+  curve[shown.torque_key] = array_of(std::move(fit.curve.observed));
+  curve[(torque + "_fit" + unit).c_str()] = array_of(std::move(fit.curve.fitted));
+  curve[(torque + "_fit_error" + unit).c_str()] = array_of(std::move(fit.curve.standard_error));
   if (decay) curve["flocculation_apparent"] = array_of(std::move(fit.lambda_apparent));
   return curve;
 }

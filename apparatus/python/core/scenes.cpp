@@ -107,7 +107,7 @@ py::dict run(const Source& source, const RunSettings& settings, const py::object
       if (settings.frames) observer.on_frame = [&](const Frame& frame) { frames.push_back(frame); };
       outcome = scene::run(scene, observer);
     } else {
-      report::RunFolder folder(settings.out, settings.force);
+      report::RunFolder folder(settings.out, settings.force, scene.files);
       outcome = run_and_write(scene, settings, observer, folder, frames, notes);
       if (outcome.status != Status::interrupted) folder.publish();
     }

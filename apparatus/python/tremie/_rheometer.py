@@ -100,7 +100,7 @@ _OPTIONS = {row["name"]: row for row in _tremie.fit_options()}
 
 
 def _line(row: dict[str, Any]) -> str:
-    kind = f"[{row['unit']}]" if row["unit"] else ", ".join(f'"{word}"' for word in row["words"]) or "True or False"
+    kind = f"[{row['unit']}]" if row["unit"] else ", ".join(f'"{word}"' for word in row["words"]) or ("True or False" if row["flag"] else "text")
     return f"    {row['name']:<22}{row['help']}; {kind}\n"
 
 

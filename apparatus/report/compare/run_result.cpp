@@ -12,7 +12,7 @@
 #include "apparatus/scene/document.hpp"
 #include "apparatus/scene/input_error.hpp"
 #include "apparatus/scene/units.hpp"
-#include "rheometer/records/number_text.hpp"
+#include "rheometer/tables/number_text.hpp"
 
 namespace tremie::report {
 namespace {

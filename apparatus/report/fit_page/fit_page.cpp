@@ -66,7 +66,7 @@ Curve fitted_torque(const FitResult& fit, const Instrument& in) {
   if (!values.empty() && fit.mu && fit.mu->value > 0.0 && !fit.curve.x.empty())
     for (int i = 0; i <= pieces; ++i) {
       const double omega = fit.curve.x.back() * (i + 0.01) / pieces;
-      line.x.push_back(omega / two_pi);
+      line.x.push_back(omega / shown_units(fit.sheared_evenly).speed);
       line.y.push_back(law->torque(values, omega, in).torque);
     }
   else
@@ -76,9 +76,11 @@ Curve fitted_torque(const FitResult& fit, const Instrument& in) {
 
 LineChart torque_chart(const FitResult& fit, const Instrument& in) {
   const std::vector<double> x = shown_x(fit);
-  LineChart chart{.title = is_decay(fit) ? "Decay of the torque" : "Torque over speed",
+  LineChart chart{.title = is_decay(fit)        ? "Decay of the torque"
+                           : fit.sheared_evenly ? "Flow curve"
+                                                : "Torque over speed",
                   .x_label = x_label(fit),
-                  .y_label = "torque (N·m)",
+                  .y_label = y_label(fit),
                   .curves = {{"readings", x, fit.curve.observed, Mark::points}, fitted_torque(fit, in)},
                   .bands = band_of(fit, x, fit.curve.fitted)};
   if (fit.plug_below) {
@@ -102,7 +104,7 @@ std::string line_label(const FitResult& fit) {
 LineChart flow_curve_chart(const FitResult& fit, const Instrument& in) {
   const FlowLaw* law = law_of(fit);
   const std::vector<double> values = values_of_law(fit);
-  if (values.empty()) return {};
+  if (values.empty() || fit.sheared_evenly) return {};
   std::vector<double> rates, observed, fitted;
   for (std::size_t i = 0; i < fit.curve.x.size(); ++i) {
     const double stress = shear_stress_at(in.vane_radius, fit.curve.fitted[i], in);
@@ -218,11 +220,15 @@ Verdict verdict_of(const FitResult& fit) {
 std::vector<double> shown_x(const FitResult& fit) {
   std::vector<double> x = fit.curve.x;
   if (!is_decay(fit))
-    for (double& speed : x) speed /= two_pi;
+    for (double& speed : x) speed /= shown_units(fit.sheared_evenly).speed;
   return x;
 }
 
-std::string x_label(const FitResult& fit) { return is_decay(fit) ? "time (s)" : "speed (rev/s)"; }
+std::string x_label(const FitResult& fit) {
+  return is_decay(fit) ? "time (s)" : shown_units(fit.sheared_evenly).speed_label;
+}
+
+std::string y_label(const FitResult& fit) { return shown_units(fit.sheared_evenly).torque_label; }
 
 std::string with_interval(const ParameterEstimate& e, int digits) {
   const std::string text = scene::rounded(e.value, digits);

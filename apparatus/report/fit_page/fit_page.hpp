@@ -20,9 +20,10 @@ std::string fit_html(const FitResult& fit, const Instrument& instrument, const s
 std::vector<std::pair<std::string, std::string>> fit_chart_files(const FitResult& fit,
                                                                  const Instrument& instrument);
 
-/// Times [s] of a decay, speeds [rev/s] of a flow curve.
+/// Times [s] of a decay, speeds [rev/s] or shear rates [1/s] of a flow curve; the label of torque or shear stress.
 std::vector<double> shown_x(const FitResult& fit);
 std::string x_label(const FitResult& fit);
+std::string y_label(const FitResult& fit);
 
 /// "54.1 (53.2 to 55)", of so many digits.
 std::string with_interval(const ParameterEstimate& estimate, int digits);

@@ -8,7 +8,6 @@
 #include "apparatus/report/page/charts.hpp"
 #include "apparatus/report/page/page.hpp"
 #include "apparatus/scene/units.hpp"
-#include "libmpm/constitutive/constants.hpp"
 
 namespace tremie::report {
 namespace {
@@ -22,23 +21,25 @@ bool is_curve(const SectionReading& s) {
 /// Torque of a section, thinned to some hundreds of readings, and the line of its fit; none of a rest.
 LineChart section_chart(const ProtocolRecord& record, const SectionReading& s, std::size_t number) {
   if (s.section.kind == SectionKind::rest) return {};
+  const ShownUnits shown = shown_units(record.sheared_evenly);
+  const double torque = record.sheared_evenly ? 1.0 : 1e3;
   LineChart chart{.title = fmt::format("Section {}: {}", number, name_of(s.section.kind)),
-                  .x_label = is_curve(s) ? "speed (rev/s)" : "time in the section (s)",
-                  .y_label = "torque (mN·m)",
+                  .x_label = is_curve(s) ? shown.speed_label : "time in the section (s)",
+                  .y_label = record.sheared_evenly ? shown.torque_label : "torque (mN·m)",
                   .curves = {}};
   Curve readings{.label = "readings", .x = {}, .y = {}, .mark = Mark::points};
   const double start = record.time[s.section.begin];
   for (std::size_t k = s.section.begin; k < s.section.end; k += 1 + (s.section.end - s.section.begin) / 300) {
-    readings.x.push_back(is_curve(s) ? record.omega[k] / two_pi : record.time[k] - start);
-    readings.y.push_back(1e3 * record.torque[k]);
+    readings.x.push_back(is_curve(s) ? record.omega[k] / shown.speed : record.time[k] - start);
+    readings.y.push_back(torque * record.torque[k]);
   }
   chart.curves = {readings};
   if (s.fit) {
     Curve line{.label = s.fit->model + (s.fit->reasons.empty() ? "" : " (does not fit)"),
                .x = s.fit->curve.x,
                .y = s.fit->curve.fitted};
-    for (double& x : line.x) x = is_curve(s) ? x / two_pi : x + s.fit_origin;
-    for (double& y : line.y) y *= 1e3;
+    for (double& x : line.x) x = is_curve(s) ? x / shown.speed : x + s.fit_origin;
+    for (double& y : line.y) y *= torque;
     chart.curves.push_back(line);
   }
   return chart;
@@ -58,15 +59,16 @@ void add_peaks(const Structuration& a, Page& page) {
   if (can_be_drawn(chart)) page.figures.push_back({"peaks", "", chart_svg(chart)});
 }
 
-std::vector<std::string> row(const SectionReading& s, std::size_t number) {
+std::vector<std::string> row(const SectionReading& s, std::size_t number, bool sheared_evenly) {
+  const double torque = sheared_evenly ? 1.0 : 1e3;
   std::optional<double> peak, stress, modulus;
   if (s.start_up)
-    peak = 1e3 * s.start_up->peak_torque, stress = s.start_up->static_yield_stress,
+    peak = torque * s.start_up->peak_torque, stress = s.start_up->static_yield_stress,
     modulus = s.start_up->shear_modulus;
-  if (s.decay) peak = 1e3 * s.decay->peak_torque;
+  if (s.decay) peak = torque * s.decay->peak_torque;
   return {std::to_string(number),
           std::string(name_of(s.section.kind)),
-          fmt::format("{:.4g}", s.section.omega / two_pi),
+          fmt::format("{:.4g}", s.section.omega / shown_units(sheared_evenly).speed),
           s.section.rest_before > 0.0 ? fmt::format("{:.4g}", s.section.rest_before) : "–",
           text_of(peak),
           text_of(stress),
@@ -96,12 +98,13 @@ std::string protocol_html(const ProtocolRecord& record, const ProtocolReading& r
     if (const auto chart = section_chart(record, reading.sections[i], i + 1); can_be_drawn(chart))
       page.figures.push_back({fmt::format("section_{}", i + 1), "", chart_svg(chart)});
   GridTable table{"Sections",
-                  {"", "kind", "speed (rev/s)", "rest before (s)", "peak (mN·m)", "static yield stress (Pa)",
+                  {"", "kind", shown_units(record.sheared_evenly).speed_label, "rest before (s)",
+                   record.sheared_evenly ? "peak (Pa)" : "peak (mN·m)", "static yield stress (Pa)",
                    "shear modulus (Pa)", "model, scatter"},
                   {}};
   for (std::size_t i = 0; i < reading.sections.size(); ++i)
     if (reading.sections[i].section.kind != SectionKind::rest)
-      table.rows.push_back(row(reading.sections[i], i + 1));
+      table.rows.push_back(row(reading.sections[i], i + 1, record.sheared_evenly));
   page.grids = {table};
   page.remarks = a.notes;
   for (const auto& note : record.understood) page.remarks.push_back("Read: " + note);

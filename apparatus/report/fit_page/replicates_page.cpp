@@ -20,7 +20,7 @@ std::string percent(const std::optional<double>& share) {
 void add_torques(const std::vector<FitResult>& fits, Page& page) {
   LineChart chart{.title = "The records and their fits",
                   .x_label = x_label(fits.front()),
-                  .y_label = "torque (N·m)",
+                  .y_label = y_label(fits.front()),
                   .curves = {}};
   const std::size_t shown = std::min(fits.size(), most_curves);
   for (std::size_t i = 0; i < shown; ++i)

@@ -48,9 +48,9 @@ void fill_from(const scene::Outcome& outcome, const std::vector<std::string>& re
     const auto reading = reading_of(outcome, results[i]);
     if (!reading) {
       const auto known = result_names(outcome.results);
-      throw scene::InputError(fmt::format("{}: a {} has no result \"{}\" (nearest: \"{}\"); it has {}", place,
-                                          outcome.apparatus, results[i], scene::nearest(results[i], known),
-                                          fmt::join(known, ", ")));
+      throw scene::InputError(
+          fmt::format("{}: a {} has no result \"{}\"{}; it has {}", place, outcome.apparatus, results[i],
+                      scene::nearest_in_brackets(results[i], known), fmt::join(known, ", ")));
     }
     row.readings[i] = *reading;
   }

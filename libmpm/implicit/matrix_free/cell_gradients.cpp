@@ -20,8 +20,8 @@ void CellBatches::lay_out(const ActiveGrid<3>& grid) {
       for (int d = 0; d < 3; ++d) {
         const Axis& a = grid.axes[d];
         const int i = grid.cell_index[c][d];
-        ends_[b].low[d][l] = a.clamped_low() && i == 0 ? 2.0f : 1.0f;
-        ends_[b].high[d][l] = a.clamped_high() && i == a.n_cells - 1 ? 2.0f : 1.0f;
+        ends_[b].low[d][l] = a.interpolates_low(i) ? 2.0f : 1.0f;
+        ends_[b].high[d][l] = a.interpolates_high(i) ? 2.0f : 1.0f;
       }
     }
   node_begin_.assign(n_nodes + 1, 0);

@@ -37,23 +37,27 @@ class CellRows {
   std::vector<Rows> rows_;
 };
 
-/// Which ends of the axes a cell touches, as six bits: of those that low() and high() say count.
-template <bool (Axis::*low)() const, bool (Axis::*high)() const>
-unsigned char ends_touched(const std::array<Axis, 3>& axes, const Index<3>& cell) {
+/// Six bits: of which axes a cell touches the low end, low(axis, c), and the high one.
+template <class Low, class High>
+unsigned char ends_touched(const std::array<Axis, 3>& axes, const Index<3>& cell, Low low, High high) {
   unsigned ends = 0;
   for (int d = 0; d < 3; ++d) {
-    if ((axes[d].*low)() && cell[d] == 0) ends |= 1u << (2 * d);
-    if ((axes[d].*high)() && cell[d] == axes[d].n_cells - 1) ends |= 2u << (2 * d);
+    if (low(axes[d], cell[d])) ends |= 1u << (2 * d);
+    if (high(axes[d], cell[d])) ends |= 2u << (2 * d);
   }
   return static_cast<unsigned char>(ends);
 }
-/// Walls: a cell's splines follow from them.
+/// Walls and repeated knots: a cell's splines follow from them.
 inline unsigned char cell_kind(const std::array<Axis, 3>& axes, const Index<3>& cell) {
-  return ends_touched<&Axis::clamped_low, &Axis::clamped_high>(axes, cell);
+  return ends_touched(
+      axes, cell, [](const Axis& a, int c) { return a.interpolates_low(c); },
+      [](const Axis& a, int c) { return a.interpolates_high(c); });
 }
-/// Walls and planes of symmetry: what a cell's nodes are follows from them.
+/// And planes of symmetry: what a cell's nodes are follows from them.
 inline unsigned char cell_ends(const std::array<Axis, 3>& axes, const Index<3>& cell) {
-  return ends_touched<&Axis::wall_low, &Axis::wall_high>(axes, cell);
+  return ends_touched(
+      axes, cell, [](const Axis& a, int c) { return a.interpolates_low(c) || (a.wall_low() && c == 0); },
+      [](const Axis& a, int c) { return a.interpolates_high(c) || (a.wall_high() && c == a.n_cells - 1); });
 }
 
 template <class Geometry>

@@ -63,8 +63,10 @@ std::vector<char> held_by_walls(const ActiveGrid<D>& grid) {
   std::vector<char> fixed(grid.node_index.size() * D, 0);
   for (int i = 0; i < grid.n_nodes(); ++i) {
     const bool in_block = !grid.blocks.empty() && block_of_node<D>(grid, grid.node_index[i]);
+    const Sheet<D>* sheet = sheet_at_node<D>(grid, grid.node_index[i]);
     for (int d = 0; d < D; ++d)
-      fixed[i * D + d] = in_block || grid.axes[d].on_low_wall(grid.node_index[i][d]) ||
+      fixed[i * D + d] = in_block || (sheet && d == sheet->normal) ||
+                         grid.axes[d].on_low_wall(grid.node_index[i][d]) ||
                          grid.axes[d].on_high_wall(grid.node_index[i][d]);
   }
   for (const MirrorNode<D>& m : grid.mirrors) std::fill_n(&fixed[m.node * D], D, 1);

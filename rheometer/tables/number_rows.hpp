@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "rheometer/records/number_text.hpp"
+#include "rheometer/tables/number_text.hpp"
 
 namespace tremie {
 

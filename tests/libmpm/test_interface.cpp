@@ -1,0 +1,112 @@
+// The interface law of a wall, tau_i + k_i u, against a slab that slides down a slope.
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include "apparatus/verification/references/bodies.hpp"
+
+namespace tremie::sliding_slab {
+namespace {
+
+using namespace bodies;
+
+constexpr double H = 0.1, g = 9.81, rho = 2400.0, theta = 10.0 * std::numbers::pi / 180.0;
+
+/// What drives the slab along the floor [Pa]: 409.
+const double driving = rho * g * H * std::sin(theta);
+
+/// A slab without ends on a slope, `cells` deep.
+template <class Geometry>
+ImplicitBody<Geometry> slab(double tau_0, double mu, int cells) {
+  constexpr int D = Geometry::dim, up = Geometry::up;
+  ImplicitBody<Geometry> body;
+  body.mix = concrete(tau_0, mu);
+  body.mix.density = rho;
+  body.gravity[0] = g * std::sin(theta), body.gravity[up] = -g * std::cos(theta);
+  const double h = H / cells;
+  for (int d = 0; d < up; ++d) body.grid.axes[d] = {.h = h, .periodic = true, .n_cells = 4};
+  body.grid.axes[up] = {.h = h, .low = FaceKind::wall_law};
+  Vec<D> high = Vec<D>::Constant(4.0 * h);
+  high[up] = H;
+  fill_box(body, Vec<D>(Vec<D>::Zero()), high, 2,
+           [&](const auto& x) { return rho * g * std::cos(theta) * (H - x[up]); });
+  return body;
+}
+
+template <class Geometry>
+void slide(ImplicitBody<Geometry>& body, const Interface& law, double until,
+           YieldMethod method = YieldMethod::automatic) {
+  omp_set_num_threads(1);
+  StepSettings settings;
+  settings.method = method;
+  settings.wall_law = law;
+  settings.fixed_dt = 0.01;
+  while (body.time < until - 1e-9) ASSERT_TRUE(implicit_step(body, ExactBingham{}, settings).converged);
+}
+
+template <class Geometry>
+double speed(const ImplicitBody<Geometry>& body) {
+  return momentum(body.points)[0] / total_mass(body.points);
+}
+
+// A slab that does not shear goes faster as u = (driving - tau_i)/k (1 - exp(-k t/(rho H))), in the section and in space, by
+// ADMM and by Newton.
+TEST(InterfaceLaw, ASlabSlidesAsItsLawSays) {
+  const Interface law{100.0, 1000.0};
+  const double most = (driving - law.tau_i) / law.k_i, rate = law.k_i / (rho * H);
+  const auto check = [&](const auto& body, double t) {
+    EXPECT_NEAR(speed(body) / (most * -std::expm1(-rate * t)), 1.0, 0.01) << t;
+  };
+  for (auto method : {YieldMethod::admm, YieldMethod::newton}) {
+    auto body = slab<PlaneStrain>(5e4, 50.0, 4);
+    slide(body, law, 0.5, method);
+    check(body, 0.5);
+    slide(body, law, 3.0, method);
+    check(body, 3.0);
+  }
+  auto body = slab<ThreeD>(5e4, 50.0, 4);
+  slide(body, law, 3.0);
+  check(body, 3.0);
+}
+
+// Below tau_i it stays: what moves is less than a thousandth of what would slide without it.
+TEST(InterfaceLaw, ASlabStaysBelowTheYieldStress) {
+  for (auto method : {YieldMethod::admm, YieldMethod::newton}) {
+    auto body = slab<PlaneStrain>(5e4, 50.0, 4);
+    slide(body, Interface{1.02 * driving, 1000.0}, 1.0, method);
+    EXPECT_LE(speed(body), 1e-3 * g * std::sin(theta));
+  }
+}
+
+// A Newtonian slab slides and shears: u(y) = (driving - tau_i)/k + rho g sin(theta)/mu (H y - y^2/2).
+TEST(InterfaceLaw, ASlabSlidesAndShears) {
+  const Interface law{100.0, 1000.0};
+  const double mu = 50.0;
+  for (int cells : {4, 8, 16}) {
+    auto body = slab<PlaneStrain>(0.0, mu, cells);
+    slide(body, law, 4.0);
+    double error = 0.0, all = 0.0;
+    for (std::size_t p = 0; p < body.points.size(); ++p) {
+      const double y = body.points.x[p][1];
+      const double u = (driving - law.tau_i) / law.k_i + driving / H / mu * (H * y - 0.5 * y * y);
+      error += std::pow(body.points.v[p][0] - u, 2), all += u * u;
+    }
+    std::printf("%2d cells: error %.2e\n", cells, std::sqrt(error / all));
+    EXPECT_LE(std::sqrt(error / all), 0.01);
+  }
+}
+
+// tau_i = k = 0 is free slip: the slab falls freely along the slope. A large k is no slip.
+TEST(InterfaceLaw, HasItsLimits) {
+  auto free = slab<PlaneStrain>(50.0, 50.0, 8), holds = slab<PlaneStrain>(50.0, 50.0, 8),
+       no_slip = slab<PlaneStrain>(50.0, 50.0, 8);
+  slide(free, Interface{}, 1.0);
+  EXPECT_NEAR(speed(free) / (g * std::sin(theta)), 1.0, 1e-3);
+  no_slip.grid.axes[1].low = FaceKind::no_slip;
+  slide(holds, Interface{0.0, 1e6}, 1.0);
+  slide(no_slip, Interface{}, 1.0);
+  EXPECT_NEAR(speed(holds) / speed(no_slip), 1.0, 0.01);  // 409 Pa / k = 0.4 mm/s
+}
+
+}  // namespace
+}  // namespace tremie::sliding_slab
