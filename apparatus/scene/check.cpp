@@ -145,7 +145,8 @@ void read_scalar(const Key& key, const Node& node, Value& into) {
 
 Value read_pairs(const Key& key, const Node& node) {
   const auto fail = [&] { throw Problem("must be an array of pairs, like " + key.example); };
-  Value value{{}, {}, node.origin, {}};
+  Value value;
+  value.origin = node.origin;
   const auto* array = std::get_if<Array>(&node.value);
   if (!array || array->empty()) fail();
   for (const Node& element : *array) {
@@ -280,7 +281,9 @@ class Checker {
             (!chosen || values_.layer(implied.first) > values_.layer(chosen->first)))
           chosen = &implied;
       if (!chosen) continue;
-      Value value{{}, {chosen->second}, {}, "by " + chosen->first};
+      Value value;
+      value.words = {chosen->second};
+      value.note = "by " + chosen->first;
       value.origin.layer = Layer::fallback;
       values_.entries[dotted(place, key.name)] = value;
     }
