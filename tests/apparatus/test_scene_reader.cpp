@@ -279,6 +279,27 @@ TEST(SceneReader, ALaterLayerDropsWhatLosesItsMeaning) {
   EXPECT_TRUE(says(scene.notes.front(), {"a.toml:7: floor.coefficient"}));
 }
 
+// tau_i as a stress, or as a share of the mix's yield stress; of one layer not both, and neither without contact =
+// "interface", nor in explicit steps.
+TEST(SceneReader, TheInterfaceHasOneYieldStress) {
+  const std::string on = mix_a + "[floor]\ncontact = \"interface\"\ninterface_viscosity = \"1000 Pa.s/m\"\n";
+  const std::string stress = "interface_yield_stress = \"20 Pa\"\n", ratio = "interface_yield_ratio = 0.5\n";
+  const auto law = [&](const std::string& text, const std::vector<std::string>& overrides = {}) {
+    return std::get<Interface>(slump(read_text(text, "a.toml", overrides)).floor.contact);
+  };
+  EXPECT_EQ(law(on + stress).tau_i, 20.0);
+  EXPECT_EQ(law(on + stress).k_i, 1000.0);
+  EXPECT_EQ(law(on + ratio).tau_i, 27.0);
+  EXPECT_EQ(law(on + stress, {"floor.interface_yield_ratio=0.25"}).tau_i, 13.5);
+  EXPECT_EQ(law(on + ratio, {"floor.interface_yield_stress=30 Pa"}).tau_i, 30.0);
+  EXPECT_TRUE(says(complaint(on), {"bad.toml:6: floor.contact", "interface_yield_ratio"}));
+  EXPECT_TRUE(says(complaint(on + stress + ratio), {"floor.interface_yield_ratio", "one or the other"}));
+  EXPECT_TRUE(says(complaint(on + ratio, {"floor.interface_viscosity=-1 Pa.s/m"}), {"at least 0 Pa.s/m"}));
+  EXPECT_TRUE(says(complaint(mix_a + "[floor]\n" + stress), {"floor.interface_yield_stress", "interface"}));
+  EXPECT_TRUE(says(complaint(on + ratio, {"model.scheme=explicit", "model.yield=papanastasiou"}),
+                   {"floor.contact", "explicit"}));
+}
+
 double friction(const cone::Scene& scene) { return std::get<Coulomb>(scene.floor.contact).coefficient; }
 
 TEST(SceneReader, FrictionComesFromTheMix) {

@@ -105,6 +105,19 @@ TEST(SlumpFlowChecks, ConcreteThatGoesThroughTheConeIsMarked) {
   }
 }
 
+// A cone that does not rise holds its concrete: nothing stands beyond its wall, to 0.1 %.
+TEST(SlumpFlowChecks, NothingPassesAConeThatStands) {
+  for (const auto& [cell, duration] : {std::pair{0.02, 10.0}, {0.01, 1.0}}) {
+    cone::Scene scene;
+    scene.mix.tau_0 = 20.0, scene.mix.mu = 20.0;
+    scene.model.cell = {cell, 0.5 * cell};
+    scene.lift_speed = 1e-9, scene.duration = duration;
+    const auto outcome = cone::run(scene);
+    ASSERT_TRUE(outcome.results.through_the_cone.has_value());
+    EXPECT_LE(*outcome.results.through_the_cone, 1e-3) << cell;
+  }
+}
+
 // After 1 s at 40 mm/s the rim is 40 mm up: two cells of 20 mm, by which a mix of 5 Pa and 3 Pa s has spread to 547 mm;
 // on cells of 5 mm, 8 of them, it has 616 mm.
 TEST(SlumpFlowChecks, AnOpeningOfTwoCellsIsMarked) {
