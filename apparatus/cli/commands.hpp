@@ -18,6 +18,7 @@ inline constexpr int interrupted = 130;
 
 void add_command_run(CLI::App& app, int& exit_code);
 void add_command_resume(CLI::App& app, int& exit_code);
+void add_command_watch(CLI::App& app, int& exit_code);
 void add_command_check(CLI::App& app, int& exit_code);
 void add_command_new(CLI::App& app, int& exit_code);
 void add_command_cell(CLI::App& app, int& exit_code);

@@ -51,6 +51,7 @@ int main(int argc, char** argv) {
   return run_program(argc, argv, [](CLI::App& app, int& exit_code) {
     add_command_run(app, exit_code);
     add_command_resume(app, exit_code);
+    add_command_watch(app, exit_code);
     add_command_check(app, exit_code);
     add_command_new(app, exit_code);
     add_command_cell(app, exit_code);

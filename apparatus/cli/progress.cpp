@@ -50,4 +50,18 @@ void ProgressLine::show(const scene::Progress& progress) {
   std::fflush(stdout);
 }
 
+ProgressFile::~ProgressFile() {
+  std::error_code ignored;
+  std::filesystem::remove(path_, ignored);
+}
+
+void ProgressFile::show(const scene::Progress& progress) {
+  const auto now = std::chrono::steady_clock::now();
+  if (seconds(now - last_) < 0.5) return;
+  last_ = now;
+  stream_ << fmt::format("{:7.2f} s of {:g} s   step {:.2g} s   {}\n", progress.time, progress.duration,
+                         progress.time_step, progress.reading)
+          << std::flush;
+}
+
 }  // namespace tremie::cli

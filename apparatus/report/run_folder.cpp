@@ -193,6 +193,17 @@ fs::path find_checkpoint(const fs::path& folder) {
   return {};
 }
 
+fs::path find_work(const fs::path& folder) {
+  const fs::path target = resolved_folder(folder), hidden = hidden_name(target);
+  for (const fs::path& part : {target.parent_path() / hidden, target / hidden}) {
+    int file = -1;
+    const bool busy = is_there(part) && lock_folder(part, file) == Lock::taken_by_another;
+    if (file >= 0) close(file);
+    if (busy) return part;
+  }
+  return {};
+}
+
 void refuse_where_another_goes_on(const fs::path& folder, const fs::path& checkpoint) {
   const fs::path target = resolved_folder(folder), hidden = hidden_name(target);
   for (const fs::path& part : {target.parent_path() / hidden, target / hidden})

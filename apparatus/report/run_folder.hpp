@@ -62,6 +62,9 @@ class RunFolder {
 /// inside where it was interrupted. Empty where there is none.
 std::filesystem::path find_checkpoint(const std::filesystem::path& folder);
 
+/// The hidden folder that another process writes into at this moment, to fill `folder`; empty where there is none.
+std::filesystem::path find_work(const std::filesystem::path& folder);
+
 /// Throws scene::InputError where another process goes on from this checkpoint, or has done so: what is read of it
 /// meanwhile is not whole.
 void refuse_where_another_goes_on(const std::filesystem::path& folder,

@@ -162,6 +162,20 @@ TEST_F(Program, MoreThreadsThanProcessorsAreNotedOnce) {
   EXPECT_EQ(tremie(run + " --quiet").text.find("note"), std::string::npos);
 }
 
+TEST_F(Program, ARunIsWatchedUntilItEnds) {
+  EXPECT_EQ(tremie("watch nothing").code, 2);
+  const Result result = shell(
+      "'" + tremie_program +
+          "' run quick.toml --quiet --out w --set test.duration='1000 s' --set model.cell='3 mm' "
+          "& run=$!; sleep 1; '" +
+          tremie_program + "' watch w & watch=$!; sleep 1.5; kill -TERM $run; wait $watch; echo ended $?",
+      folder_.path());
+  EXPECT_NE(result.text.find("s of 1000 s   step"), std::string::npos) << result.text;
+  EXPECT_NE(result.text.find("frames so far"), std::string::npos) << result.text;
+  EXPECT_NE(result.text.find("ended 0"), std::string::npos) << result.text;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "w/progress.txt"));
+}
+
 // A message that nobody can read changes no exit code; it once ended the program with 134.
 TEST_F(Program, ClosedAndFullStreamsKeepTheExitCode) {
   test::write_file(folder_ / "bad.toml", "apparatus = \"slump_flow\"\nmix = \"nix\"\n");

@@ -85,7 +85,11 @@ scene::Outcome run_and_write(const scene::Scene& scene, const report::RunRequest
   scene::Outcome outcome;
   {
     ProgressLine line;
-    if (!quiet) observer.on_progress = [&](const scene::Progress& progress) { line.show(progress); };
+    ProgressFile file(folder.staging() / progress_file);
+    observer.on_progress = [&](const scene::Progress& progress) {
+      if (!quiet) line.show(progress);
+      file.show(progress);
+    };
     outcome = scene::run(scene, observer);
     if (request.with_error || !request.accuracy.empty())
       outcome.error = scene::estimate_error(scene, outcome, observer);

@@ -12,6 +12,9 @@ namespace tremie::cli {
 /// The relative accuracy that was asked for: "1 %". Throws scene::InputError.
 double accuracy_of(const std::string& text);
 
+/// In the folder that a run writes into while it goes on: a line for every reading that `tremie watch` shows.
+inline constexpr const char* progress_file = "progress.txt";
+
 /// What goes to the screen beside errors.
 enum class Screen { nothing, one_json_object, everything };
 inline Screen screen_of(bool quiet, bool json) {

@@ -170,6 +170,7 @@ void ResultFiles::write_frame(const Frame& frame) {
   if (error) io::fail_to_write(folder_ / "frames");
   frames_.emplace_back(frame.time, fmt::format("frames/frame_{:05}.vtp", frames_.size()));
   write_frame_vtp(folder_ / frames_.back().second, frame);
+  io::write_pvd(folder_ / "frames.pvd", frames_);  // for who watches
 }
 
 void ResultFiles::write_results_h5(const scene::Outcome& outcome) {
@@ -193,7 +194,6 @@ std::vector<std::string> ResultFiles::finish(const scene::Outcome& outcome) {
   write_results_h5(outcome);
   io::write_text(folder_ / "timeseries.csv", columns_csv(outcome.series));
   for (const auto& table : outcome.tables) io::write_text(folder_ / table.file, columns_csv(table.columns));
-  if (!frames_.empty()) io::write_pvd(folder_ / "frames.pvd", frames_);
   draw_charts(outcome, folder_);
   if (!frames_.empty() && outcome.pictured)
     notes.push_back(draw_picture(outcome, folder_, frames_.back().second));
