@@ -125,6 +125,14 @@ TEST(RecordLayouts, ShearRatesAndStressesOfManyInstruments) {
       shear_first());
 }
 
+// Rheocalc writes a clock's time, without a unit.
+TEST(RecordLayouts, AClocksTimeIsInSeconds) {
+  const TorqueRecord r =
+      parse_torque_record("Time,Torque (mN m)\n00:00:01.5,8\n00:01:00,7\n01:00:00,6\n", "r.csv");
+  EXPECT_DOUBLE_EQ(r.time[0], 1.5);
+  EXPECT_DOUBLE_EQ(r.time[2], 3600.0);
+}
+
 TEST(RecordLayouts, TablesOfOneFileGoTogether) {
   const std::string table = "[step]\nFlow\nShear rate\tStress\n1/s\tPa\n1\t2\n10\t20\n";
   const TorqueRecord r = parse_torque_record("Filename\tx\n" + table + "\n" + table, "r.csv");
