@@ -144,7 +144,8 @@ TorqueRecord parse_torque_record(std::string_view bytes, const std::string& name
   const bool has_speed = table.position[q_speed] != 0, both = has_speed && table.position[q_time] != 0;
   const char* stress = sheared_evenly ? "the shear stress" : "the torque";
   if (has_speed && !both)
-    require_not_negative(table.column[q_speed], table, table.position[q_speed], "the speed", name);
+    require_not_negative(table.column[q_speed], table, table.position[q_speed],
+                         sheared_evenly ? "the shear rate" : "the speed", name);
   if (!sheared_evenly) {
     require_below(table.column[q_torque], table, table.position[q_torque], 1e4,
                   "the torque is above 10000 N.m", name);
