@@ -231,7 +231,8 @@ class Reader {
     Header h;
     for (std::size_t i = lines_.size(); i-- > 0;)  // the first line with one quantity, for the message
       for (const char separator : {'\t', ';', ','})
-        if (Header one = columns_of(fields_of(lines_[i].text, separator), i, separator); one.named > 0)
+        if (Header one = columns_of(fields_of(lines_[i].text, separator), i, separator);
+            one.named > 0 && (i != h.at || h.named == 0 || one.fields.size() > h.fields.size()))
           h = one, at = i;
     if (h.named == 0)
       h.fields = fields_of(lines_[at].text, lines_[at].text.find('\t') != std::string::npos  ? '\t'

@@ -40,7 +40,9 @@ RecordReading reading_of(const FitOptions& o, const std::vector<std::filesystem:
 std::string geometry_words(const RecordReading& r, const FitOptions& o, bool sheared_evenly) {
   if (!r.geometry.words.empty() && (!sheared_evenly || r.options.stress_constant)) return r.geometry.words;
   if (sheared_evenly)
-    return "none: shear rate and shear stress as the instrument converted them, which is trusted";
+    return std::string(
+               "none: shear rate and shear stress as the instrument converted them, which is trusted") +
+           (r.default_geometry ? "" : "; the geometry that is given does not enter");
   return text_of("vane, radius %.6g mm, height %.6g mm, in a container of radius %.6g mm",
                  1e3 * o.vane_radius, 1e3 * o.vane_height, 1e3 * o.container_radius) +
          (r.default_geometry ? ": the default (ICAR), none is given" : "");
