@@ -329,6 +329,11 @@ class Reader {
         behind_a_gap_ = false;
       } else {
         next = header_at(i);
+        if (next && !behind_a_gap_ && next->fields == h.fields) {  // a header repeated within the table
+          next.reset();
+          continue;
+        }
+        behind_a_gap_ = true;
         if (next && !((sets_.empty() || has_a_set(*next)) && has_rows(*next))) next.reset();
       }
     }

@@ -1,7 +1,9 @@
 #include "rheometer/whole_fit/record_reading.hpp"
 
+#include <cmath>
 #include <stdexcept>
 
+#include "rheometer/tables/number_text.hpp"
 #include "rheometer/tables/text.hpp"
 
 namespace tremie {
@@ -31,6 +33,12 @@ RecordReading reading_of(const FitOptions& o, const std::vector<std::filesystem:
   }
   r.options.columns = o.column;
   r.options.decimal = o.decimal;
+  if (!o.table.empty()) {
+    const std::optional<double> number = parse_number(o.table);
+    if (!number || !(*number >= 1.0 && *number <= 1e6) || std::floor(*number) != *number)
+      throw std::invalid_argument("--table \"" + o.table + "\" is no number of a table, 1 or more");
+    r.options.table = static_cast<std::size_t>(*number);
+  }
   r.options.shear_first = r.default_geometry;
   r.options.torque_per_degree = o.torque_per_degree ? o.torque_per_degree : r.geometry.torque_per_degree;
   r.options.full_scale_torque = o.full_scale_torque;
