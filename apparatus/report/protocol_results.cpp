@@ -94,7 +94,10 @@ std::string protocol_csv(const ProtocolReading& r) {
   std::string text =
       fmt::format("number,kind,first_line,last_line,start_s,duration_s,{},rest_before_s,peak_{},",
                   shown.speed_key, shown.torque_key);
-  text += "static_yield_stress_Pa,shear_modulus_Pa,model,relative_scatter\n";
+  text += "static_yield_stress_Pa,shear_modulus_Pa,model,relative_scatter";
+  for (const FitParameter& p : fit_parameters())
+    text += fmt::format(",fit_{0},fit_{0}_low,fit_{0}_high", p.key);
+  text += ",loop_area\n";
   const auto cell = [](const std::optional<double>& v) {
     return v ? fmt::format("{:.8g}", *v) : std::string{};
   };
@@ -106,10 +109,17 @@ std::string protocol_csv(const ProtocolReading& r) {
       modulus = s.start_up->shear_modulus;
     if (s.decay) peak = s.decay->peak_torque;
     if (s.fit) scatter = s.fit->scatter;
-    text += fmt::format("{},{},{},{},{:.8g},{:.8g},{:.8g},{:.8g},{},{},{},{},{}\n", i + 1,
+    text += fmt::format("{},{},{},{},{:.8g},{:.8g},{:.8g},{:.8g},{},{},{},{},{}", i + 1,
                         name_of(s.section.kind), s.first_line, s.last_line, s.start, s.duration,
                         s.section.omega / shown_units(r.sheared_evenly).speed, s.section.rest_before,
                         cell(peak), cell(stress), cell(modulus), s.fit ? s.fit->model : "", cell(scatter));
+    for (const FitParameter& p : fit_parameters()) {
+      const auto e = s.fit ? value_of(*s.fit, p) : std::nullopt;
+      const bool interval = e && e->ci95;
+      text += fmt::format(",{},{},{}", e ? cell(e->value) : "", interval ? cell(e->ci95->low) : "",
+                          interval ? cell(e->ci95->high) : "");
+    }
+    text += fmt::format(",{}\n", cell(s.loop_area));
   }
   return text;
 }

@@ -101,6 +101,29 @@ void take_shear(NumberTable& table) {
   }
 }
 
+/// Keeps one of several tables.
+void keep_table(NumberTable& table, std::size_t number, const std::string& name) {
+  const std::size_t tables = table.starts.size();
+  if (number == 0 && (tables < 2 || table.position[q_time] != 0)) return;
+  const std::size_t kept = std::max<std::size_t>(number, 1);
+  if (kept > tables)
+    throw RecordError(
+        at_position(name, table.header_line, 1,
+                    "--table " + std::to_string(kept) + ": the file has " + std::to_string(tables)));
+  const auto begin = static_cast<std::ptrdiff_t>(table.starts[kept - 1]),
+             end = static_cast<std::ptrdiff_t>(kept < tables ? table.starts[kept] : table.line.size());
+  const std::size_t rows = table.line.size();
+  for (auto& column : table.column)
+    if (!column.empty()) column = std::vector<double>(column.begin() + begin, column.begin() + end);
+  table.line = std::vector<long>(table.line.begin() + begin, table.line.begin() + end);
+  table.starts = {0};
+  if (tables > 1)
+    table.understood.push_back(
+        "table " + std::to_string(kept) + " of " + std::to_string(tables) + ", lines " +
+        std::to_string(table.line.front()) + " to " + std::to_string(table.line.back()) + "; the other " +
+        std::to_string(rows - table.line.size()) + " rows are not used (--table reads another)");
+}
+
 }  // namespace
 
 void require_kinds(const NumberTable& table, const std::string& name) {
@@ -119,6 +142,7 @@ void require_kinds(const NumberTable& table, const std::string& name) {
 NumberTable torque_table(std::string_view text, const std::string& name, double torque_offset,
                          const ReadOptions& options, bool& sheared_evenly) {
   NumberTable table = parse_torque_table(text, name, options);
+  keep_table(table, options.table, name);
   const bool shear = table.position[q_shear_stress] != 0 && table.position[q_torque] == 0;
   if (shear && torque_offset != 0.0)
     throw RecordError(at_position(name, table.header_line, table.position[q_shear_stress],
@@ -144,7 +168,8 @@ TorqueRecord parse_torque_record(std::string_view bytes, const std::string& name
   const bool has_speed = table.position[q_speed] != 0, both = has_speed && table.position[q_time] != 0;
   const char* stress = sheared_evenly ? "the shear stress" : "the torque";
   if (has_speed && !both)
-    require_not_negative(table.column[q_speed], table, table.position[q_speed], "the speed", name);
+    require_not_negative(table.column[q_speed], table, table.position[q_speed],
+                         sheared_evenly ? "the shear rate" : "the speed", name);
   if (!sheared_evenly) {
     require_below(table.column[q_torque], table, table.position[q_torque], 1e4,
                   "the torque is above 10000 N.m", name);

@@ -47,7 +47,8 @@ TorqueRecord read_torque_record(const std::string& path, double torque_offset = 
                                 const ReadOptions& options = {});
 
 /// The table of a torque record with time, speed and torque in the first three columns; `sheared_evenly` where shear
-/// rates and stresses stand for them. Throws RecordError as above.
+/// rates and stresses stand for them. Of several tables the one that the options say; of those without a time the first,
+/// as each is a flow curve of its own. Throws RecordError as above.
 NumberTable torque_table(std::string_view text, const std::string& name, double torque_offset,
                          const ReadOptions& options, bool& sheared_evenly);
 

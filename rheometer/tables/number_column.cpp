@@ -145,6 +145,21 @@ bool looks_like_a_number(std::string_view text) {
          plain.front() != 'E';
 }
 
+std::optional<double> clock_seconds(std::string_view text) {
+  double seconds = 0.0;
+  for (const double unit : {3600.0, 60.0, 1.0}) {
+    const std::size_t colon = text.find(':');
+    if ((colon == text.npos) != (unit == 1.0) || text.empty() || !is_digit(text.front())) return std::nullopt;
+    std::string part(text.substr(0, colon));
+    if (unit == 1.0) std::replace(part.begin(), part.end(), ',', '.');
+    const std::optional<double> value = parse_number(part);
+    if (!value || !(*value >= 0.0) || (unit < 3600.0 && *value >= 60.0)) return std::nullopt;
+    seconds += unit * *value;
+    text.remove_prefix(std::min(text.size(), part.size() + 1));
+  }
+  return seconds;
+}
+
 std::vector<std::vector<double>> numbers_of(const std::vector<std::vector<NumberCell>>& columns,
                                             const std::vector<NumberCell>& others, const std::string& decimal,
                                             const std::string& name) {

@@ -31,6 +31,9 @@ NumberReadings readings_of(std::string_view text);
 /// Whether a text is meant as a number: digits and what goes with them, nothing else.
 bool looks_like_a_number(std::string_view text);
 
+/// The seconds of a clock's time, "00:01:30.5"; empty for any other text.
+std::optional<double> clock_seconds(std::string_view text);
+
 /// The numbers of each column. `others`: texts beside them, which may tell the file's decimal mark. `decimal`: "point",
 /// "comma", or "auto" for what the texts tell. Throws RecordError, with the lines, for a text that is no number, for two
 /// forms that contradict each other in one column, and for a column that can be read in two ways.

@@ -6,13 +6,14 @@
 #include "rheometer/tables/column_names.hpp"
 #include "rheometer/tables/fields.hpp"
 #include "rheometer/tables/number_column.hpp"
+#include "rheometer/tables/text.hpp"
 
 namespace tremie {
 
-using detail::factor_of, detail::fields_of, detail::given_columns, detail::GivenColumn, detail::is_given,
-    detail::lines_of, detail::looks_like_a_number, detail::lower, detail::named_column, detail::NamedColumn,
-    detail::normal_unit, detail::NumberCell, detail::numbers_of, detail::TextLine, detail::trimmed,
-    detail::wide_blanks;
+using detail::clock_seconds, detail::factor_of, detail::fields_of, detail::given_columns, detail::GivenColumn,
+    detail::is_given, detail::lines_of, detail::looks_like_a_number, detail::lower, detail::named_column,
+    detail::NamedColumn, detail::normal_unit, detail::NumberCell, detail::numbers_of, detail::TextLine,
+    detail::trimmed, detail::wide_blanks;
 
 std::string at_position(const std::string& name, long line, std::size_t column, const std::string& what) {
   return name + ":" + std::to_string(line) + ":" + std::to_string(column) + ": " + what;
@@ -230,7 +231,8 @@ class Reader {
     Header h;
     for (std::size_t i = lines_.size(); i-- > 0;)  // the first line with one quantity, for the message
       for (const char separator : {'\t', ';', ','})
-        if (Header one = columns_of(fields_of(lines_[i].text, separator), i, separator); one.named > 0)
+        if (Header one = columns_of(fields_of(lines_[i].text, separator), i, separator);
+            one.named > 0 && (i != h.at || h.named == 0 || one.fields.size() > h.fields.size()))
           h = one, at = i;
     if (h.named == 0)
       h.fields = fields_of(lines_[at].text, lines_[at].text.find('\t') != std::string::npos  ? '\t'
@@ -306,6 +308,9 @@ class Reader {
     if (h.doubled && (!sets_.empty() || h.named >= 2)) fail_doubled(h);
     keep_a_set(h);
     const std::size_t begin = find_units(h);
+    if (h.has(0) && h.column[0]->unit.empty() && begin < lines_.size() && quantities_[0].name == "time")
+      if (auto first = fields_of(lines_[begin].text, h.separator); read_clock(h, first))
+        h.column[0]->unit = "s";
     std::vector<double> factor(quantities_.size());
     const std::size_t first_row = table_.line.size();
     for (std::size_t q = 0; q < quantities_.size(); ++q)
@@ -317,12 +322,18 @@ class Reader {
         behind_a_gap_ = true;
         continue;
       }
-      const auto fields = fields_of(lines_[i].text, h.separator);
+      auto fields = fields_of(lines_[i].text, h.separator);
+      read_clock(h, fields);
       if (takes_row(h, fields, lines_[i].number)) {
         put_row(h, fields, factor, lines_[i].number);
         behind_a_gap_ = false;
       } else {
         next = header_at(i);
+        if (next && !behind_a_gap_ && next->fields == h.fields) {  // a header repeated within the table
+          next.reset();
+          continue;
+        }
+        behind_a_gap_ = true;
         if (next && !((sets_.empty() || has_a_set(*next)) && has_rows(*next))) next.reset();
       }
     }
@@ -331,6 +342,14 @@ class Reader {
       for (std::size_t q = 0; q < quantities_.size(); ++q)
         if (h.has(q)) table_.position[q] = h.index[q] + 1;
     return next;
+  }
+
+  /// A clock's time as its seconds; whether it is one.
+  bool read_clock(const Header& h, std::vector<std::string>& fields) const {
+    if (!h.has(0) || quantities_[0].name != "time" || h.index[0] >= fields.size()) return false;
+    const std::optional<double> seconds = clock_seconds(fields[h.index[0]]);
+    if (seconds) fields[h.index[0]] = text_of("%.10g", *seconds);
+    return seconds.has_value();
   }
 
   /// Whether the line is a row of the table; a text in place of one number, or a column too many, is refused.

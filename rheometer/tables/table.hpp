@@ -31,6 +31,7 @@ struct ColumnQuantity {
 struct ReadOptions {
   std::string columns;           ///< "torque=3; speed=Drehzahl [rpm]"; empty: by their names
   std::string decimal = "auto";  ///< or "point", "comma"
+  std::size_t table = 0;         ///< of a file with several, from 1; 0: see torque_table()
   bool shear_first = false;      ///< shear rate and stress are taken where speed and torque are there too
   std::optional<double> torque_per_degree;  ///< of a dial [N m]
   std::optional<double> full_scale_torque;  ///< of readings in % [N m]

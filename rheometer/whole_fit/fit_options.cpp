@@ -87,6 +87,8 @@ const std::vector<FitOption>& fit_options() {
            {15, "column"}),
       word("decimal", &O::decimal, {"auto", "point", "comma"},
            "decimal mark of the record, where its numbers do not tell", {16, "decimal"}),
+      text("table", &O::table, "of a file with several tables, the number of the one to read: \"2\"",
+           {19, "table"}),
       number("torque_per_degree", &O::torque_per_degree, "N.m",
              "of an instrument with a dial: \"0.036379 mN.m\"", {17, "torque_per_degree_N_m"}),
       number("full_scale_torque", &O::full_scale_torque, "N.m",

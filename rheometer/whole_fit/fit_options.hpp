@@ -27,6 +27,7 @@ struct FitOptions {
   std::optional<double> max_aggregate;
   std::string geometry;  ///< geometries.hpp; empty: the three lengths above
   std::string column, decimal = "auto";
+  std::string table;                                           ///< of a file with several: its number, from 1
   std::optional<double> torque_per_degree, full_scale_torque;  ///< of a dial, of readings in % [N m]
 };
 

@@ -1,7 +1,9 @@
 #include "rheometer/whole_fit/record_reading.hpp"
 
+#include <cmath>
 #include <stdexcept>
 
+#include "rheometer/tables/number_text.hpp"
 #include "rheometer/tables/text.hpp"
 
 namespace tremie {
@@ -31,6 +33,12 @@ RecordReading reading_of(const FitOptions& o, const std::vector<std::filesystem:
   }
   r.options.columns = o.column;
   r.options.decimal = o.decimal;
+  if (!o.table.empty()) {
+    const std::optional<double> number = parse_number(o.table);
+    if (!number || !(*number >= 1.0 && *number <= 1e6) || std::floor(*number) != *number)
+      throw std::invalid_argument("--table \"" + o.table + "\" is no number of a table, 1 or more");
+    r.options.table = static_cast<std::size_t>(*number);
+  }
   r.options.shear_first = r.default_geometry;
   r.options.torque_per_degree = o.torque_per_degree ? o.torque_per_degree : r.geometry.torque_per_degree;
   r.options.full_scale_torque = o.full_scale_torque;
@@ -40,7 +48,9 @@ RecordReading reading_of(const FitOptions& o, const std::vector<std::filesystem:
 std::string geometry_words(const RecordReading& r, const FitOptions& o, bool sheared_evenly) {
   if (!r.geometry.words.empty() && (!sheared_evenly || r.options.stress_constant)) return r.geometry.words;
   if (sheared_evenly)
-    return "none: shear rate and shear stress as the instrument converted them, which is trusted";
+    return std::string(
+               "none: shear rate and shear stress as the instrument converted them, which is trusted") +
+           (r.default_geometry ? "" : "; the geometry that is given does not enter");
   return text_of("vane, radius %.6g mm, height %.6g mm, in a container of radius %.6g mm",
                  1e3 * o.vane_radius, 1e3 * o.vane_height, 1e3 * o.container_radius) +
          (r.default_geometry ? ": the default (ICAR), none is given" : "");

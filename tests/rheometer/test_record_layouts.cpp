@@ -125,12 +125,32 @@ TEST(RecordLayouts, ShearRatesAndStressesOfManyInstruments) {
       shear_first());
 }
 
-TEST(RecordLayouts, TablesOfOneFileGoTogether) {
-  const std::string table = "[step]\nFlow\nShear rate\tStress\n1/s\tPa\n1\t2\n10\t20\n";
-  const TorqueRecord r = parse_torque_record("Filename\tx\n" + table + "\n" + table, "r.csv");
-  EXPECT_EQ(r.torque.size(), 4u);
-  EXPECT_NE(r.understood.back().find("2 tables: lines 6 to 7; lines 13 to 14"), std::string::npos)
-      << r.understood.back();
+// Rheocalc writes a clock's time, without a unit.
+TEST(RecordLayouts, AClocksTimeIsInSeconds) {
+  const TorqueRecord r =
+      parse_torque_record("Time,Torque (mN m)\n00:00:01.5,8\n00:01:00,7\n01:00:00,6\n", "r.csv");
+  EXPECT_DOUBLE_EQ(r.time[0], 1.5);
+  EXPECT_DOUBLE_EQ(r.time[2], 3600.0);
+}
+
+// Two steps are two flow curves: the first is read, or the one that is asked for. A header that is repeated within a table
+// begins none.
+TEST(RecordLayouts, OfSeveralTablesOneIsRead) {
+  const std::string head = "[step]\nFlow\nShear rate\tStress\n1/s\tPa\n",
+                    text = "Filename\tx\n" + head + "1\t2\n10\t20\n\n" + head + "1\t3\n10\t30\n";
+  const TorqueRecord first = parse_torque_record(text, "r.csv");
+  ASSERT_EQ(first.torque.size(), 2u);
+  EXPECT_DOUBLE_EQ(first.torque[1], 20.0);
+  EXPECT_NE(first.understood.back().find("table 1 of 2, lines 6 to 7"), std::string::npos)
+      << first.understood.back();
+  ReadOptions second;
+  second.table = 2;
+  EXPECT_DOUBLE_EQ(parse_torque_record(text, "r.csv", 0.0, second).torque[1], 30.0);
+  second.table = 3;
+  EXPECT_NE(refusal(text, second).find("the file has 2"), std::string::npos);
+  const TorqueRecord repeated =
+      parse_torque_record("speed_rpm;torque_N_m\n30;2\nspeed_rpm;torque_N_m\n20;1\n", "r.csv");
+  EXPECT_EQ(repeated.torque.size(), 2u);
 }
 
 TEST(RecordLayouts, SpringsOfDialsAndShares) {

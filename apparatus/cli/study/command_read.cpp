@@ -26,9 +26,9 @@ struct Reading {
 
 /// The options of a fit that say how its record is read.
 std::vector<const FitOption*> reading_options() {
-  static const std::string_view names[] = {"vane_radius",   "vane_height",       "container_radius",
-                                           "torque_offset", "geometry",          "column",
-                                           "decimal",       "torque_per_degree", "full_scale_torque"};
+  static const std::string_view names[] = {
+      "vane_radius", "vane_height", "container_radius",  "torque_offset",    "geometry", "column",
+      "decimal",     "table",       "torque_per_degree", "full_scale_torque"};
   std::vector<const FitOption*> options;
   for (const FitOption& option : fit_options())
     if (std::find(std::begin(names), std::end(names), option.name) != std::end(names))

@@ -59,6 +59,16 @@ void add_peaks(const Structuration& a, Page& page) {
   if (can_be_drawn(chart)) page.figures.push_back({"peaks", "", chart_svg(chart)});
 }
 
+/// "yield stress 54 (53.2 to 55) Pa, plastic viscosity 35.8 (35 to 36.6) Pa·s"; of what the record tells.
+std::string parameters_text(const FitResult& fit) {
+  std::string text;
+  for (const FitParameter& p : parameters_of(fit))
+    if (const auto e = value_of(fit, p); e && !e->given)
+      text +=
+          fmt::format("{}{} {} {}", text.empty() ? "" : ", ", p.words, with_interval(*e, 3), unit_on_page(p));
+  return text.empty() ? "–" : text;
+}
+
 std::vector<std::string> row(const SectionReading& s, std::size_t number, bool sheared_evenly) {
   const double torque = sheared_evenly ? 1.0 : 1e3;
   std::optional<double> peak, stress, modulus;
@@ -73,7 +83,8 @@ std::vector<std::string> row(const SectionReading& s, std::size_t number, bool s
           text_of(peak),
           text_of(stress),
           text_of(modulus),
-          s.fit ? fmt::format("{}, {:.2g} %", s.fit->model, 100.0 * s.fit->scatter) : "–"};
+          s.fit ? fmt::format("{}, {:.2g} %", s.fit->model, 100.0 * s.fit->scatter) : "–",
+          s.fit ? parameters_text(*s.fit) : "–"};
 }
 
 }  // namespace
@@ -100,13 +111,16 @@ std::string protocol_html(const ProtocolRecord& record, const ProtocolReading& r
   GridTable table{"Sections",
                   {"", "kind", shown_units(record.sheared_evenly).speed_label, "rest before (s)",
                    record.sheared_evenly ? "peak (Pa)" : "peak (mN·m)", "static yield stress (Pa)",
-                   "shear modulus (Pa)", "model, scatter"},
+                   "shear modulus (Pa)", "model, scatter", "parameters"},
                   {}};
   for (std::size_t i = 0; i < reading.sections.size(); ++i)
     if (reading.sections[i].section.kind != SectionKind::rest)
       table.rows.push_back(row(reading.sections[i], i + 1, record.sheared_evenly));
   page.grids = {table};
   page.remarks = a.notes;
+  for (std::size_t i = 0; i < reading.sections.size(); ++i)
+    for (const std::string& note : reading.sections[i].notes)
+      page.remarks.push_back(fmt::format("Section {}: {}", i + 1, note));
   for (const auto& note : record.understood) page.remarks.push_back("Read: " + note);
   page.words = {"Static yield stress: of the peak of a start-up, over the vane's side.",
                 "A_thix: how fast rest builds the yield stress up."};
