@@ -79,7 +79,8 @@ std::string verdict(const Comparison& c) {
 
 std::vector<Section> all_sections(const Settings& settings) {
   std::vector<Section> sections;
-  for (const auto make : {paper_mixes, breakdown_of_pairs, sliding_floor, torque_records, slump_pairs, stiff_mixes}) {
+  for (const auto make :
+       {paper_mixes, breakdown_of_pairs, sliding_floor, torque_records, slump_pairs, stiff_mixes}) {
     sections.push_back(make(settings));
     if (settings.say) settings.say(sections.back().title);
   }

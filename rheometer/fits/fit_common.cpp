@@ -4,9 +4,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "rheometer/tables/text.hpp"
 #include "rheometer/regression/lack_of_fit.hpp"
 #include "rheometer/regression/statistics.hpp"
+#include "rheometer/tables/text.hpp"
 
 namespace tremie {
 

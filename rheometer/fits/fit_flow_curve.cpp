@@ -5,9 +5,9 @@
 
 #include "rheometer/fits/fit_common.hpp"
 #include "rheometer/fits/flow_law.hpp"
-#include "rheometer/tables/text.hpp"
 #include "rheometer/regression/lack_of_fit.hpp"
 #include "rheometer/regression/statistics.hpp"
+#include "rheometer/tables/text.hpp"
 
 namespace tremie::fitting {
 

@@ -6,10 +6,10 @@
 #include <string>
 #include <utility>
 
-#include "rheometer/tables/table.hpp"
 #include "rheometer/records/torque_record.hpp"
 #include "rheometer/reference/flocculation_ode.hpp"
 #include "rheometer/reference/references.hpp"
+#include "rheometer/tables/table.hpp"
 
 namespace tremie {
 

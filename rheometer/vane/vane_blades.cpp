@@ -6,8 +6,8 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "rheometer/tables/number_rows.hpp"
 #include "rheometer/reference/reiner_riwlin.hpp"
+#include "rheometer/tables/number_rows.hpp"
 #include "rheometer/vane/table.hpp"
 
 namespace tremie {
