@@ -363,7 +363,7 @@ class Checker {
                              !find_key(section, key.only_with->key)->implied_by.empty();
         if (!implied && given.layer != Layer::fallback && given.layer >= decider.origin.layer)
           report(given, full, why);
-        else if (given.layer > Layer::preset)
+        else if (!implied && given.layer > Layer::preset)
           values_.notes.push_back(fmt::format("{}: {} {}", describe(given), full, why));
         values_.drop(full);
       }

@@ -83,7 +83,7 @@ struct Key {
       {};  ///< `required`, but not beside one of these keys of the section
   std::optional<Condition> only_with = {};
   /// The word in place of `fallback` where a scene gives one of these keys (full names): that of the latest layer, then
-  /// the first. Keys that do not go with a word so chosen are left out with a note.
+  /// the first. Keys that do not go with a word so chosen are left out.
   std::vector<std::pair<std::string, std::string>> implied_by = {};
   std::string example = {};  ///< for `tremie new`, where there is no default
   bool varies = false;       ///< another key decides on the default: `tremie new` leaves it off

@@ -57,9 +57,9 @@ struct RatePowerKinetics {
   static constexpr DecayFitRules decay_fit{.needs_speeds = true};
   static constexpr std::array<LawKey<RatePowerKinetics>, 5> keys() {
     using K = RatePowerKinetics;
-    return {{{"mix.thixotropy.breakdown_rate", &K::breakdown, "1/s", "0.26 1/s", "",
+    return {{{"mix.thixotropy.breakdown_rate", &K::breakdown, "1/s", "0.334 1/s", "",
               "k: breakdown by k lambda^n gamma_dot^a, gamma_dot in 1/s", 0.0, unbounded, false},
-             {"mix.thixotropy.rate_exponent", &K::rate_exponent, "", "0.2", "",
+             {"mix.thixotropy.rate_exponent", &K::rate_exponent, "", "0.1", "",
               "a: 0, breakdown takes time; 1, it takes strain", 0.0, 1.0, false},
              {.name = "mix.thixotropy.critical_shear_rate",
               .member = &K::gamma_c,

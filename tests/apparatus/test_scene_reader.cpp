@@ -80,8 +80,8 @@ TEST(SceneReader, DefaultsAreTheDocumentedOnes) {
   EXPECT_EQ(s.mix.thixotropy->A_thix, 1.3);
   const auto* kinetics = std::get_if<RatePowerKinetics>(&s.mix.thixotropy->kinetics);
   ASSERT_TRUE(kinetics);
-  EXPECT_EQ(kinetics->breakdown, 0.26);
-  EXPECT_EQ(kinetics->rate_exponent, 0.2);
+  EXPECT_EQ(kinetics->breakdown, 0.334);
+  EXPECT_EQ(kinetics->rate_exponent, 0.1);
   EXPECT_FALSE(kinetics->gate());
   EXPECT_EQ(kinetics->exponent, 1.0);
   EXPECT_EQ(s.rest, 0.0);

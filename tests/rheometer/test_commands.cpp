@@ -142,8 +142,9 @@ TEST_F(Commands, FitWritesTheParametersOfADecay) {
 // Bi = tau_0/(mu Omega): at 0.025 rev/s 366 Pa over 35.8 Pa s is 65, beyond the blades' 40 for ICAR's container; at 0.25
 // rev/s it is 6.5.
 TEST_F(Commands, FitSaysWhereTheBladesTableEnds) {
-  const std::string run =
-      "run '" TREMIE_SCENES "/icar_vane_mix_a_rest240.toml' --quiet --set test.duration='20 s' --out ";
+  const std::string run = "run '" TREMIE_SCENES
+                          "/icar_vane_mix_a_rest240.toml' --set mix.thixotropy.kinetics=gated --quiet --set "
+                          "test.duration='20 s' --out ";
   const std::string fit =
       " --rest '240 s' --plastic-viscosity '35.8 Pa.s' --yield-stress '54 Pa' --blades computed --speed ";
   ASSERT_EQ(tremie(run + "slow --set test.speed='0.025 rev/s'").code, 0);

@@ -65,13 +65,22 @@ double first_explicit_step(const Scene& scene) {
   return settings.safety * limits.together;
 }
 
+/// How long structure holds the concrete after a rest, where it breaks down by time [s]; 0 where it does not.
+double time_to_break_down(const Scene& scene) {
+  if (!scene.mix.thixotropy) return 0.0;
+  const auto* kinetics = std::get_if<RatePowerKinetics>(&scene.mix.thixotropy->kinetics);
+  if (!kinetics || !(kinetics->breakdown > 0.0) || kinetics->rate_exponent > 0.3) return 0.0;
+  return std::log(static_yield_stress_at_start(scene) / scene.mix.tau_0) / kinetics->breakdown;
+}
+
 /// When the flow is expected to have come to rest and the run to end [s]: by the viscous time mu/tau_y, as Mixes A
 /// to C do with and without rest, to a third; longer where no build-up ends the creep.
 double expected_time(const Scene& scene) {
-  const double tau_y = static_yield_stress_at_start(scene);
+  const double broken_down = time_to_break_down(scene);
+  const double tau_y = broken_down > 0.0 ? scene.mix.tau_0 : static_yield_stress_at_start(scene);
   const double viscous = (scene.mix.mu + viscosity(scene.model.law, typical_rate, tau_y)) / tau_y;
   const bool space = scene.model.space != SpaceKind::axisymmetric;
-  const double time = 1.2 + (space ? 19.0 : scene.mix.thixotropy ? 16.5 : 27.0) * viscous;
+  const double time = 1.2 + broken_down + (space ? 19.0 : scene.mix.thixotropy ? 16.5 : 27.0) * viscous;
   return is_explicit(scene.model) || !(time < scene.duration) ? scene.duration : time;
 }
 
@@ -85,8 +94,9 @@ double collapse_steps(const Scene& scene, double cfl) {
 /// rest and at 300 Pa, on cells of 20×20 to 5×2.5 mm.
 double share_of_collapse(const Scene& scene) {
   if (scene.model.space != SpaceKind::axisymmetric) return 0.35;
-  const double stiffness =
-      static_yield_stress_at_start(scene) / (scene.mix.density * gravity * scene.cone.height);
+  const double tau_y =
+      time_to_break_down(scene) > 0.0 ? scene.mix.tau_0 : static_yield_stress_at_start(scene);
+  const double stiffness = tau_y / (scene.mix.density * gravity * scene.cone.height);
   return std::max(0.1, 0.78 - 3.5 * stiffness);
 }
 
