@@ -61,6 +61,11 @@ inline std::optional<double> destructuration(const Kinetics& kinetics) {
 inline bool breaks_down(const Kinetics& kinetics) {
   return std::visit([](const auto& k) { return k.breaks_down(); }, kinetics);
 }
+/// Whether breakdown goes with less than the first power of the shear rate, so that slow shear counts.
+inline bool slow_shear_breaks_down(const Kinetics& kinetics) {
+  const auto* by_power = std::get_if<RatePowerKinetics>(&kinetics);
+  return by_power && by_power->rate_exponent < 1.0;
+}
 /// The shares of the parts of lambda that a point stores besides their sum: none where lambda is the whole state.
 inline std::vector<double> part_shares(const Kinetics& kinetics) {
   std::vector<double> shares;

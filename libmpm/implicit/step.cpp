@@ -62,7 +62,7 @@ StepReport step_from_grid(ImplicitBody<Geometry>& body, const YieldLaw& law, con
   release(posed->contact);
 
   // Grid to points: state first, where the points were, then the move.
-  if (body.points.thixotropic()) update_flocculation(body, dt, body.points);
+  if (body.points.thixotropic()) update_flocculation<Form>(problem, law, body, dt, body.points);
   update_volumes(problem, body.v, body.points);
   std::vector<double> gamma_dot;
   body.shear_rate = Form::shear_rates(problem, body, gamma_dot);

@@ -37,11 +37,30 @@ void update_volumes(const YieldProblem<Geometry>& problem, const std::vector<Vec
   }
 }
 
-/// lambda of every point, equation (3).
-template <class Geometry>
-void update_flocculation(const ImplicitBody<Geometry>& body, double dt, Points<Geometry::dim>& points) {
+/// Sets the shear rate to 0 in cells whose stress is below the yield stress throughout: the grid's velocities keep the
+/// solver's error there, some 1e-5 1/s, which breaks structure down where breakdown hardly depends on the rate.
+template <class Form, class Geometry>
+void clear_rigid_cells(const YieldProblem<Geometry>& problem, const YieldLaw& law,
+                       const ImplicitBody<Geometry>& body, std::vector<double>& gamma_dot) {
+  constexpr double yields = 1.0 - 1e-6;
+#pragma omp parallel for schedule(static)
+  for (int c = 0; c < problem.grid.n_cells(); ++c) {
+    bool rigid = true;
+    for (int k = 0; k < power(2, Geometry::dim) && rigid; ++k)
+      rigid = Form::stress(law, body.admm_state, c, k).norm() < yields * problem.quadrature.tau_y[c][k];
+    for (int i = problem.grid.cell_begin[c]; rigid && i < problem.grid.cell_begin[c + 1]; ++i)
+      gamma_dot[problem.grid.order[i]] = 0.0;
+  }
+}
+
+/// lambda of every point, by the kinetics of the mix.
+template <class Form, class Geometry>
+void update_flocculation(const YieldProblem<Geometry>& problem, const YieldLaw& law,
+                         const ImplicitBody<Geometry>& body, double dt, Points<Geometry::dim>& points) {
   std::vector<double> gamma_dot;
   shear_rate_at_points<Geometry>(body.grid, body.v, points, gamma_dot);
+  if (is_exact(law) && slow_shear_breaks_down(body.mix.thixotropy->kinetics))
+    clear_rigid_cells<Form>(problem, law, body, gamma_dot);
 #pragma omp parallel for schedule(static)
   for (std::size_t p = 0; p < points.size(); ++p)
     points.lambda[p] = flocculation_step(points.lambda[p], *body.mix.thixotropy, body.mix.tau_0,

@@ -43,7 +43,7 @@ struct Breakdown {
 std::optional<double> excess_half_time(const Fall& fall);
 
 /// At most six modes of the gamma distribution of rates whose Laplace transform is (1 + t/t_0)^-m, factors on `rate` [1/s];
-/// m and t_0 > 0. Their sum is within 0.02 of it until 100/rate.
+/// m and t_0 > 0. Their sum is within 0.03 of it until 100/rate.
 std::vector<BreakdownMode> modes_of_gamma(double m, double t_0, double rate);
 
 /// k and a of several falls; `modes` is left to who knows a fall's shape.

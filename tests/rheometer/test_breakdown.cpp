@@ -46,7 +46,7 @@ TEST(Breakdown, OneSpeedTellsNoExponent) {
 
 TEST(Breakdown, ALevelTorqueHasNoHalfTime) { EXPECT_FALSE(excess_half_time(fall_at(4.2, 0.3, 0.15, 0.001))); }
 
-// sum share e^(-factor rate t) is (1 + t/t_0)^-m within 0.02, by the width of a mode.
+// sum share e^(-factor rate t) is (1 + t/t_0)^-m within 0.03, by the width of a mode.
 TEST(Breakdown, ModesAreAGammaDistributionOfRates) {
   for (const double m : {0.4, 1.0, 2.5}) {
     const double t_0 = 0.7, rate = std::numbers::ln2 / (t_0 * (std::pow(2.0, 1.0 / m) - 1.0));
@@ -54,7 +54,7 @@ TEST(Breakdown, ModesAreAGammaDistributionOfRates) {
     for (double t = 0.01 / rate; t < 100.0 / rate; t *= 1.5) {
       double sum = 0.0;
       for (const BreakdownMode& mode : modes) sum += mode.share * std::exp(-mode.factor * rate * t);
-      EXPECT_NEAR(sum, std::pow(1.0 + t / t_0, -m), 0.02) << m << ' ' << t * rate;
+      EXPECT_NEAR(sum, std::pow(1.0 + t / t_0, -m), 0.03) << m << ' ' << t * rate;
     }
   }
 }
