@@ -65,12 +65,13 @@ double first_explicit_step(const Scene& scene) {
   return settings.safety * limits.together;
 }
 
-/// How long structure holds the concrete after a rest, where it breaks down by time [s]; 0 where it does not.
+/// How long structure holds the concrete back after a rest, where it breaks down by time [s]: twice the time in which the
+/// yield stress falls to tau_0, by runs of Mixes A to C; 0 where it does not.
 double time_to_break_down(const Scene& scene) {
   if (!scene.mix.thixotropy) return 0.0;
   const auto* kinetics = std::get_if<RatePowerKinetics>(&scene.mix.thixotropy->kinetics);
   if (!kinetics || !(kinetics->breakdown > 0.0) || kinetics->rate_exponent > 0.3) return 0.0;
-  return std::log(static_yield_stress_at_start(scene) / scene.mix.tau_0) / kinetics->breakdown;
+  return 2.0 * std::log(static_yield_stress_at_start(scene) / scene.mix.tau_0) / kinetics->breakdown;
 }
 
 /// When the flow is expected to have come to rest and the run to end [s]: by the viscous time mu/tau_y, as Mixes A
