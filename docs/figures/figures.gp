@@ -27,27 +27,29 @@ plot rows("section", "C") using 5:($4*100) with linespoints pt 7 lc 1 title "Tre
 
 reset
 set datafile separator ","
-set terminal svg size 1000,640 font "sans,13" background "white"
+set terminal svg size 1000,720 font "sans,13" background "white"
 set grid lc "#dddddd"
 set output "validation.svg"
 set multiplot layout 1,2
 table(pattern) = sprintf("< grep '%s' ../../tests/verification/validation.csv | sed 's/\"[^\"]*\"/text/g'", pattern)
-set key below vertical maxrows 7 reverse Left
+set key below vertical maxrows 9 reverse Left
 set xlabel "measured / mm" offset 0, 0.6
 set ylabel "predicted / mm"
 set xrange [0:700]
 set yrange [0:700]
 plot x with lines lc 8 dt 2 title "predicted as measured", \
      table("fresh, no slip") using 4:6:5:7 with xyerrorbars pt 7 lc 1 title "spread, fresh, no slip", \
-     table("rested, no slip") using 4:6:5:7 with xyerrorbars pt 5 lc 7 title "spread, 240 s of rest, no slip, α = 0.01", \
+     table("rested, no slip") using 4:6:5:7 with xyerrorbars pt 5 lc 7 title "240 s of rest, no slip, α = 0.01", \
      table("fresh, friction") using 4:6:5:7 with xyerrorbars pt 6 lc 1 title "spread, fresh, friction", \
-     table("rested, friction") using 4:6:5:7 with xyerrorbars pt 4 lc 7 title "spread, 240 s, friction, α = 0.01", \
-     table("^alpha") using 4:6:5:7 with xyerrorbars pt 9 lc 2 title "spread, 240 s, α from the other two mixes", \
-     table("^slump") using 4:6:5:7 with xyerrorbars pt 2 lc rgb "#888888" title "slump: a published correlation, no measurement"
+     table("rested, friction") using 4:6:5:7 with xyerrorbars pt 4 lc 7 title "240 s of rest, friction, α = 0.01", \
+     table("^sliding.*fresh") using 4:6:5 with xerrorbars pt 9 lc 2 title "fresh, sliding floor of the other two", \
+     table("^sliding.*rested") using 4:6:5 with xerrorbars pt 8 lc 2 title "240 s, the same, a = 0.1", \
+     table("^slump") using 4:6:5:7 with xyerrorbars pt 2 lc rgb "#888888" title "slump: a correlation, no measurement"
 set xlabel "measured / Pa" offset 0, 0.6
 set ylabel "predicted / Pa"
 set xrange [0:2700]
 set yrange [0:2700]
 plot x with lines lc 8 dt 2 title "predicted as measured", \
-     table("^torque,.paste") using 4:6:5:7 with xyerrorbars pt 7 lc 4 title "static yield stress of a paste, from shorter rests"
+     table("^torque,.paste.*line") using 4:6:5:7 with xyerrorbars pt 7 lc 4 title "paste, static yield stress: a line", \
+     table("^torque,.paste.*saturating") using 4:6:5 with xerrorbars pt 6 lc 4 title "the same, saturating"
 unset multiplot

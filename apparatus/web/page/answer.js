@@ -75,7 +75,7 @@ function measuredText(spread, {value, tolerance}) {
   if (Math.abs(by) <= tolerance) return [`${stands}; the computed spread agrees`, "good"];
   return [
     `${stands}; computed ${Math.abs(by).toFixed(0)} mm ${
-        sign}, beyond that. The spread computed follows from a rheometer's values and an α from the literature.`,
+        sign}, beyond that. The spread computed follows from a rheometer's values, on a floor that holds the concrete.`,
     "bad"
   ];
 }
