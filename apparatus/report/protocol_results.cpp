@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "apparatus/report/fit_results.hpp"
+#include "libmpm/constitutive/constants.hpp"
 
 namespace tremie::report {
 namespace {
