@@ -31,10 +31,10 @@ double by_cvode(const Thixotropy& t, double lambda, double rate, double duration
 
 // a = 1: Roussel's, the gated and the power kinetics, digit for digit.
 TEST(RatePowerKinetics, HasTheOthersAsSpecialCases) {
-  for (const auto& [g_0, g_1] : {std::pair{0.0, 3.0}, {3.0, 0.02}, {12.0, 11.0}, {0.05, 0.01}, {0.0, 0.0}})
+  for (const auto& rates : {std::pair{0.0, 3.0}, {3.0, 0.02}, {12.0, 11.0}, {0.05, 0.01}, {0.0, 0.0}})
     for (const double dt : {1e-3, 0.3, 50.0}) {
       const auto step = [&](const Kinetics& kinetics) {
-        return flocculation_step(5.78, Thixotropy{A_thix, kinetics}, tau_0, g_0, g_1, dt);
+        return flocculation_step(5.78, Thixotropy{A_thix, kinetics}, tau_0, rates.first, rates.second, dt);
       };
       EXPECT_EQ(step(RatePowerKinetics{k, 1.0}), step(RousselKinetics{k}));
       EXPECT_EQ(step(RatePowerKinetics{k, 1.0, 0.1}), step(GatedKinetics{k, 0.1}));
