@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libmpm/constitutive/constants.hpp"
+
 namespace tremie::scene {
 namespace {
 
@@ -18,8 +20,6 @@ constexpr const char* structuration =
     "Roussel 2006: 0.5 Pa/s is highly thixotropic; to 2.9 in the paper's mixes";
 constexpr const char* waiting = "from a second to the end of workability, EFFC/DFI 2018";
 constexpr const char* readings = "EN 12350-8 and mini cones";
-
-constexpr double turn = 6.283185307179586;
 
 /// Key, lowest and highest, source.
 const std::vector<UsualRange> table{
@@ -52,9 +52,9 @@ const std::vector<UsualRange> table{
     {"vane.shaft_radius", 1e-3, 50e-3, rheometers},
     {"vane.bottom_gap", 1e-3, 0.5, rheometers},
     {"vane.cover", 1e-3, 0.5, rheometers},
-    {"test.speed", 1e-3 * turn, 3.0 * turn, rheometers},
-    {"test.speeds", 1e-3 * turn, 3.0 * turn, rheometers},
-    {"test.pre_shear_speed", 1e-3 * turn, 3.0 * turn, rheometers},
+    {"test.speed", 1e-3 * two_pi, 3.0 * two_pi, rheometers},
+    {"test.speeds", 1e-3 * two_pi, 3.0 * two_pi, rheometers},
+    {"test.pre_shear_speed", 1e-3 * two_pi, 3.0 * two_pi, rheometers},
 };
 
 bool is_usual(const UsualRange& range, double value) {
