@@ -60,7 +60,7 @@ Outcome run_implicit_in(const Scene& scene, const scene::Observer& observer) {
           [&] {
             const double left = scene.duration - body.time;
             // The second half of a halved step is as long as the first but for rounding, and is not halved again.
-            settings.time_left = experiment::without_sliver(left, body.dt * (1.0 + 1e-9));
+            settings.time_left = experiment::without_sliver(left, body.dt);
             settings.fixed_dt = experiment::fixed_step(scene.model, left);
             settings.dt_longest = longest_creep_step * body.time;
             settings.detached = flows ? 0.0 : detached_share;
