@@ -1,5 +1,5 @@
 #!/bin/sh
-# Figures 1, 2 and 4 of docs/paper_page.md: make_figures.sh PROGRAM computes what they show anew (some 40 s of one core) and draws them;
+# Figures 2 and 3 of docs/paper_page.md: make_figures.sh PROGRAM computes what they show anew (some 40 s of one core) and draws them;
 # without a program it draws them from the tables that lie here. Needs python3 and gnuplot.
 set -eu
 [ $# -eq 0 ] || python3 "$(dirname "$0")/compute.py" "$1"
