@@ -46,10 +46,17 @@ foreach(level ${TREMIE_LEVELS})
   endif()
 endforeach()
 
+# Two changelogs in a package: ours for users, and Debian's by version.
+set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/CHANGELOG.md)
 execute_process(COMMAND gzip -9nc ${PROJECT_SOURCE_DIR}/CHANGELOG.md OUTPUT_FILE ${PROJECT_BINARY_DIR}/changelog.gz)
+execute_process(COMMAND ${PROJECT_SOURCE_DIR}/cmake/debian_changelog.sh ${PROJECT_SOURCE_DIR}/CHANGELOG.md ${PROJECT_VERSION}
+                        ${CPACK_DEBIAN_PACKAGE_RELEASE}
+                COMMAND gzip -9nc OUTPUT_FILE ${PROJECT_BINARY_DIR}/changelog.Debian.gz)
+set(changelogs ${PROJECT_BINARY_DIR}/changelog.gz ${PROJECT_BINARY_DIR}/changelog.Debian.gz)
 set(documents ${CMAKE_INSTALL_DATADIR}/doc)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${documents}/tremie RENAME copyright)
-install(FILES ${PROJECT_BINARY_DIR}/changelog.gz DESTINATION ${documents}/tremie)
+install(FILES ${changelogs} DESTINATION ${documents}/tremie)
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME tremie)
@@ -71,13 +78,13 @@ set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXE
 
 if(TREMIE_PYTHON_FOUND)
   install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${documents}/python3-tremie RENAME copyright COMPONENT python)
-  install(FILES ${PROJECT_BINARY_DIR}/changelog.gz DESTINATION ${documents}/python3-tremie COMPONENT python)
+  install(FILES ${changelogs} DESTINATION ${documents}/python3-tremie COMPONENT python)
   math(EXPR next_minor "${Python_VERSION_MINOR} + 1")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-tremie)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
   set(CPACK_DEBIAN_PYTHON_DESCRIPTION "The same in Python: scenes, fits and estimates in process, results as NumPy\n arrays.")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
-      "tremie (= ${PROJECT_VERSION}), python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}), python3 (<< ${Python_VERSION_MAJOR}.${next_minor}), python3-numpy")
+      "tremie (= ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE}), python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}), python3 (<< ${Python_VERSION_MAJOR}.${next_minor}), python3-numpy")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-h5py, python3-matplotlib")
 endif()
 include(CPack)
