@@ -49,7 +49,7 @@ std::optional<TorqueLimit> torque_limit(const std::vector<double>& x, const std:
   const std::size_t rows = to - from;
   std::size_t places = rows > 0;
   for (std::size_t i = from + 1; i < to; ++i) places += x[i] > x[i - 1] * (1.0 + 1e-9);
-  if (places < fewest) return std::nullopt;
+  if (places < fewest || rows == n) return std::nullopt;
   const auto leaves = [&](std::size_t row) { return most - torque[row] >= 20.0 * resolution; };
   if (from > 0 && !leaves(from > rows ? from - rows : 0)) return std::nullopt;
   if (to < n && !leaves(std::min(n - 1, to + rows - 1))) return std::nullopt;

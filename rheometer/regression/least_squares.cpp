@@ -277,15 +277,16 @@ std::vector<double> residuals_as_taken(const LeastSquaresProblem& p, const Least
 /// By how much correlated residuals widen the covariance; takes their degrees of freedom off. 1 where the order of the
 /// readings is not known.
 double widened_by_correlation(const LeastSquaresOptions& options, LeastSquaresFit& fit) {
-  const double n = fit.degrees_of_freedom + static_cast<double>(fit.parameters.size());
+  const auto p = static_cast<double>(fit.parameters.size());
+  const double n = fit.degrees_of_freedom + p;
   fit.independent = n;
   if (!options.readings_in_time_order && options.taken.empty()) return 1.0;
-  const CorrelatedNoise noise =
-      correlated_noise(fit.correlation, n, static_cast<double>(fit.parameters.size()));
+  const CorrelatedNoise noise = correlated_noise(fit.correlation, n, p);
   if (noise.inflation == 1.0) return 1.0;
   fit.independent = noise.independent;
-  fit.degrees_of_freedom = noise.independent - static_cast<double>(fit.parameters.size());
-  return noise.inflation;
+  fit.degrees_of_freedom = noise.independent - p;
+  // each parameter takes so many readings' share of the noise with it, so that the residuals read low
+  return noise.inflation * (n - p) / (n - p * noise.inflation);
 }
 
 }  // namespace
