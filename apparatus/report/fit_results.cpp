@@ -3,6 +3,7 @@
 #include "apparatus/report/protocol_results.hpp"
 #include "libmpm/constitutive/constants.hpp"
 #include "rheometer/fits/flow_law.hpp"
+#include "rheometer/whole_fit/tribometer.hpp"
 
 namespace tremie::report {
 
@@ -64,7 +65,9 @@ Json candidates_json(const FitResult& r) {
 
 Json fit_results(const FitResult& r) {
   Json j;
-  j["kind"] = r.kind == RecordKind::torque_decay ? "torque_decay" : "flow_curve";
+  j["kind"] = r.kind == RecordKind::torque_decay ? "torque_decay"
+              : r.model == interface_model       ? "tribometer"
+                                                 : "flow_curve";
   j["yield_stress_Pa"] = json_of(r.tau_0);
   j["plastic_viscosity_Pa_s"] = json_of(r.mu);
   j["static_yield_stress_Pa"] = json_of(r.static_yield_stress);
@@ -95,6 +98,12 @@ Json fit_results(const FitResult& r) {
 }
 
 namespace {
+
+/// [walls] of a scene; null where a parameter is not identifiable.
+Json json_of_walls(const FitResult& r) {
+  const std::string text = scene_walls(r);
+  return text.empty() ? Json(nullptr) : Json(text);
+}
 
 Json moves_json(const std::vector<MoveByEnds>& moves) {
   Json json;
@@ -127,6 +136,7 @@ Json fit_results(const RecordFits& fits, const std::vector<std::string>& records
   Json json = fits.protocol          ? protocol_results(fits.protocol->reading)
               : fits.fits.size() > 1 ? replicates_json(fits, records)
                                      : fit_results(fits.fits.front());
+  if (fits.options.tribometer) json["walls"] = json_of_walls(fits.fits.front());
   if (fits.protocol) json["understood"] = fits.protocol->record.understood;
   json["geometry"] = {{"words", fits.geometry}, {"default", fits.default_geometry}};
   json["ends"] = {{"correction", fits.options.ends}, {"factor", fits.end_factor}};

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
+#include "rheometer/records/torque_limit.hpp"
 #include "rheometer/regression/lack_of_fit.hpp"
 #include "rheometer/regression/statistics.hpp"
 #include "rheometer/tables/text.hpp"
@@ -28,6 +30,25 @@ void judge_sizes(const TorqueRecord& record, const FitInput& input, FitResult& r
   if (speed > angular_speed(10.001))
     result.reasons.push_back("the vane turns at " + std::to_string(speed / angular_speed(1.0)) +
                              " rev/s: is the speed's unit right?");
+}
+
+/// A peak that the instrument cuts off, and speeds at which it cannot carry more.
+void judge_limit(const TorqueRecord& record, FitResult& result) {
+  std::vector<double> x = record.time, torque = record.torque;
+  if (record.kind == RecordKind::flow_curve) {
+    std::vector<std::pair<double, double>> rows;
+    for (std::size_t i = 0; i < torque.size(); ++i) rows.emplace_back(record.omega[i], torque[i]);
+    std::sort(rows.begin(), rows.end());
+    x.clear(), torque.clear();
+    for (const auto& [omega, value] : rows) x.push_back(omega), torque.push_back(value);
+  }
+  if (const auto limit = torque_limit(x, torque))
+    result.reasons.push_back(
+        text_of("%ld rows in a row have the same largest %s, %.5g %s, and the others fall away from it: the "
+                "instrument's limit, "
+                "above which nothing is recorded",
+                limit->rows, record.sheared_evenly ? "stress" : "torque", limit->torque,
+                record.sheared_evenly ? "Pa" : "N.m"));
 }
 
 /// What the parameters hold for: a gap of 3 grains is no continuum, 5 are the usual demand (Feys et al. 2018).
@@ -69,6 +90,7 @@ FitResult fit(const TorqueRecord& record, const FitInput& input) {
   FitResult result = record.kind == RecordKind::flow_curve ? fitting::fit_flow_curve(record, input)
                                                            : fitting::fit_torque_decay(record, input);
   judge_sizes(record, input, result);
+  judge_limit(record, result);
   judge_gap(input, result);
   return result;
 }

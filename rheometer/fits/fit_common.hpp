@@ -62,6 +62,12 @@ void add_candidate(const std::string& name, const Readings& readings, const Leas
                    double least, bool chosen, FitResult& result);
 
 FitResult fit_flow_curve(const TorqueRecord& record, const FitInput& input);
-FitResult fit_torque_decay(const TorqueRecord& record, const FitInput& input);
+
+enum class Stability { judged, taken_for_granted };
+
+/// `stability`: where neither yield stress nor viscosity is given, whether parameters that hang on the record's clock or on
+/// its parts are looked for (decay_stability.hpp).
+FitResult fit_torque_decay(const TorqueRecord& record, const FitInput& input,
+                           Stability stability = Stability::judged);
 
 }  // namespace tremie::fitting

@@ -5,7 +5,7 @@
 
 #include "rheometer/fits/fit_common.hpp"
 #include "rheometer/fits/flow_law.hpp"
-#include "rheometer/regression/lack_of_fit.hpp"
+#include "rheometer/fits/law_choice.hpp"
 #include "rheometer/regression/statistics.hpp"
 #include "rheometer/tables/text.hpp"
 
@@ -33,68 +33,20 @@ Readings readings_of(const TorqueRecord& record, FitResult& result) {
   return condense(all, most_readings, result);
 }
 
-bool several_speeds(const Readings& r) { return r.size() >= 2 && r.x.back() > r.x.front() * (1.0 + 1e-9); }
-
-/// A law with all of its parameters, given or fitted.
-struct Fitted {
-  const FlowLaw* law = nullptr;
-  std::vector<double> all;
-  std::vector<std::size_t> free;  ///< of `all`: those in fit.parameters
-  LeastSquaresFit fit;
-
-  double yield_stress() const { return all[0]; }
-  FlowTorque at(double omega, const Instrument& in) const { return law->torque(all, omega, in); }
-};
-
-/// The parameter's value where the input gives it.
-std::optional<double> given_value(const FitInput& input, const LawParameter& p) {
-  return p.row.member == &FitResult::tau_0 ? input.tau_0
-         : p.row.member == &FitResult::mu  ? input.mu
-                                           : std::nullopt;
-}
-
 bool has_viscosity(const FlowLaw& law) {
   return std::any_of(law.parameters.begin(), law.parameters.end(),
                      [](const LawParameter& p) { return p.row.member == &FitResult::mu; });
 }
 
-std::vector<double> with(const Fitted& fitted, std::span<const double> p) {
-  std::vector<double> all = fitted.all;
-  for (std::size_t i = 0; i < p.size(); ++i) all[fitted.free[i]] = p[i];
-  return all;
-}
-
-/// The parameters of the law that are not given.
-Fitted least_squares(const Readings& r, const FitInput& input, const FlowLaw& law) {
-  std::vector<FlowPoint> points;
-  for (std::size_t i = 0; i < r.size(); ++i) points.push_back({r.x[i], r.torque[i]});
-  Fitted fitted{&law, law.start(bingham_from_flow_curve(points, input.instrument)), {}, {}};
-  LeastSquaresProblem problem;
-  problem.observed = r.torque;
-  problem.count = r.count;
-  for (std::size_t k = 0; k < law.parameters.size(); ++k) {
-    if (const auto value = given_value(input, law.parameters[k])) {
-      fitted.all[k] = *value;
-      continue;
-    }
-    fitted.free.push_back(k);
-    problem.start.push_back(fitted.all[k]);
-    problem.lower.push_back(law.parameters[k].lower);
-    problem.upper.push_back(law.parameters[k].upper);
-  }
-  problem.model = [&](std::span<const double> p, std::span<double> torque, std::span<double> jacobian) {
-    const std::vector<double> all = with(fitted, p);
-    for (std::size_t i = 0, at = 0; i < r.size(); ++i) {
-      const FlowTorque t = law.torque(all, r.x[i], input.instrument);
-      torque[i] = t.torque;
-      if (jacobian.empty()) continue;
-      for (const std::size_t k : fitted.free) jacobian[at++] = t.slope[k];
-    }
-    return std::all_of(torque.begin(), torque.end(), [](double t) { return t > 0.0; });
-  };
-  fitted.fit = fit_least_squares(problem);
-  fitted.all = with(fitted, fitted.fit.parameters);
-  return fitted;
+/// Of the fitted torque at a speed, by the delta method [(N m)^2].
+double variance_of_torque(const FittedLaw& f, double omega, const Instrument& in) {
+  const std::size_t n = f.free.size();
+  const auto slope = f.at(omega, in).slope;
+  double variance = 0.0;
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t k = 0; k < n; ++k)
+      variance += slope[f.free[i]] * slope[f.free[k]] * f.fit.covariance[i * n + k];
+  return std::max(0.0, variance);
 }
 
 /// How many of the slowest readings lie on a branch where the torque rises as the speed falls, by more than
@@ -106,7 +58,7 @@ std::size_t below_torque_minimum(const Readings& r, const FitInput& input) {
   for (std::size_t i = 0; i < first; ++i) slow[i] = r.x[i] < r.x[first];
   const Readings fast = without(r, slow);
   if (fast.size() == r.size() || fast.size() < 3 || !several_speeds(fast)) return 0;
-  const Fitted f = least_squares(fast, input, flow_laws().front());
+  const FittedLaw f = least_squares(fast, input, flow_laws().front());
   if (f.fit.degrees_of_freedom < 1.0) return 0;
   // the one-in-a-thousand point of a new reading, with a fifth for the uncertainty of the curve
   const double cut = 1.2 * student_quantile(0.999, f.fit.degrees_of_freedom) * std::max(f.fit.scatter, 1e-6);
@@ -117,60 +69,59 @@ std::size_t below_torque_minimum(const Readings& r, const FitInput& input) {
   return 0;
 }
 
-/// How far the slowest readings lie below what the faster ones ask for, as a share; 0 where they do not by more than
-/// scatter. A layer of water at the vane carries it at low speed: wall slip.
-double below_the_curve(const Readings& r, const FitInput& input) {
-  const std::size_t slow = r.size() / 3;
+/// How far the slowest readings lie below what the faster ones ask for by this law, as a share; 0 where they do not by
+/// more than scatter. A layer of water at the vane carries it at low speed: wall slip.
+double below_the_curve(const Readings& r, const FitInput& input, const FlowLaw& law) {
+  const std::size_t slow = r.size() / 3, fewest = law.parameters.size() + 2;
   if (slow < 2) return 0.0;
   std::vector<char> leave_out(r.size(), 0);
   std::fill_n(leave_out.begin(), slow, 1);
   const Readings fast = without(r, leave_out);
-  if (fast.size() < 4 || !several_speeds(fast)) return 0.0;
-  const Fitted f = least_squares(fast, input, flow_laws().front());
+  if (fast.size() < fewest || !several_speeds(fast)) return 0.0;
+  const FittedLaw f = least_squares(fast, input, law);
+  const double degrees = static_cast<double>(fast.size() - f.free.size());
   if (f.fit.degrees_of_freedom < 1.0 || f.yield_stress() <= 0.0) return 0.0;
-  const double cut = 1.2 * student_quantile(0.999, f.fit.degrees_of_freedom) * std::max(f.fit.scatter, 1e-6);
+  const bool first = &law == &flow_laws().front();
+  const double cut = 1.2 * student_quantile(0.999, first ? degrees : f.fit.degrees_of_freedom);
   double sum = 0.0;
   for (std::size_t i = 0; i < slow; ++i) {
-    const double miss = r.torque[i] / f.at(r.x[i], input.instrument).torque - 1.0;
-    if (!(std::sqrt(r.count[i]) * miss < -cut)) return 0.0;
+    const double torque = f.at(r.x[i], input.instrument).torque, miss = r.torque[i] / torque - 1.0;
+    const double own = std::max(f.fit.scatter, 1e-6) / std::sqrt(r.count[i]);
+    // a curve of three parameters is hardly known where it leaves its readings
+    const double curve = first ? 0.0 : variance_of_torque(f, r.x[i], input.instrument) / (torque * torque);
+    if (!(miss < -cut * std::sqrt(own * own + curve))) return 0.0;
     sum -= miss;
   }
   return sum / static_cast<double>(slow);
 }
 
-void report_plug(const Readings& r, const Fitted& f, const FitInput& input, FitResult& result) {
+void report_plug(const Readings& r, const FittedLaw& f, const FitInput& input, FitResult& result) {
   result.sheared_radius = f.at(r.x.front(), input.instrument).sheared_radius;
   result.plug = *result.sheared_radius < input.instrument.container_radius * (1.0 - 1e-12);
   if (f.law->plug_below) result.plug_below = f.law->plug_below(f.all, input.instrument);
 }
 
-/// Delta method for the band around the fitted curve.
-void report_band(const Fitted& f, const FitInput& input, FitResult& result) {
-  const std::size_t n = f.free.size();
-  for (const double omega : result.curve.x) {
-    const auto slope = f.at(omega, input.instrument).slope;
-    double variance = 0.0;
-    for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t k = 0; k < n; ++k)
-        variance += slope[f.free[i]] * slope[f.free[k]] * f.fit.covariance[i * n + k];
-    result.curve.standard_error.push_back(std::sqrt(std::max(0.0, variance)));
-  }
+void report_band(const FittedLaw& f, const FitInput& input, FitResult& result) {
+  for (const double omega : result.curve.x)
+    result.curve.standard_error.push_back(std::sqrt(variance_of_torque(f, omega, input.instrument)));
 }
 
-/// "consistency, flow_index: the record cannot tell them" of the law's parameters behind the yield stress.
-void note_unidentifiable(const Fitted& f, FitResult& result) {
+/// "consistency, flow_index: the record cannot tell them" of those of the law's parameters behind the yield stress that it
+/// does not tell.
+void note_unidentifiable(const FittedLaw& f, FitResult& result) {
   std::string names;
-  bool missing = false;
+  std::size_t missing = 0;
   const auto& parameters = f.law->parameters;
   for (std::size_t k = 1; k < parameters.size(); ++k) {
+    if (!(f.all[k] > 0.0) || value_of(result, parameters[k].row)) continue;
     names += (names.empty() ? "" : ", ") + parameters[k].row.name;
-    missing = missing || (f.all[k] > 0.0 && !value_of(result, parameters[k].row));
+    ++missing;
   }
-  if (missing)
-    result.notes.push_back(names + ": the record cannot tell " + (parameters.size() > 2 ? "them" : "it"));
+  if (missing > 0)
+    result.notes.push_back(names + ": the record cannot tell " + (missing > 1 ? "them" : "it"));
 }
 
-void report_parameters(const Readings& r, const Fitted& f, const FitInput& input, FitResult& result) {
+void report_parameters(const Readings& r, const FittedLaw& f, const FitInput& input, FitResult& result) {
   const std::size_t n = f.free.size();
   const double degrees = f.fit.degrees_of_freedom;
   const double slowest = shear_stress_at(input.instrument.vane_radius, r.torque.front(), input.instrument);
@@ -199,95 +150,6 @@ void report_parameters(const Readings& r, const Fitted& f, const FitInput& input
   note_unidentifiable(f, result);
 }
 
-double mean_square(const LeastSquaresFit& f) {
-  double sum = 0.0;
-  for (const double e : f.residual) sum += e * e;
-  return sum / static_cast<double>(f.residual.size());
-}
-
-/// The parameter that lies at an end of its law's range, which is no measurement of it; null where none does.
-const LawParameter* at_bound(const Fitted& f) {
-  constexpr double near = 1e-3;
-  for (std::size_t k = 0; k < f.all.size(); ++k) {
-    const LawParameter& p = f.law->parameters[k];
-    if (p.has_range() && (f.all[k] < p.lower + near || f.all[k] > p.upper - near)) return &p;
-  }
-  return nullptr;
-}
-
-double akaike(const Readings& r, const Fitted& f) {
-  return corrected_akaike(mean_square(f.fit), static_cast<double>(r.size()), static_cast<int>(f.free.size()));
-}
-
-/// The laws that are asked for and that the readings suffice for.
-std::vector<Fitted> fit_candidates(const Readings& r, const FitInput& input) {
-  std::vector<Fitted> fits;
-  for (const FlowLaw& law : flow_laws()) {
-    if (input.law != "auto" && input.law != law.name) continue;
-    const bool first = &law == &flow_laws().front();
-    if (!first && (input.mu || r.size() <= law.parameters.size())) continue;
-    fits.push_back(least_squares(r, input, law));
-  }
-  if (!fits.empty()) return fits;
-  static const char* const numbers[] = {"one", "two", "three", "four"};
-  const FlowLaw& law = flow_law(input.law);
-  throw std::invalid_argument(law.words + " needs at least " + numbers[law.parameters.size()] + " rows; " +
-                              std::to_string(r.size()) + " found");
-}
-
-/// "law bingham: Herschel-Bulkley's AICc is not smaller by more than 4, on 12 readings".
-std::string choice_of(const std::vector<Fitted>& fits, std::size_t best, std::size_t readings) {
-  std::string others;
-  for (std::size_t i = 1; i < fits.size(); ++i) others += (i > 1 ? ", " : "") + fits[i].law->words + "'s";
-  return "law " + fits[best].law->name +
-         (best > 0 ? ": its AICc is smaller by more than 4, on "
-                   : ": " + others + " AICc is not smaller by more than 4, on ") +
-         std::to_string(readings) + " readings";
-}
-
-/// Every reading is one speed held for a while or a mean: they count as independent.
-Fitted choose(const Readings& r, const FitInput& input, FitResult& result) {
-  const std::vector<Fitted> fits = fit_candidates(r, input);
-  std::vector<double> aicc;
-  for (const Fitted& f : fits) aicc.push_back(fits.size() > 1 && at_bound(f) ? HUGE_VAL : akaike(r, f));
-  // The first, the law of fewest parameters, unless another is clearly better: within 4 the data support both
-  // (Burnham and Anderson 2002), and the last digits of the torques would choose.
-  constexpr double clearly = 4.0;
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < fits.size(); ++i)
-    if (aicc[i] < aicc[0] - clearly && (best == 0 || aicc[i] < aicc[best])) best = i;
-  for (std::size_t i = 0; i < fits.size(); ++i)
-    add_candidate(fits[i].law->name, r, fits[i].fit, aicc[i], aicc[best], i == best, result);
-  if (fits.size() > 1) result.choice = choice_of(fits, best, r.size());
-  return fits[best];
-}
-
-/// A sentence where another law describes the readings of the first far better and gives another yield stress: a
-/// difference of 10 in AICc leaves the first no support (Burnham and Anderson 2002). Empty otherwise.
-std::string better_law(const Readings& r, const FitInput& input, const Fitted& first) {
-  constexpr double no_support = 10.0, another = 0.1;
-  constexpr std::size_t fewest = 6, most = 1000;
-  if (input.law != flow_laws().front().name || input.mu || input.tau_0 || r.size() < fewest ||
-      r.size() > most)
-    return {};
-  double least = akaike(r, first) - no_support;
-  std::string text;
-  for (const FlowLaw& law : std::span(flow_laws()).subspan(1)) {
-    const Fitted f = least_squares(r, input, law);
-    const double tau_0 = first.yield_stress(), other = f.yield_stress(), aicc = akaike(r, f);
-    if (at_bound(f) || aicc > least || std::abs(other - tau_0) < another * tau_0) continue;
-    least = aicc;
-    text = "yield_stress: hangs on the law: " + law.words +
-           text_of(" describes these readings far better (scatter %.2g %% for %.2g %%) and has %.3g Pa",
-                   100.0 * f.fit.scatter, 100.0 * first.fit.scatter, other);
-    for (std::size_t k = 0; k < f.all.size(); ++k)
-      if (law.parameters[k].has_range())
-        text += text_of(" with %s = %.2g", law.parameters[k].row.symbol.c_str(), f.all[k]);
-    text += "; --law " + law.name;
-  }
-  return text;
-}
-
 /// The torque falls as the speed rises, over the whole record and by more than scatter: no material of either law does.
 bool torque_falls(const Readings& r) {
   if (r.size() < 4) return r.torque.back() < 0.97 * r.torque.front();
@@ -296,20 +158,19 @@ bool torque_falls(const Readings& r) {
          line.slope * (r.x.back() - r.x.front()) < -0.03 * line.mean_y;
 }
 
-void withdraw(const FitInput& input, FitResult& result) {
-  if (!input.tau_0) result.tau_0.reset();
-  if (!input.mu) result.mu.reset();
-  result.of_law.clear();
+void withdraw(const FittedLaw& f, const FitInput& input, FitResult& result) {
+  std::string names;
+  for (const LawParameter& p : f.law->parameters) {
+    if (given_value(input, p)) continue;
+    set_value(result, p.row, std::nullopt);
+    names += (names.empty() ? "" : ", ") + p.row.name;
+  }
   result.plug_below.reset();
-  result.notes.push_back("yield_stress, plastic_viscosity: a model that does not fit does not tell them");
+  result.notes.push_back(names + ": a model that does not fit does not tell " +
+                         (names.find(',') == std::string::npos ? "it" : "them"));
 }
 
-}  // namespace
-
-FitResult fit_flow_curve(const TorqueRecord& record, const FitInput& input) {
-  FitResult result;
-  result.kind = RecordKind::flow_curve;
-  Readings r = readings_of(record, result);
+void require_flow_curve(const Readings& r, const FitInput& input) {
   if (input.mu && input.law != "auto" && !has_viscosity(flow_law(input.law)))
     throw std::invalid_argument(flow_law(input.law).words + " has no plastic viscosity that could be given");
   if (input.tau_0 && input.mu)
@@ -321,43 +182,78 @@ FitResult fit_flow_curve(const TorqueRecord& record, const FitInput& input) {
         std::to_string(r.size()) + " found");
   if (!several_speeds(r))
     throw std::invalid_argument("all rows have the same speed; a flow curve needs two speeds or more");
+}
 
+/// Why the law does not describe the readings.
+std::vector<std::string> reasons_of(const Readings& r, const FittedLaw& f) {
+  std::vector<std::string> reasons;
+  if (const LawParameter* p = at_bound(f))
+    reasons.push_back(
+        "the " + p->row.label +
+        text_of(" lies at the end of its range, %.3g to %.3g: the law does not describe the record", p->lower,
+                p->upper));
+  if (torque_falls(r))
+    reasons.push_back(
+        "the torque falls as the speed rises, which neither a Bingham nor a Herschel-Bulkley "
+        "material does: structure still broke down, or a layer slips at the vane");
+  if (const std::string why = misfit_of(r, f.fit, "the torque goes otherwise with the speed than this law");
+      !why.empty())
+    reasons.push_back(why);
+  return reasons;
+}
+
+/// A fit by the input's law; `better` where another law should be taken in its place or beside it.
+FitResult fit_by_law(const TorqueRecord& record, const FitInput& input, std::optional<BetterLaw>& better) {
+  FitResult result;
+  result.kind = RecordKind::flow_curve;
+  Readings r = readings_of(record, result);
+  require_flow_curve(r, input);
   std::vector<char> leave_out(r.size(), 0);
   std::fill_n(leave_out.begin(), below_torque_minimum(r, input), 1);
   r = dropping(r, leave_out, "below the torque minimum: the torque rises as the speed falls", result);
-  const double slip = below_the_curve(r, input);
-  const Fitted f = choose(r, input, result);
+  const FittedLaw f = choose_law(r, input, result);
   result.model = f.law->name;
   report(r, f.fit, result);
-  result.effective_readings = static_cast<double>(result.readings);
+  const auto kept = static_cast<double>(result.curve.x.size());
+  result.effective_readings = static_cast<double>(result.readings) * f.fit.independent / std::max(1.0, kept);
   report_parameters(r, f, input, result);
   report_plug(r, f, input, result);
   report_band(f, input, result);
   if (f.all[1] <= 0.0)
     result.notes.push_back(
         "plastic_viscosity: the torque does not rise with the speed, so the record cannot tell it");
-  if (const LawParameter* p = at_bound(f))
-    result.reasons.push_back(
-        "the " + p->row.label +
-        text_of(" lies at the end of its range, %.3g to %.3g: the law does not describe the record", p->lower,
-                p->upper));
-  if (torque_falls(r))
-    result.reasons.push_back(
-        "the torque falls as the speed rises, which neither a Bingham nor a Herschel-Bulkley "
-        "material does: structure still broke down, or a layer slips at the vane");
-  if (const std::string why = misfit_of(r, f.fit, "the torque goes otherwise with the speed than this law");
-      !why.empty())
-    result.reasons.push_back(why);
-  if (const std::string better = better_law(r, input, f); !better.empty()) {
+  for (const std::string& why : reasons_of(r, f)) result.reasons.push_back(why);
+  better = better_law(r, input, f, !result.reasons.empty());
+  if (better) {
     result.law_in_doubt = true;
-    result.notes.push_back(better);
+    result.notes.push_back("yield_stress: hangs on the law: " + better->words + "; --law " +
+                           better->fitted.law->name);
   }
-  if (!result.reasons.empty()) withdraw(input, result);
-  if (slip > 0.0)
+  if (!result.reasons.empty()) withdraw(f, input, result);
+  if (const double slip = below_the_curve(r, input, *f.law); slip > 0.0)
     result.reasons.push_back("wall slip is likely: the slowest third of the readings lies " +
                              std::to_string(std::lround(100.0 * slip)) +
                              " % below what the faster ones ask for; the yield stress may read low");
   return result;
+}
+
+}  // namespace
+
+FitResult fit_flow_curve(const TorqueRecord& record, const FitInput& input) {
+  std::optional<BetterLaw> better, none;
+  FitResult result = fit_by_law(record, input, better);
+  if (!better || !better->refuses) return result;
+  FitInput by_other = input;
+  by_other.law = better->fitted.law->name;
+  FitResult other = fit_by_law(record, by_other, none);
+  if (!other.reasons.empty()) return result;
+  const std::string& first = flow_law(input.law).words;
+  other.choice = "law " + other.model + ": " + first + " is refused; " + better->words;
+  other.notes.push_back("law: " + first + " does not describe this record; the values are " +
+                        better->fitted.law->words + "'s");
+  other.candidates.insert(other.candidates.begin(), result.candidates.front());
+  other.candidates.front().chosen = false;
+  return other;
 }
 
 }  // namespace tremie::fitting

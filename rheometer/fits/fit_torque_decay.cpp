@@ -5,6 +5,7 @@
 
 #include "rheometer/fits/apparent_alpha.hpp"
 #include "rheometer/fits/decay_least_squares.hpp"
+#include "rheometer/fits/decay_stability.hpp"
 #include "rheometer/fits/fit_common.hpp"
 #include "rheometer/fits/parameters.hpp"
 #include "rheometer/reference/thixotropic_couette.hpp"
@@ -357,7 +358,7 @@ void withdraw(FitResult& result) {
 
 }  // namespace
 
-FitResult fit_torque_decay(const TorqueRecord& record, const FitInput& input) {
+FitResult fit_torque_decay(const TorqueRecord& record, const FitInput& input, Stability stability) {
   FitInput in = input;
   if (!in.omega)
     throw std::invalid_argument("a torque decay needs the speed of the vane: --speed \"0.25 rev/s\"");
@@ -382,7 +383,7 @@ FitResult fit_torque_decay(const TorqueRecord& record, const FitInput& input) {
   judge_fall(r, record.torque.size(), in, result);
   const Identified identified{best.layout, best.fit, best.parameters()};
   report(r, best.fit, result);
-  result.effective_readings = effective_number(static_cast<double>(r.size()), best.fit.correlation);
+  result.effective_readings = best.fit.independent;
   if (const std::string why =
           misfit_of(r, best.fit, "the decay has another shape than these kinetics give it");
       !why.empty())
@@ -390,7 +391,10 @@ FitResult fit_torque_decay(const TorqueRecord& record, const FitInput& input) {
   report_parameters(r, identified, in, result);
   report_flow(r, identified.p, in, result);
   report_apparent(r, in, identified, result);
-  if (!result.reasons.empty()) withdraw(result);
+  if (!result.reasons.empty())
+    withdraw(result);
+  else if (stability == Stability::judged && !input.tau_0 && !input.mu)
+    judge_stability(record, input, result);
   return result;
 }
 

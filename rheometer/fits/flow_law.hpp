@@ -46,13 +46,13 @@ struct FlowLaw {
   std::optional<double> (*plug_below)(std::span<const double> parameters, const Instrument& instrument);
 };
 
-/// All laws, the one of fewest parameters first: the others are taken where they are clearly better.
+/// All laws, the one of fewest parameters first; each of the others contains it, and is taken where it is clearly better.
 const std::vector<FlowLaw>& flow_laws();
 
 /// Throws std::invalid_argument for a name that no law has.
 const FlowLaw& flow_law(const std::string& name);
 
-/// The law of a fitted flow curve; null for a decay.
+/// The law of a fitted flow curve; null for a decay and for an interface.
 const FlowLaw* law_of(const FitResult& fit);
 
 }  // namespace tremie

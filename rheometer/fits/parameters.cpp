@@ -37,8 +37,18 @@ const std::vector<FitParameter>& fit_parameters() {
     for (const FlowLaw& law : flow_laws())
       for (const LawParameter& p : law.parameters)
         if (!p.row.member) rows.push_back(p.row);
+    for (const FitParameter& p : interface_parameters()) rows.push_back(p);
     return rows;
   }();
+  return all;
+}
+
+const std::vector<FitParameter>& interface_parameters() {
+  static const std::vector<FitParameter> all{
+      {"interface_yield_stress", "Pa", "interface_yield_stress_Pa", "interface yield stress",
+       "yield stress of the interface", "tau_i"},
+      {"interface_viscosity", "Pa s/m", "interface_viscosity_Pa_s_per_m", "interface viscosity",
+       "viscous constant of the interface", "k_i"}};
   return all;
 }
 
@@ -50,6 +60,7 @@ std::optional<ParameterEstimate> value_of(const FitResult& fit, const FitParamet
 
 std::vector<FitParameter> parameters_of(const FitResult& fit) {
   std::vector<FitParameter> rows;
+  if (fit.model == interface_model) return interface_parameters();
   if (const FlowLaw* law = law_of(fit))
     for (const LawParameter& p : law->parameters) rows.push_back(p.row);
   else

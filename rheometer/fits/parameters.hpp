@@ -24,8 +24,12 @@ struct FitParameter {
   std::optional<double> laboratories = {};
 };
 
-/// Those of every record, then those of the flow curve's laws.
+/// Those of every record, then those of the flow curve's laws and of an interface.
 const std::vector<FitParameter>& fit_parameters();
+
+/// The model of a tribometer's fit and its parameters, tau_i [Pa] and k_i [Pa s/m].
+inline constexpr const char* interface_model = "interface";
+const std::vector<FitParameter>& interface_parameters();
 
 const FitParameter& yield_stress_parameter();
 const FitParameter& plastic_viscosity_parameter();

@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "rheometer/protocol/protocol.hpp"
+#include "rheometer/records/torque_limit.hpp"
 #include "rheometer/regression/statistics.hpp"
 #include "rheometer/tables/text.hpp"
 
@@ -66,7 +68,17 @@ StartUpReading read_start_up(const ProtocolRecord& r, const Section& s, const In
   reading.peak_time = r.time[peak] - (s.begin > 0 ? r.time[s.begin - 1] : r.time[s.begin]);
   // the torque has to fall again, by more than a reading's scatter
   reading.peak_inside = peak > s.begin && peak + 2 < s.end && reading.end_torque < 0.98 * reading.peak_torque;
-  if (reading.peak_inside) {
+  const auto section = [&](const std::vector<double>& v) {
+    return std::vector<double>(v.begin() + static_cast<std::ptrdiff_t>(s.begin),
+                               v.begin() + static_cast<std::ptrdiff_t>(s.end));
+  };
+  if (const auto limit = torque_limit(section(r.time), section(r.torque))) {
+    reading.peak_inside = false;
+    notes.push_back(
+        text_of("static_yield_stress: %ld rows in a row have the largest torque: the instrument's limit cuts "
+                "the peak off",
+                limit->rows));
+  } else if (reading.peak_inside) {
     reading.static_yield_stress = shear_stress_at(in.vane_radius, reading.peak_torque, in);
     if (times_are_rounded(r, s.begin, peak))
       notes.push_back(

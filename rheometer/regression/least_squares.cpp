@@ -263,6 +263,32 @@ Matrix parameter_covariance(const Pass& pass, double variance) {
   return pass.covariance * meat * pass.covariance;
 }
 
+/// Residuals, each in units of one reading, in the order in which they were taken; outliers left out.
+std::vector<double> residuals_as_taken(const LeastSquaresProblem& p, const LeastSquaresOptions& options,
+                                       const LeastSquaresFit& fit) {
+  std::vector<double> residual;
+  for (std::size_t k = 0; k < fit.residual.size(); ++k) {
+    const std::size_t i = options.taken.empty() ? k : options.taken[k];
+    if (!fit.outlier[i]) residual.push_back(std::sqrt(p.count[i]) * fit.residual[i]);
+  }
+  return residual;
+}
+
+/// By how much correlated residuals widen the covariance; takes their degrees of freedom off. 1 where the order of the
+/// readings is not known.
+double widened_by_correlation(const LeastSquaresOptions& options, LeastSquaresFit& fit) {
+  const auto p = static_cast<double>(fit.parameters.size());
+  const double n = fit.degrees_of_freedom + p;
+  fit.independent = n;
+  if (!options.readings_in_time_order && options.taken.empty()) return 1.0;
+  const CorrelatedNoise noise = correlated_noise(fit.correlation, n, p);
+  if (noise.inflation == 1.0) return 1.0;
+  fit.independent = noise.independent;
+  fit.degrees_of_freedom = noise.independent - p;
+  // each parameter takes so many readings' share of the noise with it, so that the residuals read low
+  return noise.inflation * (n - p) / (n - p * noise.inflation);
+}
+
 }  // namespace
 
 LeastSquaresFit fit_least_squares(const LeastSquaresProblem& p, const LeastSquaresOptions& options) {
@@ -291,7 +317,7 @@ LeastSquaresFit fit_least_squares(const LeastSquaresProblem& p, const LeastSquar
     const double scale = std::max(2.0 * robust_deviation(residuals(fit.fitted)), resolution);
     robust = minimise(p, robust.parameters, fit.fitted, use, scale, rough);
   }
-  std::vector<std::size_t> found = outliers(robust);
+  std::vector<std::size_t> found = options.find_outliers ? outliers(robust) : std::vector<std::size_t>{};
   std::sort(found.begin(), found.end());
   if (options.readings_in_time_order) found = without_runs(found, robust);
   for (const std::size_t i : found) {
@@ -308,19 +334,10 @@ LeastSquaresFit fit_least_squares(const LeastSquaresProblem& p, const LeastSquar
   const double variance =
       fit.degrees_of_freedom > 0.0 ? plain.residual.squaredNorm() / fit.degrees_of_freedom : 0.0;
   fit.scatter = std::sqrt(variance);
-  fit.correlation = successive_correlation({plain.residual.begin(), plain.residual.end()});
   fit.told = plain.told;
   Matrix covariance = parameter_covariance(plain, variance);
-  const double significant = 3.0 / std::sqrt(static_cast<double>(plain.residual.size()));
-  if (options.readings_in_time_order && fit.correlation > significant) {
-    // what the parameters take with them makes the correlation read low, by (1 + 3 rho + parameters)/n
-    const auto readings = static_cast<double>(plain.residual.size()),
-               p_count = static_cast<double>(fit.parameters.size());
-    const double rho = std::min(0.98, fit.correlation + (1.0 + 3.0 * fit.correlation + p_count) / readings);
-    covariance *= (1.0 + rho) / (1.0 - rho);
-    const double independent = readings * (1.0 - rho) / (1.0 + rho);
-    fit.degrees_of_freedom = std::min(fit.degrees_of_freedom, std::max(3.0, independent - p_count));
-  }
+  fit.correlation = successive_correlation(residuals_as_taken(p, options, fit));
+  covariance *= widened_by_correlation(options, fit);
   fit.covariance.assign(covariance.data(), covariance.data() + covariance.size());
   return fit;
 }

@@ -33,11 +33,16 @@ struct LeastSquaresFit {
   std::vector<char> told;          ///< parameters that the readings tell apart from the others
   std::vector<double> covariance;  ///< parameters x parameters; 0 where a parameter is not told
   double correlation = 0.0;        ///< of successive residuals
+  double independent = 0.0;        ///< independent readings that carry as much as those that are no outliers
 };
 
 struct LeastSquaresOptions {
-  /// Then correlated residuals widen the covariance, and neighbours that miss alike are no outliers.
+  /// Correlated residuals widen the covariance, and neighbours that miss alike are no outliers.
   bool readings_in_time_order = false;
+  /// Indices of the readings in the order in which they were taken: correlated residuals widen the covariance. Empty:
+  /// that order is not known, or, with readings_in_time_order, the one in which they stand.
+  std::vector<std::size_t> taken = {};
+  bool find_outliers = true;
   double parameter_tolerance = 1e-10;  ///< relative change of the parameters to stop at
   int max_iterations = 60;
 };

@@ -64,4 +64,13 @@ double successive_correlation(const std::vector<double>& values) {
   return square > 0.0 ? product / square : 0.0;
 }
 
+CorrelatedNoise correlated_noise(double correlation, double n, double parameters) {
+  const double bias = (1.0 + 3.0 * correlation + parameters) / n;
+  if (!(correlation + (1.0 + parameters) / n > 1.65 / std::sqrt(n))) return {1.0, n};
+  const double rho = std::clamp(correlation + bias, 0.0, 0.98);
+  const double most = std::max(1.0, n / (parameters + 3.0));
+  const double inflation = std::min((1.0 + rho) / (1.0 - rho), most);
+  return {inflation, n / inflation};
+}
+
 }  // namespace tremie

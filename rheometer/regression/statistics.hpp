@@ -35,4 +35,15 @@ StraightLine straight_line(const std::vector<double>& x, const std::vector<doubl
 /// Correlation of successive values of a series about 0.
 double successive_correlation(const std::vector<double>& values);
 
+/// What correlated noise leaves of n readings.
+struct CorrelatedNoise {
+  double inflation = 1.0;    ///< of a parameter's variance, (1 + rho)/(1 - rho)
+  double independent = 0.0;  ///< readings without correlation that carry as much, n over the inflation
+};
+
+/// By the correlation of the n residuals that a fit of so many parameters leaves, which reads low by
+/// (1 + 3 rho + parameters)/n (Marriott and Pope 1954). A correlation that white noise has as well, below 1.65/sqrt(n)
+/// (one record in twenty), counts as none; of few readings three degrees of freedom are left.
+CorrelatedNoise correlated_noise(double correlation, double n, double parameters);
+
 }  // namespace tremie

@@ -92,7 +92,12 @@ const std::vector<FitOption>& fit_options() {
       number("torque_per_degree", &O::torque_per_degree, "N.m",
              "of an instrument with a dial: \"0.036379 mN.m\"", {17, "torque_per_degree_N_m"}),
       number("full_scale_torque", &O::full_scale_torque, "N.m",
-             "of readings in %: \"0.7187 mN.m\" (Brookfield RV)", {18, "full_scale_torque_N_m"})};
+             "of readings in %: \"0.7187 mN.m\" (Brookfield RV)", {18, "full_scale_torque_N_m"}),
+      flag("tribometer", &O::tribometer,
+           "A smooth cylinder in place of the vane: the wall's interface law, for [walls] of a scene"),
+      text("fill_height", &O::fill_height,
+           "of a tribometer, the concrete along the cylinder's side in each record: \"100 mm; 150 mm\"",
+           {20, "fill_height"})};
   return all;
 }
 
@@ -135,6 +140,13 @@ void check(const FitOptions& o, std::size_t records) {
     throw std::invalid_argument("--geometry stands for the vane's lengths; give it or them, not both");
   if (o.protocol && records > 1)
     throw std::invalid_argument("--protocol reads one record; " + std::to_string(records) + " are given");
+  if (o.tribometer && (o.protocol || o.ends != "none" || o.blades != "none" || !o.geometry.empty()))
+    throw std::invalid_argument(
+        "--tribometer is a smooth cylinder's, by --vane-radius and --container-radius; not with --protocol, "
+        "--ends, "
+        "--blades or --geometry");
+  if (!o.fill_height.empty() && !o.tribometer)
+    throw std::invalid_argument("--fill-height is a tribometer's: --tribometer");
   if (o.blades != "none" && (o.protocol || o.law != flow_laws().front().name))
     throw std::invalid_argument(
         "--blades computed is for a flow curve by Bingham's law, or a decay; not with " +

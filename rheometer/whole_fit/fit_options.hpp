@@ -29,6 +29,8 @@ struct FitOptions {
   std::string column, decimal = "auto";
   std::string table;                                           ///< of a file with several: its number, from 1
   std::optional<double> torque_per_degree, full_scale_torque;  ///< of a dial, of readings in % [N m]
+  bool tribometer = false;  ///< the records are a smooth cylinder's (tribometer.hpp)
+  std::string fill_height;  ///< of each record of a tribometer; empty: the vane's height
 };
 
 /// Whether the three lengths are those of the default instrument.

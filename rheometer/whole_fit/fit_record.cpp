@@ -8,6 +8,7 @@
 #include "rheometer/vane/vane_ends.hpp"
 #include "rheometer/whole_fit/fit_with_blades.hpp"
 #include "rheometer/whole_fit/record_reading.hpp"
+#include "rheometer/whole_fit/tribometer.hpp"
 
 namespace tremie {
 namespace {
@@ -265,6 +266,23 @@ ProtocolFit fit_protocol(const Fitting& f, const std::string& file, const FitInp
   });
 }
 
+/// The records of a tribometer, each at its fill height, as one fit.
+FitResult fit_tribometer_records(const Fitting& f, const std::vector<RecordSource>& sources,
+                                 const FitInput& in) {
+  std::vector<double> heights{in.instrument.vane_height};
+  if (!f.options.fill_height.empty())
+    heights = named("--fill-height", [&] { return fill_heights(f.options.fill_height); });
+  if (heights.size() != sources.size())
+    throw std::invalid_argument("--fill-height: one for each record, " + std::to_string(sources.size()) +
+                                "; " + std::to_string(heights.size()) + " given");
+  std::vector<TribometerSeries> series;
+  for (std::size_t i = 0; i < sources.size(); ++i)
+    series.push_back({heights[i], named(sources[i].name, [&] { return read(f, sources[i]); })});
+  FitResult result = named(sources.front().name, [&] { return fit_tribometer(series, in); });
+  result.notes.insert(result.notes.begin(), "geometry: " + geometry_words(f.reading, f.options, false));
+  return result;
+}
+
 }  // namespace
 
 RecordFits fit_records(const std::vector<RecordSource>& sources, const FitOptions& options,
@@ -276,6 +294,13 @@ RecordFits fit_records(const std::vector<RecordSource>& sources, const FitOption
   named("the instrument", [&] { check(in.instrument); });
   RecordFits all;
   all.options = options;
+  if (options.tribometer) {
+    all.instrument = in.instrument;
+    all.fits = {fit_tribometer_records(f, sources, in)};
+    all.reasons = all.fits.front().reasons;
+    set_geometry(f, false, all);
+    return all;
+  }
   all.end_factor = end_factor(f, sources.front(), in);
   in.instrument.vane_height *= all.end_factor;  // torque and height enter all formulas as their quotient
   all.instrument = in.instrument;

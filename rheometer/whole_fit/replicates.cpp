@@ -9,28 +9,37 @@ namespace tremie {
 
 namespace {
 
+/// Half of an interval, to its wider side.
+double half_width(const ParameterEstimate& e) {
+  return std::max(e.ci95->high - e.value, e.value - e.ci95->low);
+}
+
+/// The interval by the scatter between the records, never narrower than the narrowest of theirs: what a fit gets wrong, it
+/// gets wrong in each.
 std::optional<ReplicateMean> mean_of(const FitParameter& p, const std::vector<FitResult>& fits) {
-  std::vector<double> value, error;
+  std::vector<double> value, half;
   for (const FitResult& f : fits) {
     const std::optional<ParameterEstimate> e = value_of(f, p);
     if (!e || e->given) continue;
     value.push_back(e->value);
-    if (e->ci95) error.push_back((e->ci95->high - e->value) / 1.96);
+    if (e->ci95) half.push_back(half_width(*e));
   }
   if (value.empty()) return std::nullopt;
   const auto n = static_cast<double>(value.size());
   double mean = 0.0, square = 0.0, own = 0.0;
   for (const double v : value) mean += v / n;
   for (const double v : value) square += (v - mean) * (v - mean);
-  for (const double e : error) own += e * e / static_cast<double>(error.size());
+  for (const double h : half) own += h * h / (1.96 * 1.96) / static_cast<double>(half.size());
   ReplicateMean m{p, static_cast<int>(value.size()), {mean, std::nullopt, false}, {}, {}};
+  std::optional<double> wide;
+  if (!half.empty()) wide = *std::min_element(half.begin(), half.end());
   if (n >= 2.0) {
     const double deviation = std::sqrt(square / (n - 1.0));
-    const double half = student_quantile(0.975, n - 1.0) * deviation / std::sqrt(n);
-    m.mean.ci95 = Interval{std::max(0.0, mean - half), mean + half};
+    wide = std::max(wide.value_or(0.0), student_quantile(0.975, n - 1.0) * deviation / std::sqrt(n));
     if (mean > 0.0) m.between = deviation / mean;
   }
-  if (!error.empty() && mean > 0.0) m.within = std::sqrt(own) / mean;
+  if (wide) m.mean.ci95 = Interval{std::max(0.0, mean - *wide), mean + *wide};
+  if (!half.empty() && mean > 0.0) m.within = std::sqrt(own) / mean;
   return m;
 }
 

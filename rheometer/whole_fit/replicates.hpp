@@ -13,8 +13,8 @@ namespace tremie {
 /// One parameter over the records that tell it.
 struct ReplicateMean {
   FitParameter parameter;
-  int records = 0;                ///< that tell it
-  ParameterEstimate mean;         ///< interval by the scatter between the records; none for one record
+  int records = 0;         ///< that tell it
+  ParameterEstimate mean;  ///< interval by the scatter between the records, not narrower than any of theirs
   std::optional<double> between;  ///< standard deviation between the records, relative to the mean
   std::optional<double>
       within;  ///< what the single fits' intervals promise, as a relative standard deviation

@@ -7,6 +7,7 @@
 #include "apparatus/cli/fit/fit_protocol.hpp"
 #include "apparatus/cli/process/say.hpp"
 #include "apparatus/scene/units.hpp"
+#include "rheometer/whole_fit/tribometer.hpp"
 
 namespace tremie::cli {
 
@@ -103,6 +104,9 @@ void print_fits(const RecordFits& fits, const std::vector<std::string>& records)
   } else {
     print_result(fits.fits.front());
     print_ends(fits);
+    if (const std::string walls = fits.options.tribometer ? scene_walls(fits.fits.front()) : "";
+        !walls.empty())
+      say("\n{}\n", walls);
   }
 }
 

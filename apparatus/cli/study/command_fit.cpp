@@ -99,7 +99,8 @@ Files files_of(const RecordFits& fits, const Given& o) {
     const std::string number = several ? fmt::format("_{}", i + 1) : "";
     files.emplace_back("fit" + number + ".csv", fit_csv(fits.fits[i]));
     files.emplace_back("report" + number + ".html",
-                       report::fit_html(fits.fits[i], fits.instrument, o.data[i], command({o.data[i]})));
+                       report::fit_html(fits.fits[i], fits.instrument, o.data[i],
+                                        command(several ? std::vector{o.data[i]} : o.data)));
   }
   if (several) files.emplace_back("report.html", report::replicates_html(fits, o.data, command(o.data)));
   return files;
@@ -155,7 +156,7 @@ void add_command_fit(CLI::App& app, int& exit_code) {
   Command command(app, fit_command.name, fit_command.description);
   command.required("data", o->data,
                    "CSV or an instrument's export: speed and torque (flow curve), time and torque (decay), "
-                   "or all three; several files are replicates");
+                   "or all three; several files are replicates, or, with --tribometer, fill heights");
   add_options(command, *o);
   add_json_option(command, o->json);
   command.option("--out", o->out, "Folder for the result (default: runs/<record's name>)");

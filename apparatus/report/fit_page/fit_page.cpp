@@ -19,7 +19,9 @@ bool is_decay(const FitResult& fit) { return fit.kind == RecordKind::torque_deca
 
 std::string line_of(const FitResult& fit) {
   const FlowLaw* law = law_of(fit);
-  return law ? law->line : "thixotropic Couette model";
+  return law                            ? law->line
+         : fit.model == interface_model ? "interface law at the cylinder"
+                                        : "thixotropic Couette model";
 }
 
 std::string value_text(const std::optional<ParameterEstimate>& e) {
@@ -202,8 +204,10 @@ std::string headline(const FitResult& fit, const std::string& record) {
                         p.unit.empty() ? "" : " ", unit_on_page(p));
   }
   const std::string file = std::filesystem::path(record).filename().string();
-  return fmt::format("{}, {}: {}", file, is_decay(fit) ? "a torque decay" : "a flow curve",
-                     text.empty() ? "tells no parameter" : text);
+  const char* kind = is_decay(fit)                  ? "a torque decay"
+                     : fit.model == interface_model ? "a tribometer's torques"
+                                                    : "a flow curve";
+  return fmt::format("{}, {}: {}", file, kind, text.empty() ? "tells no parameter" : text);
 }
 
 Verdict verdict_of(const FitResult& fit) {
@@ -238,7 +242,7 @@ std::string with_interval(const ParameterEstimate& e, int digits) {
 }
 
 std::string unit_on_page(const FitParameter& p) {
-  return p.unit == "Pa s" ? "Pa·s" : p.unit == "Pa s^n" ? "Pa·sⁿ" : p.unit;
+  return p.unit == "Pa s" ? "Pa·s" : p.unit == "Pa s^n" ? "Pa·sⁿ" : p.unit == "Pa s/m" ? "Pa·s/m" : p.unit;
 }
 
 std::string fit_html(const FitResult& fit, const Instrument& instrument, const std::string& record,

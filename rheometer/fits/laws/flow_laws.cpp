@@ -22,7 +22,7 @@ const FlowLaw& flow_law(const std::string& name) {
 }
 
 const FlowLaw* law_of(const FitResult& fit) {
-  return fit.kind == RecordKind::flow_curve ? &flow_law(fit.model) : nullptr;
+  return fit.kind == RecordKind::flow_curve && fit.model != interface_model ? &flow_law(fit.model) : nullptr;
 }
 
 }  // namespace tremie
