@@ -7,7 +7,8 @@
 namespace tremie::scene {
 namespace {
 
-constexpr std::array<std::pair<const char*, const char*>, 13> endings{{{"_mm_per_s", "mm/s"},
+constexpr std::array<std::pair<const char*, const char*>, 14> endings{{{"_mm_per_s", "mm/s"},
+                                                                       {"_m3_per_s", "m3/s"},
                                                                        {"_mm", "mm"},
                                                                        {"_m_per_s", "m/s"},
                                                                        {"_rev_per_s", "rev/s"},

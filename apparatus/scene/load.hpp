@@ -41,7 +41,7 @@ Section top_section(const ApparatusKeys& apparatus);
 /// folder that it was configured to be installed in.
 std::vector<std::filesystem::path> data_folders();
 
-/// The names of the files in a folder of reference_data: those that `mix = "…"` ("mixes") or `cone = "…"` ("cones") may have.
+/// The names of the files in a folder of reference_data: those that `mix = "…"` ("mixes"), `cone`, `funnel` may have.
 std::vector<std::string> names_in(const std::string& data_folder);
 /// The names that `mix = "…"` may have.
 std::vector<std::string> mix_names();

@@ -71,6 +71,11 @@ mix = "mix_a"
 test = {duration = "1 s"}
 model = {cell = "25 mm", points_per_cell = 2}
 output = {checkpoint_interval = "0.02 s"})"},
+                                                    {"funnel", R"(apparatus = "inverted_cone"
+mix = "mix_a"
+test = {rest = "60 s", duration = "1 s"}
+model = {cell = "20 mm", points_per_cell = 2}
+output = {checkpoint_interval = "0.02 s", frame_interval = "0.1 s"})"},
                                                     {"box_in_space", R"(apparatus = "l_box"
 mix = "mix_a"
 test = {duration = "0.3 s"}
