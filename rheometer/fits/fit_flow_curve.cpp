@@ -345,7 +345,7 @@ FitResult fit_flow_curve(const TorqueRecord& record, const FitInput& input) {
     result.reasons.push_back(
         "the torque falls as the speed rises, which neither a Bingham nor a Herschel-Bulkley "
         "material does: structure still broke down, or a layer slips at the vane");
-  if (const std::string why = misfit_of(r, f.fit, "the torque goes otherwise with the speed than this law");
+  if (const std::string why = misfit_of(r, f.fit, "the torque does not follow this law over the speed");
       !why.empty())
     result.reasons.push_back(why);
   if (const std::string better = better_law(r, input, f); !better.empty()) {
@@ -356,7 +356,7 @@ FitResult fit_flow_curve(const TorqueRecord& record, const FitInput& input) {
   if (slip > 0.0)
     result.reasons.push_back("wall slip is likely: the slowest third of the readings lies " +
                              std::to_string(std::lround(100.0 * slip)) +
-                             " % below what the faster ones ask for; the yield stress may read low");
+                             " % below the curve of the faster ones; the yield stress may be too low");
   return result;
 }
 
