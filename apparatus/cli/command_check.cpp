@@ -105,7 +105,8 @@ void check(const CheckOptions& options) {
 
 void add_command_check(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<CheckOptions>();
-  Command command(app, "check", "Validate a scene; print it resolved, what it uses and what it costs");
+  Command command(app, "check",
+                  "Check a scene; print it with all defaults, and the time and memory that it needs");
   command.required("scene", options->scene, "Scene file (TOML), or - for the standard input");
   command.overrides(options->overrides);
   add_json_option(command, options->json);

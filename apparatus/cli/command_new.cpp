@@ -13,12 +13,16 @@
 namespace tremie::cli {
 namespace {
 
+std::vector<std::string> known_names() {
+  std::vector<std::string> names;
+  for (const auto& apparatus : scene::all_apparatus()) names.push_back(apparatus.keys.name);
+  return names;
+}
+
 std::string template_of(const std::string& name) {
-  std::vector<std::string> known;
-  for (const auto& apparatus : scene::all_apparatus()) {
+  for (const auto& apparatus : scene::all_apparatus())
     if (apparatus.keys.name == name) return scene::write_template(apparatus.keys);
-    known.push_back(apparatus.keys.name);
-  }
+  const std::vector<std::string> known = known_names();
   throw scene::InputError(fmt::format("new: \"{}\" is not available{} Available: {}", name,
                                       scene::did_you_mean(name, known), fmt::join(known, ", ")));
 }
@@ -28,9 +32,8 @@ std::string template_of(const std::string& name) {
 void add_command_new(CLI::App& app, int& exit_code) {
   auto name = std::make_shared<std::string>();
   Command command(app, "new", "Print a commented scene to start from");
-  command.required("apparatus", *name, "slump_flow, l_box, icar_vane or cell");
-  command.example(
-      "tremie new slump_flow > slump.toml; also l_box, icar_vane, cell. Then tremie run slump.toml.");
+  command.required("apparatus", *name, fmt::format("One of: {}", fmt::join(known_names(), ", ")));
+  command.example("tremie new slump_flow > slump.toml; tremie run slump.toml");
   command.run([name, &exit_code] {
     answer(template_of(*name));
     exit_code = done;

@@ -130,19 +130,19 @@ std::string message(std::string_view text) {
 constexpr const char* invitation =
     R"(Tremie: virtual test apparatus for thixotropic fresh concrete
 
-From a mix to a slump flow, at once or after four minutes of rest
+Slump flow of a mix, fresh or after four minutes of rest
   tremie new slump_flow > slump.toml; tremie run slump.toml --set test.rest="240 s"
-From a slump flow, or a torque record, to the mix
+Yield stress and viscosity from a slump flow, or from a torque record
   tremie estimate --spread "590 mm" --t500 "2.5 s"
   tremie fit torque.csv
-Will it pass the bars? The L-box; the vane rheometer likewise
+L-box in space with two bars
   tremie new l_box > box.toml; tremie run box.toml --set model.space=half --set test.bars=2
-What matters, and which concrete is this? Many runs, with intervals
+Which keys matter, and which mix fits the measurements? Many runs, with intervals
   tremie study study.toml; tremie calibrate lab.toml
-How wrong is it, and what differs?
+Numerical error, comparison of results, verification
   tremie run slump.toml --with-error --out runs/a; tremie compare runs/slump runs/a; tremie verify
 
-A run leaves report.html, curves and frames in runs/NAME. tremie COMMAND --help explains each command.
+A run writes report.html, curves and frames to runs/NAME. tremie COMMAND --help explains each command.
 )";
 
 /// The commands, "name TAB description" a line: what completions and man pages are made of.

@@ -18,14 +18,14 @@ struct StudyCommand {
   const char *name, *description;
 };
 inline constexpr StudyCommand read_command{
-    "read", "Show what is understood of a rheometer's record: columns, units, sections, geometry"};
+    "read", "Show how a rheometer's record is read: columns, units, sections, geometry"};
 inline constexpr StudyCommand fit_command{
-    "fit", "Material parameters, with their uncertainty, from a torque record"};
+    "fit", "Fit material parameters, with their uncertainty, to a torque record"};
 inline constexpr StudyCommand study_command{
-    "study", "Run a scene many times, its keys changed by a design; what matters, and how much"};
+    "study", "Run a scene many times by a design: which keys matter, and how much"};
 inline constexpr StudyCommand calibrate_command{
-    "calibrate", "From measurements to the mix: parameters and forecasts, with intervals"};
+    "calibrate", "Find the mix that fits measurements: parameters and forecasts, with intervals"};
 inline constexpr StudyCommand verify_command{
-    "verify", "Measure the error against exact solutions, and what it costs; write VERIFICATION.md"};
+    "verify", "Measure the numerical error against exact solutions, and its cost; write VERIFICATION.md"};
 
 }  // namespace tremie::cli

@@ -61,6 +61,9 @@ Section material_section(const std::string& bulk_modulus) {
            .help = "with youngs_modulus"},
           {.name = "name", .kind = Kind::text, .help = "what people call it"},
           {.name = "source", .kind = Kind::text, .help = "where its numbers come from"},
+          {.name = "licence",
+           .kind = Kind::text,
+           .help = "of these numbers, as SPDX names it (CC-BY-4.0): for --crate"},
           {.name = "slump_flow_0",
            .dimension = Dimension::length,
            .range = positive,
@@ -141,7 +144,8 @@ Measured read_measured(const Values& values) {
           length("measured.spread"),
           length("measured.tolerance"),
           length("measured.t500"),
-          text("mix.measured_on")};
+          text("mix.measured_on"),
+          text("mix.licence")};
 }
 
 Key rest_key(const std::string& fallback, const std::string& help) {

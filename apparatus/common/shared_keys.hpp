@@ -40,6 +40,7 @@ struct Measured {
   std::optional<double> t500 = {};                           ///< [s]
   /// The concrete that slump_flow_0 and slump_flow_240 are of, where it is not this one; empty: they are of this one.
   std::string on = {};
+  std::string licence = {};  ///< of the mix's numbers
 };
 Measured read_measured(const Values& values);
 

@@ -195,10 +195,10 @@ void check(const SlumpTable& table, const Measured& m, const Grid& grid, const M
 static MixEstimate without_t500(const SlumpTable& table, Measured m) {
   m.t500.reset();
   MixEstimate e = estimate(table, m);
-  e.reasons.push_back(
-      fmt::format("t500 of a spread of {:.0f} mm hangs on its last millimetres, and the table ends there: it "
-                  "was left out",
-                  1e3 * *m.spread));
+  e.reasons.push_back(fmt::format(
+      "t500 of a spread of {:.0f} mm depends on its last millimetres, and the table ends there: it "
+      "was left out",
+      1e3 * *m.spread));
   return e;
 }
 

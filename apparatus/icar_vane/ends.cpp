@@ -113,7 +113,7 @@ void judge(const Scene& scene, const EndsGrid& grid, double fastest, double slow
   if (inertia > most_inertia)
     checks.reasons.push_back(fmt::format(
         "model.space = \"cylindrical\" leaves inertia out, and the Reynolds number is {:.3g}; it counts from "
-        "about {:g} on: a lower test.speed",
+        "about {:g} on: use a lower test.speed",
         inertia, most_inertia));
   const double slow = angular_speed(std::abs(slowest));
   const double layer = R * std::sqrt((mix.mu + viscosity(scene.model.law, slow, mix.tau_0)) * slow /
@@ -121,7 +121,7 @@ void judge(const Scene& scene, const EndsGrid& grid, double fastest, double slow
   if (mix.tau_0 > 0.0 && layer < thinnest_layer * grid.cell[0])
     checks.reasons.push_back(fmt::format(
         "the concrete is sheared in a layer of about {:.2g} mm at the vane, which cells of {:.2g} mm do "
-        "not resolve: smaller model.cell",
+        "not resolve: use a smaller model.cell",
         1e3 * layer, 1e3 * grid.cell[0]));
 }
 

@@ -181,8 +181,8 @@ void check_torques_agree(const Scene& scene, Outcome& outcome) {
     outcome.checks.reasons.push_back(
         fmt::format("the torques on the blades, on the wall and from the power differ by {:.1f} %: {}",
                     100.0 * off / scale,
-                    starting ? "the concrete is still being accelerated, a longer test.duration"
-                             : "not steady, or cells too large"));
+                    starting ? "the concrete is still being accelerated: use a longer test.duration"
+                             : "the flow is not steady, or the cells are too large"));
 }
 
 /// Adds a reason where a Couette section's torque at the end is not that of the radial equations, which its
@@ -196,13 +196,13 @@ void check_against_reference(const Scene& scene, Outcome& outcome) {
   if (!is_exact(scene.model.law) && std::abs(off) > (cylinder ? agreement_regularised : agreement_of_blades))
     outcome.checks.reasons.push_back(
         fmt::format("the torque is {:.0f} % off that of the yield stress itself: at this speed the "
-                    "regularised law does not reach it; model.yield = \"exact\"{}",
+                    "regularised law does not reach it; use model.yield = \"exact\"{}",
                     100.0 * off, cylinder ? "" : ", or smaller cells"));
   if (is_exact(scene.model.law) && cylinder && std::abs(off) > agreement_with_reference)
-    outcome.checks.reasons.push_back(
-        fmt::format("the torque is {:.1f} % off that of the equations without inertia: not steady, or a "
-                    "sheared layer that the cells do not resolve",
-                    100.0 * off));
+    outcome.checks.reasons.push_back(fmt::format(
+        "the torque is {:.1f} % off that of the equations without inertia: the flow is not steady, or "
+        "the cells do not resolve its sheared layer",
+        100.0 * off));
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ constexpr double least_behind_the_gate = 3.5, least_at_the_end = 1.0, least_alon
 std::string few_cells(const View& j) {
   const auto [across, up] = j.scene.model.cell;
   const Results& r = j.r;
-  const char* mend = ": a smaller model.cell";
+  const char* mend = ": use a smaller model.cell";
   if (r.h1 < least_behind_the_gate * up)
     return fmt::format("the concrete behind the gate is {:.2g} cells deep, less than {:.2g}{}", r.h1 / up,
                        least_behind_the_gate, mend);
@@ -64,8 +64,8 @@ std::string wrong_level(const View& j) {
   const bool stopped_early = r.stopped_at && drop > most * right;
   if (drop >= least * right && !stopped_early) return {};
   return fmt::format(
-      "the bed {} H1 - H2 = {:.2g} mm, and its yield stress holds {:.2g} mm: {}model.space = "
-      "\"plane_with_side_walls\" tells such fluid mixes better",
+      "the bed {} H1 - H2 = {:.2g} mm, and its yield stress holds {:.2g} mm: {}use model.space "
+      "= \"plane_with_side_walls\" for such fluid mixes",
       stopped_early ? "stopped at" : "has levelled to", 1e3 * drop, 1e3 * right,
       stopped_early ? "cells at the channel's end are not full; " : "");
 }
@@ -84,7 +84,8 @@ std::string narrow_opening(const View& j) {
       j.status == Status::interrupted)
     return {};
   return fmt::format(
-      "the gate has risen by {:.2g} cells, less than {:g}: a longer test.duration, or a smaller model.cell "
+      "the gate has risen by {:.2g} cells, less than {:g}: use a longer test.duration, or a smaller "
+      "model.cell "
       "upwards",
       risen, least);
 }
@@ -96,7 +97,7 @@ std::string gate_beside_its_place(const View& j) {
                off = place_of_gate(along_the_channel(j.scene.box, j.scene.model.cell[0])) - L;
   if (std::abs(off) <= most * L) return {};
   return fmt::format(
-      "no cells of about this size have a face at the gate, which stands {:.2g} mm beside it: another "
+      "no cells of about this size have a face at the gate, which stands {:.2g} mm beside it: use another "
       "model.cell",
       1e3 * std::abs(off));
 }
@@ -111,9 +112,9 @@ std::string went_through_the_wall(const View& j) {
   const double through = j.series.back().through_the_wall;
   if (through <= most_through_the_wall) return {};
   return fmt::format(
-      "{:.2g} % of the concrete went through the shut gate or the column's front wall: a smaller model.cell, "
-      "or "
-      "a shorter model.time_step",
+      "{:.2g} % of the concrete went through the shut gate or the column's front wall: use a smaller "
+      "model.cell, "
+      "or a shorter model.time_step",
       100.0 * through);
 }
 

@@ -50,7 +50,8 @@ std::string bars_with_inertia(const Mix& mix, const YieldLaw& law, double speed,
   const double inertia = bar_reynolds(mix, law, speed, diameter);
   if (!(inertia > most_bar_reynolds)) return {};
   return fmt::format(
-      "the bars' drag leaves inertia out, and their Reynolds number is {:.3g}, more than {:g}: a stiffer mix",
+      "the bars' drag leaves inertia out, and their Reynolds number is {:.3g}, more than {:g}: use a stiffer "
+      "mix",
       inertia, most_bar_reynolds);
 }
 
@@ -58,7 +59,7 @@ std::string cells_between_bars(double cell, double diameter) {
   const double most = 0.5 * bar_cells_most * diameter;
   if (cell <= most * (1.0 + 1e-9)) return {};
   return fmt::format(
-      "cells of {} mm are too large for the gaps between the bars: a model.cell of at most {} mm",
+      "cells of {} mm are too large for the gaps between the bars: use a model.cell of at most {} mm",
       std::lround(1e3 * cell), std::lround(1e3 * most));
 }
 

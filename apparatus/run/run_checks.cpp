@@ -37,8 +37,8 @@ void tell_reasons(std::int64_t steps, const std::vector<double>& lambda, Checks&
       std::count_if(lambda.begin(), lambda.end(), [](double l) { return !std::isfinite(l * l); });
   if (infinite > 0)
     checks.reasons.push_back(
-        fmt::format("the flocculation state is infinite in {} points: a smaller "
-                    "mix.thixotropy.structuration_rate over mix.yield_stress, or a shorter test.rest",
+        fmt::format("the flocculation state is infinite in {} points: reduce "
+                    "mix.thixotropy.structuration_rate over mix.yield_stress, or test.rest",
                     infinite));
   if (checks.points_lost > 0)
     checks.reasons.push_back(fmt::format("{} points left the domain or are not finite", checks.points_lost));
@@ -81,7 +81,7 @@ void judge_volume(double at_start, Checks& checks) {
   const double most = 3.0 * std::abs(at_start) + 5e-3;
   if (checks.max_speed_end > slow || !(std::abs(checks.volume_change) > most)) return;
   checks.reasons.push_back(
-      fmt::format("the concrete's volume changed by {:+.2g} %; its weight can account for {:.2g} %",
+      fmt::format("the concrete's volume changed by {:+.2g} %; its weight explains at most {:.2g} %",
                   100.0 * checks.volume_change, 100.0 * most));
 }
 
@@ -90,8 +90,7 @@ void judge_squeeze(const Squeeze& squeeze, const Mix& mix, double height, Checks
   if (!(std::abs(squeeze.most) > most)) return;
   checks.reasons.push_back(fmt::format(
       "the concrete is too soft: its volume changed by {:+.3g} % at {:.3g} s, more than {:g} %, under its "
-      "weight{}: a "
-      "larger mix.bulk_modulus ({} kPa now; {} kPa keeps it to 1 %)",
+      "weight{}: use a larger mix.bulk_modulus ({} kPa now; {} kPa keeps it to 1 %)",
       100.0 * squeeze.most, squeeze.at, 100.0 * most, squeeze.collapsed() ? "; the run ends there" : "",
       scene::rounded(1e-3 * mix.K, 3), scene::rounded(0.1 * mix.density * gravity * height, 1)));
 }
@@ -113,9 +112,8 @@ std::string inertia_on_a_cell(const Mix& mix, const YieldLaw& law, double speed,
   const double reynolds = mix.density * speed * h / viscous;
   if (!(reynolds > most)) return {};
   return fmt::format(
-      "inertia rules the flow: at {:.2g} m/s the Reynolds number of a cell is {:.0f}, more than {:g}, and "
-      "the "
-      "damping of cells and steps decides how far it goes: a smaller model.cell upwards",
+      "inertia rules the flow: at {:.2g} m/s the Reynolds number of a cell is {:.0f}, more than {:g}, so "
+      "that numerical damping decides how far it goes: use a smaller model.cell upwards",
       speed, reynolds, most);
 }
 

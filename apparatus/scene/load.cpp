@@ -64,7 +64,8 @@ std::vector<fs::path> inline_files(Node& document, const fs::path& scene_folder)
 bool is_of_the_concrete(const Override& o) {
   if (o.path.size() < 2 || o.path.front() != "mix") return false;
   const std::string& key = o.path[1];
-  return key != "name" && key != "source" && key != "measured_on" && !key.starts_with("slump_flow");
+  return key != "name" && key != "source" && key != "licence" && key != "measured_on" &&
+         !key.starts_with("slump_flow");
 }
 
 /// Lays the command line's values over the scene's. Returns the keys of the concrete among them, "yield_stress,

@@ -257,15 +257,15 @@ void report(const Readings& readings, const LeastSquaresFit& fit, FitResult& res
   // An instrument's readings scatter by a few per cent; at this size the record is another material, unit or
   // speed.
   if (misfit > 10.0)
-    result.reasons.push_back("the fitted curve misses the readings by " +
-                             std::to_string(std::lround(misfit)) +
-                             " % (root mean square): check units, speed and what was given as known");
+    result.reasons.push_back(
+        "the fitted curve misses the readings by " + std::to_string(std::lround(misfit)) +
+        " % (root mean square): check the units, the speed and the values given as known");
   // A stray reading is an outlier; a twentieth of a long record is a part that the model does not describe.
   if (readings.size() >= 50 && left_out > 0.05 * n)
     result.reasons.push_back(
         std::to_string(std::lround(100.0 * left_out / n)) +
         " % of the readings are off the fitted curve and were left out: the material does not "
-        "behave as the model, or what was given as known is not right");
+        "follow the model, or a value given as known is wrong");
 }
 
 }  // namespace fitting

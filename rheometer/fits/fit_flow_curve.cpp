@@ -196,7 +196,7 @@ std::vector<std::string> reasons_of(const Readings& r, const FittedLaw& f) {
     reasons.push_back(
         "the torque falls as the speed rises, which neither a Bingham nor a Herschel-Bulkley "
         "material does: structure still broke down, or a layer slips at the vane");
-  if (const std::string why = misfit_of(r, f.fit, "the torque goes otherwise with the speed than this law");
+  if (const std::string why = misfit_of(r, f.fit, "the torque does not follow this law over the speed");
       !why.empty())
     reasons.push_back(why);
   return reasons;
@@ -233,7 +233,7 @@ FitResult fit_by_law(const TorqueRecord& record, const FitInput& input, std::opt
   if (const double slip = below_the_curve(r, input, *f.law); slip > 0.0)
     result.reasons.push_back("wall slip is likely: the slowest third of the readings lies " +
                              std::to_string(std::lround(100.0 * slip)) +
-                             " % below what the faster ones ask for; the yield stress may read low");
+                             " % below the curve of the faster ones; the yield stress may be too low");
   return result;
 }
 

@@ -341,7 +341,7 @@ void judge_fall(const Readings& r, std::size_t rows, const FitInput& in, FitResu
         "the torque rises at the end of the record, which no breakdown at a constant speed does");
   else if (!(in.tau_0 && in.mu) && last > 0.97 * first && last >= first - 4.0 * noise)
     result.reasons.push_back(
-        "the torque is level: nothing breaks down, and one torque tells neither yield stress nor "
+        "the torque is level: nothing breaks down, and one torque determines neither yield stress nor "
         "viscosity nor flocculation");
 }
 

@@ -94,7 +94,7 @@ int run_comparison(const CompareOptions& options) {
 
 void add_command_compare(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<CompareOptions>();
-  Command command(app, "compare", "Set results side by side: curves, and what differs");
+  Command command(app, "compare", "Compare results: curves side by side, keys and readings that differ");
   command.required("folders", options->folders, "Folders of results, two to eight");
   command.option_with_default("--out", options->out, "Folder for the comparison");
   add_json_option(command, options->json);

@@ -167,18 +167,18 @@ int run_estimate(const EstimateOptions& options) {
 void add_command_estimate(CLI::App& app, int& exit_code) {
   auto o = std::make_shared<EstimateOptions>();
   o->cone = estimate::Mould{}.name;
-  Command command(app, "estimate", "Yield stress and plastic viscosity from a spread or a slump, by a table");
+  Command command(app, "estimate", "Estimate yield stress and plastic viscosity from a spread or a slump");
   command.option("--spread", o->spread, "Spread at rest: \"590 mm\"");
   command.option("--slump", o->slump, "Slump: \"120 mm\"");
   command.option("--t500", o->t500, "Time to 500 mm from the start of the lift: \"2.5 s\"");
-  command.option("--cone", o->cone, "Mould, of reference_data/cones: \"haegermann\"; \"abrams\" by default");
-  command.option("--density", o->density, "\"2400 kg/m3\" by default");
-  command.option("--spread-error", o->spread_error, "One standard error, \"15 mm\" by default");
-  command.option("--slump-error", o->slump_error, "One standard error, \"10 mm\" by default");
-  command.option("--t500-error", o->t500_error, "One standard error, \"0.2 s\" by default");
-  command.option(
-      "--chart", o->chart,
-      "Draw a rheograph, FILE.svg or FILE.pdf: contours of slump flow and t500; without --spread it alone");
+  command.option("--cone", o->cone,
+                 "Mould by its name in reference_data/cones: \"haegermann\" (default: \"abrams\")");
+  command.option("--density", o->density, "Density (default: \"2400 kg/m3\")");
+  command.option("--spread-error", o->spread_error, "Standard error of the spread (default: \"15 mm\")");
+  command.option("--slump-error", o->slump_error, "Standard error of the slump (default: \"10 mm\")");
+  command.option("--t500-error", o->t500_error, "Standard error of t500 (default: \"0.2 s\")");
+  command.option("--chart", o->chart,
+                 "Draw a rheograph to FILE.svg or FILE.pdf: contours of slump flow and t500");
   command.flag("--json", o->json, "Print one JSON object");
   command.example("tremie estimate --spread \"590 mm\" --t500 \"2.5 s\"");
   command.example("tremie estimate --slump \"120 mm\"");

@@ -74,7 +74,7 @@ Command& Command::each(const char* name, std::vector<std::string>& values, const
 
 Command& Command::overrides(std::vector<std::string>& values) {
   return each("--set", values, "KEY=VALUE",
-              "KEY=VALUE over the scene, KEY dotted, VALUE as TOML: --set mix.yield_stress=\"61 Pa\"");
+              "Replace a value of the scene: --set mix.yield_stress=\"61 Pa\"; may be repeated");
 }
 
 Command& Command::anything() {

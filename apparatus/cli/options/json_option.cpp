@@ -14,6 +14,11 @@ void add_json_option(Command& command, bool& json) {
   command.flag("--json", json, "Print one JSON object, the result's summary, and nothing else");
 }
 
+void add_crate_option(Command& command, bool& crate) {
+  command.flag("--crate", crate,
+               "Also describe the files, the program and the mix in ro-crate-metadata.json (RO-Crate 1.1)");
+}
+
 void print_json_of(const std::filesystem::path& folder) {
   std::ifstream stream(folder / "summary.json", std::ios::binary);
   answer(std::string(std::istreambuf_iterator<char>(stream), {}));

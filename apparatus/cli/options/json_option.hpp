@@ -11,6 +11,9 @@ namespace tremie::cli {
 /// --json: one JSON object on the standard output and nothing else there; messages go to the standard error.
 void add_json_option(Command& command, bool& json);
 
+/// --crate: ro-crate-metadata.json beside the result (report/folder/crate.hpp).
+void add_crate_option(Command& command, bool& crate);
+
 /// summary.json of a folder, on the standard output.
 void print_json_of(const std::filesystem::path& folder);
 /// summary.json of a result's folder, on the standard output; notes and the folder on the standard error.

@@ -73,7 +73,7 @@ int resume(const ResumeOptions& options) {
 
 void add_command_resume(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<ResumeOptions>();
-  Command command(app, "resume", "Go on with a run that was interrupted or killed");
+  Command command(app, "resume", "Continue a run that was interrupted or killed");
   command.required("folder", options->folder, "Folder of the run's result (tremie run --out)");
   add_json_option(command, options->json);
   command.flag("--quiet", options->quiet, "Print nothing but errors");

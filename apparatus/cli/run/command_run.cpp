@@ -26,7 +26,7 @@ struct RunOptions {
   std::string scene, out;
   std::vector<std::string> overrides;
   int threads = 0;  ///< 0: as many as pay
-  bool quiet = false, json = false, force = false, with_error = false;
+  bool quiet = false, json = false, force = false, with_error = false, crate = false;
   std::string accuracy;  ///< "1 %"; empty: the scene's own cells
 };
 
@@ -82,9 +82,12 @@ int run_cell(const RunOptions& options) {
   say_notes(scene, screen_of(options.quiet, options.json));
   const HeldInterrupts held;  // outlives the folder
   report::RunFolder folder = folder_of(options, scene);
-  return run_and_publish(
-      scene, {.name = scene.name, .resolved = scene.resolved, .command = "tremie cell " + options.scene},
-      screen_of(options.quiet, options.json), folder);
+  return run_and_publish(scene,
+                         {.name = scene.name,
+                          .resolved = scene.resolved,
+                          .command = "tremie cell " + options.scene,
+                          .crate = options.crate},
+                         screen_of(options.quiet, options.json), folder);
 }
 
 int run_scene(const RunOptions& options) {
@@ -105,6 +108,7 @@ int run_scene(const RunOptions& options) {
                           .command = command_of(options),
                           .accuracy = options.accuracy,
                           .with_error = options.with_error,
+                          .crate = options.crate,
                           .threads = threads},
                          screen_of(options.quiet, options.json), folder);
 }
@@ -117,12 +121,12 @@ void add_command_run(CLI::App& app, int& exit_code) {
   command.required("scene", options->scene, "Scene file (TOML)");
   command.option("--out", options->out, "Folder for the result (default: runs/<scene name>)");
   command.overrides(options->overrides);
-  command.number("--threads", options->threads, 1, 1024,
-                 "Threads (default: as many as pay for the scene's size)");
+  command.number("--threads", options->threads, 1, 1024, "Threads (default: chosen by the scene's size)");
   command.flag("--with-error", options->with_error,
-               "Also run coarser cells, and state the discretisation error of the result");
+               "Also run coarser cells, and state the discretisation error");
   command.option("--accuracy", options->accuracy,
-                 "Choose the cells for this accuracy, \"1 %\"; says the price first, implies --with-error");
+                 "Choose the cells for this accuracy, \"1 %\"; states the cost first, implies --with-error");
+  add_crate_option(command, options->crate);
   add_json_option(command, options->json);
   command.flag("--quiet", options->quiet, "Print nothing but errors");
   command.flag("--force", options->force, "Replace an earlier result in the folder");
@@ -135,11 +139,12 @@ void add_command_run(CLI::App& app, int& exit_code) {
 
 void add_command_cell(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<RunOptions>();
-  Command command(app, "cell", "Run the law alone, in one material cell at a prescribed shear rate");
+  Command command(app, "cell", "Compute the law alone, in one material cell at a prescribed shear rate");
   command.required("scene", options->scene, "Scene file (TOML) with apparatus = \"cell\"");
   command.option("--out", options->out, "Folder for the result (default: runs/<scene name>)");
   command.overrides(options->overrides);
   command.number("--threads", options->threads, 1, 1024, "Threads; a cell needs one");
+  add_crate_option(command, options->crate);
   add_json_option(command, options->json);
   command.flag("--quiet", options->quiet, "Print nothing but errors");
   command.flag("--force", options->force, "Replace an earlier result in the folder");

@@ -50,7 +50,7 @@ int watch(const std::string& folder) {
 
 void add_command_watch(CLI::App& app, int& exit_code) {
   auto folder = std::make_shared<std::string>();
-  Command command(app, "watch", "Show how far a run has come that is at work on a folder, until it ends");
+  Command command(app, "watch", "Follow the run of another process until it ends");
   command.required("folder", *folder, "Folder of the run's result (tremie run --out)");
   command.example("tremie watch runs/slump, beside tremie run slump.toml");
   command.run([folder, &exit_code] { exit_code = watch(*folder); });

@@ -12,6 +12,7 @@
 #include "apparatus/cli/progress.hpp"
 #include "apparatus/cli/run/keeper.hpp"
 #include "apparatus/registry/error_estimate.hpp"
+#include "apparatus/report/folder/crate.hpp"
 #include "apparatus/report/run_files/html.hpp"
 #include "apparatus/report/run_files/result_files.hpp"
 
@@ -59,6 +60,20 @@ void note_accuracy(const report::RunRequest& request, scene::Outcome& outcome) {
                     request.accuracy, error.bars.front().name, 100.0 * reached));
 }
 
+/// A run that an interrupt ended is described as it stands.
+void add_crate(const scene::Scene& scene, const report::RunRequest& request, const scene::Outcome& outcome,
+               const std::filesystem::path& folder, std::vector<std::string>& notes) {
+  report::Crate crate{.name = outcome.asked.empty() ? request.name : outcome.asked,
+                      .description = report::headline_of(outcome),
+                      .command = request.command,
+                      .mix_name = scene.measured.name,
+                      .mix_source = scene.measured.source,
+                      .mix_licence = scene.measured.licence,
+                      .completed = outcome.status == Status::completed};
+  for (const auto& reason : outcome.checks.reasons) crate.description += "; not to be trusted: " + reason;
+  if (const std::string note = report::write_crate(folder, crate); !note.empty()) notes.push_back(note);
+}
+
 /// Who keeps this run's checkpoints; nobody where the scene wants none.
 std::optional<Keeper> keeper_of(const scene::Scene& scene, const report::RunRequest& request,
                                 const report::RunFolder& folder,
@@ -97,6 +112,7 @@ scene::Outcome run_and_write(const scene::Scene& scene, const report::RunRequest
   outcome.cost.wall += request.wall, outcome.cost.cpu += request.cpu;
   note_accuracy(request, outcome);
   notes = files.finish(outcome);
+  if (request.crate) add_crate(scene, request, outcome, folder.staging(), notes);
   if (keeper && !keeper->trouble().empty()) notes.push_back(keeper->trouble());
   return outcome;
 }

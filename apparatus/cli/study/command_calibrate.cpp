@@ -247,7 +247,8 @@ void add_command_calibrate(CLI::App& app, int& exit_code) {
   command.number("--jobs", o->jobs, 1, 4096,
                  "Runs at a time, one thread each (default: the machine's cores)");
   command.number("--runs", o->runs, 10, 100000, "Runs of each test at most (default: 30 for each unknown)");
-  command.flag("--next", o->next, "Say, too, which further test would tell most; about four times the time");
+  command.flag("--next", o->next,
+               "Also rank further tests by what they would add; about four times the time");
   add_json_option(command, o->json);
   command.flag("--quiet", o->quiet, "Print nothing but errors");
   command.flag("--force", o->force, "Replace an earlier result in the folder");

@@ -21,6 +21,7 @@
 #include "apparatus/report/fit_page/protocol_page.hpp"
 #include "apparatus/report/fit_page/replicates_page.hpp"
 #include "apparatus/report/fit_results.hpp"
+#include "apparatus/report/folder/crate.hpp"
 #include "apparatus/report/folder/own_files.hpp"
 #include "apparatus/report/protocol_results.hpp"
 #include "apparatus/report/rheometer_files.hpp"
@@ -39,7 +40,7 @@ struct Given {
   std::string out;
   std::vector<std::string> texts = std::vector<std::string>(fit_options().size());  ///< of fit_options()
   std::deque<bool> flags = std::deque<bool>(fit_options().size());
-  bool json = false, quiet = false, force = false;
+  bool json = false, quiet = false, force = false, crate = false;
 };
 
 FitOptions options_of(const Given& o) {
@@ -77,14 +78,17 @@ RecordFits fit_files(const std::vector<std::string>& files, const FitOptions& op
 
 using Files = std::vector<std::pair<std::string, std::string>>;
 
-/// The files of a result, each a name and a text.
-Files files_of(const RecordFits& fits, const Given& o) {
+/// What repeats the fit of these files.
+std::string command_of(const Given& o, const std::vector<std::string>& files) {
   std::vector<std::string> texts = o.texts;
   for (std::size_t i = 0; i < texts.size(); ++i)
     if (o.flags[i]) texts[i] = "given";
-  const auto command = [&](const std::vector<std::string>& files) {
-    return report::fit_command(files, texts);
-  };
+  return report::fit_command(files, texts);
+}
+
+/// The files of a result, each a name and a text.
+Files files_of(const RecordFits& fits, const Given& o) {
+  const auto command = [&](const std::vector<std::string>& files) { return command_of(o, files); };
   if (fits.protocol) {
     const auto& [record, reading] = *fits.protocol;
     Files files = report::protocol_chart_files(record, reading);
@@ -106,6 +110,15 @@ Files files_of(const RecordFits& fits, const Given& o) {
   return files;
 }
 
+/// Returns a note, or nothing.
+std::string write_crate(const Given& o, const RecordFits& fits, const std::filesystem::path& folder) {
+  report::Crate crate{.name = fmt::format("Fit of {}", fmt::join(o.data, ", ")),
+                      .description = "parameters of the concrete from a rheometer's record",
+                      .command = command_of(o, o.data)};
+  for (const auto& reason : fits.reasons) crate.description += "; not to be trusted: " + reason;
+  return report::write_crate(folder, crate);
+}
+
 int run_fit(const Given& o) {
   const Stopwatch watch;
   const FitOptions options = options_of(o);
@@ -125,7 +138,9 @@ int run_fit(const Given& o) {
   summary["results"] = report::fit_results(fits, o.data);
   summary["input"] = report::fit_input(options, o.data);
   io::write_text(folder.staging() / "summary.json", summary.dump(2) + "\n");
+  const std::string note = o.crate ? write_crate(o, fits, folder.staging()) : "";
   folder.publish();
+  if (!note.empty() && !o.quiet) say(stderr, "note: {}\n", note);
   for (const auto& reason : fits.reasons) say(stderr, "not to be trusted: {}\n", reason);
   if (o.json) {
     print_result_as_json(folder.target());
@@ -158,6 +173,7 @@ void add_command_fit(CLI::App& app, int& exit_code) {
                    "CSV or an instrument's export: speed and torque (flow curve), time and torque (decay), "
                    "or all three; several files are replicates, or, with --tribometer, fill heights");
   add_options(command, *o);
+  add_crate_option(command, o->crate);
   add_json_option(command, o->json);
   command.option("--out", o->out, "Folder for the result (default: runs/<record's name>)");
   command.flag("--quiet", o->quiet, "Print nothing but errors");

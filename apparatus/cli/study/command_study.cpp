@@ -216,12 +216,12 @@ void add_command_study(CLI::App& app, int& exit_code) {
   command.option("--out", o->out, "Folder for the result (default: runs/<study's name>)");
   command.number("--jobs", o->jobs, 1, 4096,
                  "Runs at a time, one thread each (default: the machine's cores)");
-  command.flag("--resume", o->resume, "Go on with a study that was stopped or killed");
-  command.number("--row", o->row, 0, 1000000, "Run this row alone (from 0), into DIR/rows");
-  command.flag("--collect", o->collect, "Make study.csv of the rows that are there; run none");
+  command.flag("--resume", o->resume, "Continue a study that was stopped or killed");
+  command.number("--row", o->row, 0, 1000000, "Run one row alone (from 0), into DIR/rows");
+  command.flag("--collect", o->collect, "Make study.csv of the finished rows; run none");
   command.choice("--engine", o->engine, {"slurm", "snakemake", "parallel"},
                  "Write what runs the rows elsewhere: slurm, snakemake, parallel");
-  command.flag("--submit", o->submit, "Start it, too");
+  command.flag("--submit", o->submit, "Also start it");
   add_json_option(command, o->json);
   command.flag("--quiet", o->quiet, "Print nothing but errors");
   command.flag("--force", o->force, "Replace an earlier study in the folder");

@@ -173,13 +173,10 @@ void add_command_verify(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<VerifyOptions>();
   Command command(app, verify_command.name, verify_command.description);
   command.option("cases", options->cases, "Cases by name or number (default: all): " + known_cases());
-  command.flag(
-      "--quick", options->quick,
-      "Coarser cells, two to four minutes of one core (the default); what it takes here is said first");
-  command.flag_without("--full", {"--quick"}, options->full, "All cells, four times that");
-  command.flag_without(
-      "--validation", {"--quick", "--full"}, options->validation,
-      "Predictions beside measurements on concrete, in place of the cases; some ten minutes of two cores");
+  command.flag("--quick", options->quick, "Coarser cells, two to four minutes of one core (the default)");
+  command.flag_without("--full", {"--quick"}, options->full, "All cells; four times as long");
+  command.flag_without("--validation", {"--quick", "--full"}, options->validation,
+                       "Compare predictions with measurements on concrete instead; ten minutes of two cores");
   command.option("--out", options->out,
                  "Folder for the result (default: runs/verification or runs/validation)");
   add_json_option(command, options->json);

@@ -34,7 +34,7 @@ std::string too_thin(const View& j) {
   const double rows = slides(j.scene, depth) ? 0.5 : j.scene.mix.tau_0 == 0.0 ? 2.0 : in_space ? 1.5 : 1.2;
   if (depth >= rows * j.scene.model.cell[1]) return {};
   return fmt::format(
-      "the concrete is thinner than {:g} cells, {:.3g} mm on average: a smaller model.cell upwards", rows,
+      "the concrete is thinner than {:g} cells, {:.3g} mm on average: use a smaller model.cell upwards", rows,
       1e3 * depth);
 }
 
@@ -47,11 +47,11 @@ std::string few_cells(const View& j) {
   const double flat = j.scene.cone.height / j.scene.cone.bottom_radius;
   if (up < least && flat < 0.5)
     return fmt::format(
-        "the cone is {:.3g} mm high, {:.2g} of its foot's radius: no slump can be read of it (cone.height)",
+        "the cone is {:.3g} mm high, {:.2g} of its foot's radius: too low for a slump (cone.height)",
         1e3 * j.scene.cone.height, flat);
   return fmt::format(
-      "the cone is {:.2g} cells from its axis to its rim and {:.2g} high, less than {:g}: a smaller "
-      "model.cell",
+      "the cone is {:.2g} cells from its axis to its rim and {:.2g} high, less than {:g}: use a "
+      "smaller model.cell",
       across, up, least);
 }
 
@@ -64,7 +64,7 @@ std::string few_points_across(const View& j) {
   const double across = j.scene.model.points_per_cell[0] / std::max(1.0, stretch);
   if (across >= least) return {};
   return fmt::format(
-      "the body has stretched until a cell holds {:.2g} points across, and then it spreads too far: {} or "
+      "the body has stretched to {:.2g} points a cell across, and then it spreads too far: use {} or "
       "more model.points_per_cell across",
       across, static_cast<int>(std::ceil(1.5 * least * stretch)));
 }
@@ -74,8 +74,8 @@ std::string slow_lift_unverified(const View& j) {
   constexpr double least = 5e-3;
   if (!j.scene.lift_speed || *j.scene.lift_speed >= least) return {};
   return fmt::format(
-      "the cone was lifted at {:.2g} mm/s; slower than {:g} mm/s nothing is verified, and the section may "
-      "have holes: a faster test.lift_speed",
+      "the cone was lifted at {:.2g} mm/s; nothing is verified below {:g} mm/s, and the section may "
+      "have holes: use a faster test.lift_speed",
       1e3 * *j.scene.lift_speed, 1e3 * least);
 }
 
@@ -88,8 +88,8 @@ std::string narrow_opening(const View& j) {
   const double risen = j.scene.lift_speed ? rim_height(j.scene, time) / j.scene.model.cell[1] : least;
   if (risen >= least || time <= free_fall || j.status == Status::interrupted) return {};
   return fmt::format(
-      "the cone's rim has risen by {:.2g} cells, less than {:g}: a longer test.duration, or a smaller "
-      "model.cell upwards",
+      "the cone's rim has risen by {:.2g} cells, less than {:g}: use a longer test.duration, or a "
+      "smaller model.cell upwards",
       risen, least);
 }
 
@@ -101,11 +101,10 @@ std::string lifted_by_the_cone(const View& j) {
   if (j.scene.cone.bottom_radius < j.scene.cone.top_radius)
     return fmt::format(
         "the concrete stood {:.3g} mm high: it did not leave the cone, which is narrower below and lifted "
-        "it: a more "
-        "fluid mix, a faster test.lift_speed, or \"instant\"",
+        "it: use a more fluid mix, a faster test.lift_speed, or \"instant\"",
         1e3 * highest);
   return fmt::format(
-      "the concrete stood {:.3g} mm high, higher than the cone that it came from, which lifted it: a smaller "
+      "the concrete stood {:.3g} mm high, higher than its cone, which lifted it: use a smaller "
       "model.cell, or another test.lift_speed",
       1e3 * highest);
 }
@@ -135,8 +134,8 @@ std::string went_through_the_cone(const View& j) {
   const auto& through = j.r.through_the_cone;
   if (!through || *through <= most) return {};
   return fmt::format(
-      "{:.2g} % of the concrete went through the cone's wall before its rim had risen by a cell: a faster "
-      "test.lift_speed, or a smaller model.cell",
+      "{:.2g} % of the concrete went through the cone's wall before its rim had risen by a cell: use a "
+      "faster test.lift_speed, or a smaller model.cell",
       100.0 * *through);
 }
 

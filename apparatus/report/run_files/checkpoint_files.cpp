@@ -20,7 +20,7 @@ namespace tremie::report {
 
 void visit(Archive& archive, RunRequest& request) {
   archive(request.name, request.resolved, request.command, request.accuracy, request.with_error,
-          request.threads, request.wall, request.cpu);
+          request.crate, request.threads, request.wall, request.cpu);
 }
 
 namespace {

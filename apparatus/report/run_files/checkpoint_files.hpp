@@ -23,6 +23,7 @@ struct RunRequest {
   std::string name, resolved, command;  ///< of the scene; the scene in SI; what repeats the run
   std::string accuracy = {};            ///< --accuracy; empty: none
   bool with_error = false;
+  bool crate = false;  ///< --crate
   int threads = 1;
   double wall = 0.0, cpu = 0.0;  ///< so far [s]
 };

@@ -2,17 +2,27 @@
 
 const tremieRange = [450, 650];
 
+/// [low, high, step] of the spread's axis [mm].
+function spreadAxis(runs) {
+  const most = Math.max(...runs.map((run) => run.spread.at(-1) ?? 0)), foot = Math.min(...runs.map(footOf));
+  if (runs.some(hasClasses)) return [Math.min(200, foot), 100 * Math.ceil((Math.max(680, most) + 20) / 100), 100];
+  const step = most - foot > 150 ? 50 : 20, low = step * Math.floor(foot / step);
+  return [low, step * Math.ceil((Math.max(most, low + 4 * step) + step / 4) / step), step];
+}
+
 function drawChart(canvas, runs, time) {
   const {context, width, height} = prepare(canvas, canvas.clientWidth < 500 ? 0.75 : 0.5);
   const legendHeight = runs.length === 2 ? 36 : 0;  // above the curves, so that it never covers one
   const box = {left: 46, right: width - 12, top: 12 + legendHeight, bottom: height - 40};
   const last = Math.max(1, ...runs.map((run) => run.time.at(-1) ?? 0));
-  const most = 100 * Math.ceil((Math.max(680, ...runs.map((run) => run.spread.at(-1) ?? 0)) + 20) / 100);
+  if (!runs.length) return;
+  const axis = spreadAxis(runs), [low, most] = axis;
   const x = (t) => box.left + ((box.right - box.left) * t) / last;
-  const y = (mm) => box.bottom - ((box.bottom - box.top) * (mm - 200)) / (most - 200);
-  band(context, box, y(tremieRange[0]), y(tremieRange[1]), theme("--band"), "tremie concrete, 450 to 650 mm");
-  axes(context, box, x, y, last, most);
-  line(context, [[box.left, y(500)], [box.right, y(500)]], theme("--text"), 1, [6, 4]);
+  const y = (mm) => box.bottom - ((box.bottom - box.top) * (mm - low)) / (most - low);
+  const classes = runs.some(hasClasses);
+  if (classes) band(context, box, y(tremieRange[0]), y(tremieRange[1]), theme("--band"), "tremie concrete, 450 to 650 mm");
+  axes(context, box, x, y, last, axis);
+  if (classes) line(context, [[box.left, y(500)], [box.right, y(500)]], theme("--text"), 1, [6, 4]);
   runs.forEach((run, i) => drawMeasured(context, box.right - 10 - 16 * i, y, run, runs.length === 2));
   for (const run of runs) {
     line(context, run.time.map((t, i) => [x(t), y(run.spread[i])]), run.colour, 2.5, run.dash);
@@ -32,10 +42,10 @@ function band(context, box, low, high, colour, text) {
   context.fillText(text, box.right - 6, low - 6);
 }
 
-function axes(context, box, x, y, last, most) {
+function axes(context, box, x, y, last, [low, most, rise]) {
   context.fillStyle = theme("--muted");
   context.textAlign = "right";
-  for (let mm = 200; mm <= most; mm += 100) {
+  for (let mm = low; mm <= most; mm += rise) {
     line(context, [[box.left, y(mm)], [box.right, y(mm)]], theme("--grid"), 1);
     context.fillText(String(mm), box.left - 6, y(mm) + 4);
   }

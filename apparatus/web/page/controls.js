@@ -13,6 +13,16 @@ function mark(text, wrong) {
   wrong ? text.setAttribute("aria-invalid", "true") : text.removeAttribute("aria-invalid");
 }
 
+/// Builds the choices; change(key, value) is called when one is made.
+function buildChoices(place, change) {
+  for (const {key, word, options} of choices) {
+    const select = element("select", {id: `choice-${key}`});
+    for (const [value, name] of Object.entries(options)) select.append(element("option", {value}, name));
+    select.addEventListener("change", () => change(key, select.value));
+    place.append(element("div", {class: "line"}, element("label", {for: `choice-${key}`}, word), select));
+  }
+}
+
 /// Builds the fields; change(key, value) is called when a value is settled, never for one that cannot be run.
 function buildFields(place, change) {
   for (const f of fields) {
@@ -39,7 +49,7 @@ function buildFields(place, change) {
     range.addEventListener("input", () => (text.value = slider.value(f, range.value)));
     range.addEventListener("change", () => settle(slider.value(f, range.value)));
     text.addEventListener("change", () => settle(readNumber(text.value)));
-    place.append(element("div", {class: "field"}, label, element("div", {class: "value"}, text, unit), range, trouble));
+    place.append(element("div", {class: "field", id: `of-${f.key}`}, label, element("div", {class: "value"}, text, unit), range, trouble));
   }
 }
 
@@ -56,7 +66,8 @@ function showField(f, value) {
 }
 
 function showConcrete(concrete) {
-  for (const f of fields) showField(f, concrete[f.key]);
+  for (const f of fields) showField(f, concrete[f.key]), (byId(`of-${f.key}`).hidden = !counts(f, concrete));
+  for (const {key} of choices) byId(`choice-${key}`).value = concrete[key];
   byId("mix").value = mixOf(concrete);
 }
 

@@ -12,13 +12,15 @@ const still = matchMedia("(prefers-reduced-motion: reduce)");
 
 function view() {
   const frames = state.runs.flatMap((run) => run.frames), quantity = quantities[state.by];
-  const widest = Math.max(560, ...state.runs.map((run) => run.spread.at(-1) ?? 0)) / 2000;
+  const shapes = state.runs.map((run) => mouldOf(run.concrete)), size = Math.max(...shapes.map((shape) => shape.bottom_radius)) / 0.1;
+  const widest = Math.max(560 * size, ...state.runs.map((run) => run.spread.at(-1) ?? 0)) / 2000;
   const range = (state.range ??= quantity.range(frames));
   return {
     shade: shadeBy(quantity, range),
     at: quantity.at,
-    reach: widest + 0.04,
-    ratio: 0.36 / (2 * widest + 0.08),
+    reach: widest + 0.04 * size,
+    ratio: (1.2 * Math.max(...shapes.map((shape) => shape.height))) / (2 * widest + 0.08 * size),
+    ring: 0.004 * size,
     range
   };
 }
@@ -40,7 +42,7 @@ function showAnswers() {
     block.hidden = !state.runs[i];
     if (state.runs[i]) showAnswer(block, state.runs[i], state.errorState);
   });
-  const ready = state.runs.length > 0 && state.runs.every((run) => run.summary);
+  const ready = state.runs.length > 0 && state.runs.every((run) => run.summary && !run.opening);
   ["save-png", "save-csv"].forEach((id) => (byId(id).disabled = !ready));
 }
 
@@ -95,18 +97,29 @@ async function runInto(run, which, scene, turn) {
   return {result, over};
 }
 
+/// What the page opens on: the result of the first concrete as the program computed it when the page was made.
+function openingRun(concrete) {
+  const {time, spread, ...result} = JSON.parse(byId("opening").textContent);
+  return {...emptyRun(concrete, 0), opening: true, result, summary: result.summary, time, spread};
+}
+
+/// Whether it is the concrete that the opening's result is of.
+const isOpening = ([concrete, ...others]) => !others.length && fragmentOf([concrete]) === fragmentOf([concreteOf("mix_a")]);
+
 function start(concretes) {
+  const first = state.turn === 0 && isOpening(concretes);
   cancelAll();
   state.turn += 1;
   state.range = null;
-  state.runs = concretes.map(emptyRun);
+  state.runs = first ? concretes.map(openingRun) : concretes.map(emptyRun);
   labelsOf(concretes).forEach((label, i) => (state.runs[i].label = label));
   state.errorState = "computing the error …";
+  if (first) player.end = state.runs[0].time.at(-1);
   complain("");
   byId("unread").textContent = byId("said").textContent = "";
   busy(true);
   showAnswers();
-  showAt(0);
+  showAt(first ? player.end : 0);
   return state.turn;
 }
 
@@ -202,7 +215,7 @@ function changeField(key, value) {
 function chooseSecond(on) {
   const other = mixOf(state.concretes[0]) === "mix_c" ? "mix_a" : "mix_c";
   state.concretes =
-      on ? [state.concretes[0], {...concreteOf(other), rest: state.concretes[0].rest}] : [state.concretes[0]];
+      on ? [state.concretes[0], {...concreteOf(other), rest: state.concretes[0].rest, mould: state.concretes[0].mould}] : [state.concretes[0]];
   state.active = on ? 1 : 0;
   showChoice();
   runAll();
@@ -252,17 +265,18 @@ function load(fragment) {
 }
 
 buildMixes((name) => {
-  const {rest, lift, duration} = state.concretes[state.active];
-  change({...concreteOf(name), rest, lift, duration});
+  const {rest, lift, duration, mould, floor} = state.concretes[state.active];
+  change({...concreteOf(name), rest, lift, duration, mould, floor});
   seeResult();
 });
+buildChoices(byId("choices"), changeField);
 buildFields(byId("fields"), changeField);
 buildEstimate(
     byId("estimate-fields"), () => state.concretes[state.active].density,
     (values) => {
       const now = state.concretes[state.active];
       // Such a mix may creep for longer than a test is given at first; a run ends where the flow does.
-      change({...now, ...values, rest: 0, structuration_rate: 0, duration: Math.max(now.duration, 120)});
+      change({...now, ...values, mould: "abrams", floor: "no_slip", rest: 0, structuration_rate: 0, duration: Math.max(now.duration, 120)});
       byId("said").textContent = "Rest and structuration rate are 0 now, one spread does not tell them; the test may take 120 s.";
       seeResult();
     });

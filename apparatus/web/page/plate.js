@@ -1,10 +1,8 @@
-// The concrete on the plate, seen from above, with the cone's foot and the circle of 500 mm.
+// The concrete on the plate, seen from above, with the mould's foot and the circle of 500 mm.
 
-const ring = 0.004;  // width of the rings that the surface is read in [m]
-
-/// Ring by ring: the number of the highest point, which the eye sees from above. A ring without points has the one
-/// before it.
-function surface(points, at) {
+/// Rings of width `ring` [m]: the number of the highest point, which the eye sees from above. A ring without points has
+/// the one before it.
+function surface(points, at, ring) {
   const rings = [], heights = [];
   for (let i = 0; i < points.length; i += 4) {
     const k = Math.floor(points[i] / ring);
@@ -29,12 +27,13 @@ function drawPlate(canvas, runs, time, view) {
       context.clip();
     }
     const radius = spreadAt(run, time) / 2000;
-    fillDisc(context, surface(frameAt(run.frames, time).points, view.at), radius, view, x, y, scale);
+    fillDisc(context, surface(frameAt(run.frames, time).points, view.at, view.ring), radius, view, x, y, scale);
     context.restore();
   });
   if (runs.length === 2)
     runs.forEach((run) => circle(context, x, y, (spreadAt(run, time) / 2000) * scale, run.colour, [], 2));
-  circle(context, x, y, 0.1 * scale, theme("--text"), [2, 3], 1.5);
+  for (const run of runs) circle(context, x, y, mouldOf(run.concrete).bottom_radius * scale, theme("--text"), [2, 3], 1.5);
+  if (!runs.some(hasClasses)) return;
   circle(context, x, y, 0.25 * scale, theme("--plate"), [], 4);
   circle(context, x, y, 0.25 * scale, theme("--text"), [7, 5], 1.5);
   label(context, "500 mm", x, y - 0.25 * scale - 6);
@@ -42,6 +41,7 @@ function drawPlate(canvas, runs, time, view) {
 
 /// Rings from the outside in, each in the colour of its surface.
 function fillDisc(context, rings, radius, view, x, y, scale) {
+  const {ring} = view;
   for (let k = Math.ceil(radius / ring) - 1; k >= 0; k--) {
     context.fillStyle = colourOf(view.shade(rings[Math.min(k, rings.length - 1)]));
     context.beginPath();

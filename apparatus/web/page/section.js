@@ -1,25 +1,20 @@
 // The concrete in the section through its axis, with the cone as it is lifted. One concrete fills both sides; of
 // two the first stands on the left, the second on the right.
 
-// surface() and ring: plate.js.
-const coneShape = {
-  top: 0.05,
-  bottom: 0.1,
-  height: 0.3
-};
+// surface(): plate.js.
 
 /// runs: [{frames, lift [m/s]}], at the time shown; shade(point's numbers, index).
 function drawSection(canvas, runs, time, view) {
   const {context, width, height} = prepare(canvas, view.ratio);
   const scale = width / (2 * view.reach), floor = height - 22, middle = width / 2;
-  const size = Math.max(1.5, 0.004 * scale);
+  const size = Math.max(1.5, view.ring * scale);
   const sides = runs.length === 1 ? [[runs[0], 1], [runs[0], -1]] : [[runs[0], -1], [runs[1], 1]];
   for (const [run, side] of sides) {
     if (!run.frames.length) continue;
     const across = (r) => middle + side * r * scale, up = (z) => floor - z * scale, frame = frameAt(run.frames, time);
-    drawBody(context, frame, across, up);
+    drawBody(context, frame, view.ring, across, up);
     drawPoints(context, frame, view, across, up, size);
-    drawCone(context, run.lift * time, side, middle, floor, scale);
+    drawMould(context, mouldOf(run.concrete), run.lift * time, side, middle, floor, scale);
   }
   drawFloor(context, width, floor, middle, scale, view.reach);
   if (runs.length === 2) {
@@ -38,8 +33,8 @@ function frameAt(frames, time) {
 }
 
 /// The room that the concrete fills, between its points.
-function drawBody(context, {points}, across, up) {
-  const tops = surface(points, 1);
+function drawBody(context, {points}, ring, across, up) {
+  const tops = surface(points, 1, ring);
   context.fillStyle = theme("--concrete");
   context.beginPath();
   context.moveTo(across(0), up(0));
@@ -57,8 +52,7 @@ function drawPoints(context, {points}, view, across, up, size) {
   });
 }
 
-function drawCone(context, rim, side, middle, floor, scale) {
-  const {top, bottom, height} = coneShape;
+function drawMould(context, {top_radius: top, bottom_radius: bottom, height}, rim, side, middle, floor, scale) {
   context.strokeStyle = theme("--cone");
   context.lineWidth = 3;
   context.beginPath();
@@ -73,7 +67,8 @@ function drawFloor(context, width, floor, middle, scale, reach) {
   context.beginPath();
   context.moveTo(0, floor + 1), context.lineTo(width, floor + 1);
   context.textAlign = "center";
-  for (let mm = -400; mm <= 400; mm += 100) {
+  const step = reach < 0.2 ? 20 : 100, most = step * Math.floor((1000 * reach) / step);
+  for (let mm = -most; mm <= most; mm += step) {
     if (Math.abs(mm) / 1000 > reach * 0.97) continue;
     const x = middle + (mm / 1000) * scale;
     context.moveTo(x, floor + 1), context.lineTo(x, floor + 5);

@@ -10,10 +10,11 @@ const fileName = (run, ending) => `slump_flow_${run.label.toLowerCase().replace(
 const saveToml = (run) => save(fileName(run, "toml"), new Blob([tomlOf(run.concrete)], {type: "application/toml"}));
 const saveCsv = (run) => save(fileName(run, "csv"), new Blob([run.result.timeseries], {type: "text/csv"}));
 
-/// The values of a concrete, on two lines.
+/// The values and choices of a concrete, on three lines.
 function valuesText({concrete}) {
-  const values = fields.filter(({symbol}) => symbol).map((field) => `${field.symbol} ${shown(field, concrete)}`);
-  return [values.slice(0, 4), values.slice(4)].map((line) => line.join(", "));
+  const values = fields.filter((field) => field.symbol && counts(field, concrete)).map((field) => `${field.symbol} ${shown(field, concrete)}`);
+  const chosen = choices.map(({key, word, options}) => `${word}: ${options[concrete[key]]}`);
+  return [values.slice(0, 4), values.slice(4), chosen].map((line) => line.join(", "));
 }
 
 /// Answer, values, section, plate and chart on one sheet.
@@ -22,7 +23,7 @@ function savePng(runs) {
   const width = Math.max(...parts.map((p) => p.width)) + 2 * margin, line = 26 * dense;
   const sheet = element("canvas");
   sheet.width = width;
-  sheet.height = parts.reduce((sum, p) => sum + p.height + margin, (3 * runs.length + 2) * line + margin);
+  sheet.height = parts.reduce((sum, p) => sum + p.height + margin, (4 * runs.length + 2) * line + margin);
   const context = sheet.getContext("2d");
   context.fillStyle = theme("--panel");
   context.fillRect(0, 0, sheet.width, sheet.height);
