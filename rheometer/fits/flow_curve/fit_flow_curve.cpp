@@ -4,8 +4,8 @@
 #include <stdexcept>
 
 #include "rheometer/fits/fit_common.hpp"
+#include "rheometer/fits/flow_curve/law_choice.hpp"
 #include "rheometer/fits/flow_law.hpp"
-#include "rheometer/fits/law_choice.hpp"
 #include "rheometer/regression/statistics.hpp"
 #include "rheometer/tables/text.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "rheometer/fits/flow_least_squares.hpp"
+#include "rheometer/fits/flow_curve/flow_least_squares.hpp"
 
 namespace tremie::fitting {
 

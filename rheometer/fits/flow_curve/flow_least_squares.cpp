@@ -1,4 +1,4 @@
-#include "rheometer/fits/flow_least_squares.hpp"
+#include "rheometer/fits/flow_curve/flow_least_squares.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "rheometer/fits/law_choice.hpp"
+#include "rheometer/fits/flow_curve/law_choice.hpp"
 
 #include <algorithm>
 #include <cmath>
