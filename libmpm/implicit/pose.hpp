@@ -11,6 +11,7 @@
 #include "libmpm/implicit/free_surface.hpp"
 #include "libmpm/implicit/problem/cell_weights.hpp"
 #include "libmpm/implicit/problem/wetted_areas.hpp"
+#include "libmpm/implicit/strip_stress.hpp"
 
 namespace tremie::detail {
 
@@ -130,6 +131,9 @@ void pose(ImplicitBody<Geometry>& body, const YieldLaw& law, const StepSettings&
   posed->drag = viscous_drag(posed->wall_nodes, body.v.size());
   posed->bound = find_penalty_points(body.grid, body.nodes, body.boundary, dt, settings.boundary_stiffness);
   if (!body.bars.empty()) add_bars(body, law, *posed);
+  if (!body.strips.empty())
+    if (const std::optional<WallStress> stress = wall_stress(settings.wall_law))
+      add_strips(body, *stress, static_cast<int>(body.bars.size()), *posed);
   if constexpr (D == 2 && requires { Geometry::up; })
     if (settings.moving_surface) posed->surface = surface_of_pool(body, dt);
   carry_over_terms<Geometry>(body.wall_nodes, old_nodes, settings.wall_law, body.grid, posed->wall_nodes);

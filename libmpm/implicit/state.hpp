@@ -9,6 +9,7 @@
 
 #include "libmpm/body/body.hpp"
 #include "libmpm/boundary/wall_law.hpp"
+#include "libmpm/boundary/wall_strips.hpp"
 #include "libmpm/implicit/shifting/particle_shifting_3d.hpp"
 #include "libmpm/implicit/solvers/admm_factorised.hpp"
 #include "libmpm/implicit/solvers/admm_matrix_free.hpp"
@@ -53,7 +54,8 @@ struct ImplicitBody : Body<Geometry> {
   // Wall terms of the last step where there was concrete:
   std::vector<NodeTerm<D>> wall_nodes{};  ///< along flat walls and between side walls
   std::vector<PointTerm<D>> bound{};      ///< walls inside the grid
-  std::vector<PointTerm<D>> bar_drag{};   ///< bars
+  std::vector<PointTerm<D>> bar_drag{};   ///< bars, and strips of walls
+  std::vector<WallStrip<D>> strips{};     ///< walls inside the grid along which the wall law holds
   double time_error = 0.0;                ///< of the last step: its local error, if it was asked for [m]
   double shear_rate = 0.0;                ///< volume mean of the last step [1/s]
   BlockSystem<D> system{};

@@ -48,11 +48,12 @@ funnel::Scene tank() {
   scene.shape = {.top = 0.16, .mouth = 0.04, .pipe = 0.05, .taper = 0.06, .throat = 0.3};
   scene.mix.density = 2000.0, scene.mix.mu = 20.0, scene.mix.tau_0 = 0.0;
   scene.model.cell = {0.004, 0.004};
-  scene.duration = 4.0;
+  scene.duration = 9.0;
   return scene;
 }
 
-// The level falls through the pipe's lower half and the taper's upper: 2 %, the taper is no slender one.
+// The level falls by 20 mm, in 5.1 s: within 2 % on five cells to the radius of the throat (1 % measured); the entrance of the
+// throat, which the closed form leaves out, is worth as much.
 TEST(Funnel, ATankEmptiesAsHagenAndPoiseuilleHaveIt) {
   const funnel::Scene scene = tank();
   const funnel::Outcome outcome = funnel::run(scene);

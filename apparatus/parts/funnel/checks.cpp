@@ -26,8 +26,10 @@ std::string inertia(const View& v) {
                                        v.scene.model.cell[1]);
 }
 
+/// What drifts into the wall's cells is put back in every step. In a V-funnel on cells of 10 mm that was a sixth of the concrete
+/// by half a cell, with a volume that holds to 0.05 %.
 std::string went_through_the_wall(const View& v) {
-  constexpr double most = 0.01;
+  constexpr double most = 0.3;
   if (!(v.r.through_the_wall > most)) return {};
   return fmt::format(
       "{:.2g} % of the concrete was pressed into the funnel's wall and put back: a smaller model.cell",

@@ -70,7 +70,8 @@ double drop_below_mouth(const Scene& scene);
 struct FunnelTest {
   const char *name, *words;  ///< apparatus = "name", a file of reference_data/funnels too; and for people
   const char* help;
-  Shape standard;  ///< as in that file; with a depth: a plane section between side walls
+  Shape standard;             ///< as in that file; with a depth: a plane section between side walls
+  const char* cell = "5 mm";  ///< by default
 };
 
 /// The keys of such a test, and the checked values as a scene; throws InputError where they do not fit each other.

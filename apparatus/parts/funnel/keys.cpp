@@ -104,7 +104,7 @@ ApparatusKeys keys(const FunnelTest& test) {
                                               ? std::vector<std::string>{"plane_with_side_walls", "plane"}
                                               : std::vector<std::string>{"axisymmetric"};
   const Section model =
-      model_section(spaces, {.cell = "5 mm",
+      model_section(spaces, {.cell = test.cell,
                              .points_per_cell = "4",
                              .cell_help = "[across, up], or one length; at most a third of the mouth",
                              .points_help = "[across, up], or one number for each direction"});

@@ -21,6 +21,15 @@ std::string no_flow_time(const View& v) {
   return fmt::format("none: light was not seen within test.duration, {:.0f} % had left", 100.0 * v.r.emptied);
 }
 
+std::string why_not_stopped(const View& v) {
+  return v.r.flow_time ? "none: the concrete flowed until light was seen" : still_moving(v.status);
+}
+
+std::vector<std::string> stopped_lines(const View& v) {
+  if (v.r.flow_time) return {};
+  return {stopped_line(v.r.stopped_at, v.status)};
+}
+
 }  // namespace
 
 Rows<View> flow_rows() {
@@ -54,7 +63,12 @@ Rows<View> course_rows() {
            {},
            [](V, S s) { return s.discharge; }},
           {"height_mm", "height at the axis, over the mouth", {}, [](V, S s) { return s.height * mm; }}},
-      stopped_row<View>(), flocculation_rows<View>(),
+      Rows<View>{{.name = "stopped_at_s",
+                  .words = "came to rest in the funnel at",
+                  .value = [](V v) { return number(v.r.stopped_at); },
+                  .none = why_not_stopped,
+                  .lines = stopped_lines}},
+      flocculation_rows<View>(),
       Rows<View>{
           {.name = "volume_m3",
            .words = "concrete in the funnel at the start",

@@ -4,6 +4,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -37,6 +38,10 @@ constexpr double light_spot = 0.1;
 /// The discharge is that over the last tenth of a second [s]: in a step a few points leave, or none.
 constexpr double discharge_window = 0.1;
 
+double distance_of_points(const std::array<Axis, 2>& axes) {
+  return wall_spacing * std::min(axes[0].h, axes[1].h);
+}
+
 template <class Geometry>
 Body<Geometry> filled_funnel(const Scene& scene) {
   Body<Geometry> body;
@@ -49,8 +54,8 @@ Body<Geometry> filled_funnel(const Scene& scene) {
   body.grid.axes[0] = {.h = half / cells, .low = FaceKind::free_slip};
   body.grid.axes[1] = {.h = h_up};
   fill(scene.shape, scene.mix, gravity, body.grid.axes[0].h / n, h_up / n_up, body.points);
-  body.boundary = wall_points(scene.shape, wall_spacing * std::min(body.grid.axes[0].h, h_up),
-                              face(scene.walls) != FaceKind::no_slip);
+  body.boundary =
+      wall_points(scene.shape, distance_of_points(body.grid.axes), face(scene.walls) != FaceKind::no_slip);
   experiment::rest(body, scene.rest);
   return body;
 }
@@ -152,6 +157,7 @@ void read_results(const Scene& scene, const Body<Geometry>& body, const Course& 
 template <class Geometry>
 Outcome run_in(const Scene& scene, const scene::Observer& observer) {
   ImplicitBody<Geometry> body{filled_funnel<Geometry>(scene)};
+  if (wall_stress(scene.walls)) body.strips = wall_strips(scene.shape, distance_of_points(body.grid.axes));
   StepSettings settings = step_settings(scene);
   const double margin = 0.05 * scene.model.cell[0] / scene.model.points_per_cell[0];
   const RigidWall<2> wall = wall_of(scene.shape, scene.shape.top);

@@ -71,18 +71,31 @@ void fill(const Shape& shape, const Mix& mix, double g, double dx, double dz, Po
   }
 }
 
-std::vector<BoundaryPoint<2>> wall_points(const Shape& shape, double spacing, bool slips) {
-  std::vector<BoundaryPoint<2>> points;
+std::vector<WallStrip<2>> wall_strips(const Shape& shape, double spacing) {
+  std::vector<WallStrip<2>> strips;
   for (const Part& part : parts_of(shape)) {
     const int n = std::max(1, static_cast<int>(std::ceil(slant(part) / spacing)));
     for (int i = 0; i < n; ++i) {
       const double z = part.from + (i + 0.5) / n * (part.to - part.from);
-      BoundaryPoint<2> point;
+      WallStrip<2> strip;
+      strip.normal = normal(part);
       // A hair inside: on a face of the grid it would lie in the cell behind the wall.
-      point.x = Vec<2>(half_width(part, z), z) + 1e-9 * shape.mouth * normal(part);
-      if (slips) point.normal = normal(part);
-      points.push_back(point);
+      strip.x = Vec<2>(half_width(part, z), z) + 1e-9 * shape.mouth * strip.normal;
+      strip.area =
+          slant(part) / n * (shape.depth == 0.0 ? 2.0 * std::numbers::pi * half_width(part, z) : 1.0);
+      strips.push_back(strip);
     }
+  }
+  return strips;
+}
+
+std::vector<BoundaryPoint<2>> wall_points(const Shape& shape, double spacing, bool slips) {
+  std::vector<BoundaryPoint<2>> points;
+  for (const WallStrip<2>& strip : wall_strips(shape, spacing)) {
+    BoundaryPoint<2> point;
+    point.x = strip.x;
+    if (slips) point.normal = strip.normal;
+    points.push_back(point);
   }
   return points;
 }

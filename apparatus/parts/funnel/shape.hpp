@@ -7,6 +7,7 @@
 
 #include "libmpm/boundary/boundary_points.hpp"
 #include "libmpm/boundary/rigid_wall.hpp"
+#include "libmpm/boundary/wall_strips.hpp"
 #include "libmpm/constitutive/mix.hpp"
 #include "libmpm/particles/particles.hpp"
 
@@ -42,6 +43,9 @@ void fill(const Shape& shape, const Mix& mix, double g, double dx, double dz, Po
 
 /// Points on the wall, at most `spacing` apart, to which the concrete sticks or along which it slips.
 std::vector<BoundaryPoint<2>> wall_points(const Shape& shape, double spacing, bool slips);
+
+/// The same wall as strips, for a wall law that holds with a stress.
+std::vector<WallStrip<2>> wall_strips(const Shape& shape, double spacing);
 
 /// The wall as a distance, for what must stay on its side of it.
 RigidWall<2> wall_of(const Shape& shape, double reach);
