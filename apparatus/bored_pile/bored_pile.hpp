@@ -74,7 +74,7 @@ struct Results {
   double oldest_at_surface = 0.0;  ///< [s]
   double placed = 0.0;             ///< [m^3]
   std::vector<AtWall> wall = {};
-  bool washed = false;                    ///< the mouth was above the concrete
+  bool washed = false;                    ///< the mouth came within a cell of the surface
   std::optional<double> stopped_at = {};  ///< [m] level where the head did not suffice
 };
 

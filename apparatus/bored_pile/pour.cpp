@@ -103,7 +103,7 @@ Pour start_of(const Scene& scene) {
   body.grid.axes[1] = {.h = h_up, .low = FaceKind::no_slip};
   const int cells = std::max(1, static_cast<int>(std::lround(scene.pipe.outer_radius / h)));
   const int face = std::max(1, static_cast<int>(std::lround(scene.pipe.start / h_up)));
-  pour.inlet = make_inlet<Section>(body.grid.axes, cells, face, n, h_up / n_up);
+  pour.inlet = make_inlet<Section>(body.grid.axes, cells, face, n * cells, h_up / n_up);
   const double mouth = mouth_of(pour), top = mouth + 2.0 * h_up, r = cells * h;
   pour.placed = pour.first_charge = section_of(scene, pour) * top + std::numbers::pi * r * r * mouth;
   const int rows = (face + 2) * n_up;
@@ -139,6 +139,7 @@ double prepare(const Scene& scene, double cfl, Pour& pour) {
 
 void let_in(const Scene& scene, Pour& pour) {
   const double dt = pour.body.dt;
+  bend_paths(pour.body.grid, dt, pour.body.points);
   tremie::let_in(pour.inlet, pour.body.grid.axes[1], dt,
                  [&](const Vec<2>& x, double V, double speed) { add_concrete(scene, pour, x, V, speed); });
   pour.placed += pour.inlet.flow * dt;

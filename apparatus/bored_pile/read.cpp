@@ -26,12 +26,15 @@ std::vector<std::vector<double>> fills(const Pour& pour) {
   return fill;
 }
 
-/// Height of the surface of a column [m]: of its highest cell that is half full, and what lies above.
+/// Height of the surface of a column [m]: what its highest cells hold, on those below. A few together, because points are not
+/// spread so evenly that each cell is full.
 double level_of(const std::vector<double>& fill, double h) {
+  constexpr std::size_t surface = 5;
   std::size_t k = fill.size();
   while (k > 0 && fill[k - 1] < 0.5) --k;
-  if (k == 0) return fill.empty() ? 0.0 : fill[0] * h;
-  return (static_cast<double>(k - 1) + std::min(1.0, fill[k - 1]) + (k < fill.size() ? fill[k] : 0.0)) * h;
+  double level = static_cast<double>(k = k > surface ? k - surface : 0);
+  for (; k < fill.size(); ++k) level += fill[k];
+  return level * h;
 }
 
 struct Levels {
@@ -141,7 +144,11 @@ Sample read(const Scene& scene, const StepReport& step, Pour& pour) {
   now.flocculation_mean = experiment::mean_flocculation(body.points);
   now.volume_change = experiment::volume_change(body.points);
   now.iterations = step.iterations;
-  pour.stopped = now.head && *now.head > scene.depth + scene.pipe.above - now.mouth;
+  // The pressure under the mouth swings for a step where points cross cells: what lasts counts.
+  constexpr double lasts = 5.0;  // [s]
+  const bool suffices = !now.head || *now.head <= scene.depth + scene.pipe.above - now.mouth;
+  pour.short_for = suffices ? 0.0 : pour.short_for + step.dt;
+  pour.stopped = pour.short_for > lasts || (now.head && std::isinf(*now.head));
   return now;
 }
 
@@ -153,7 +160,7 @@ void read_results(const Scene& scene, const Pour& pour, const std::vector<Sample
   double head = 0.0;
   for (const Sample& s : series) {
     head = std::max(head, s.head.value_or(0.0));
-    r.washed = r.washed || s.level <= s.mouth;
+    r.washed = r.washed || s.level - s.mouth < 0.9 * pour.body.grid.axes[1].h;
   }
   if (std::isfinite(head)) r.head_needed = head;
   r.head_suffices = !pour.stopped;

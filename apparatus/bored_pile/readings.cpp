@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "apparatus/bored_pile/bored_pile.hpp"
 #include "apparatus/common/flow_readings.hpp"
 
@@ -111,18 +113,28 @@ const std::vector<ColumnOf<AtWall>> wall_columns{
 
 std::string washed(const View& v) {
   if (!v.r.washed) return {};
-  return "the pipe's mouth came above the concrete: there the fluid washes it, which is not computed; a "
+  return "the pipe's mouth came to the concrete's surface: there the fluid washes it, which is not computed; "
+         "a "
          "larger least "
          "pipe.embedment";
 }
 
+std::string crowded(const View& v) {
+  constexpr double most = 0.03;
+  if (std::abs(v.r.volume_error) <= most) return {};
+  return fmt::format(
+      "the points crowd: the volume under the surface is {:+.1f} % off what was placed, more than {:g} %: "
+      "smaller cells",
+      100.0 * v.r.volume_error, 100.0 * most);
+}
+
 std::string too_old(const View& v) {
-  double pause = 0.0;
-  for (const Load& load : v.scene.loads) pause = std::max(pause, load.pause);
-  const double oldest = std::max(pause, v.r.oldest_at_surface);
+  double oldest = v.r.oldest_at_surface;
+  for (const Load& load : v.scene.loads) oldest = std::max(oldest, load.age + load.pause);
   if (oldest <= v.scene.workable) return {};
   return fmt::format(
-      "concrete of {:.0f} min still moves at the surface or waits in the pipe; it is workable for {:.0f} min "
+      "concrete of {:.0f} min is placed, waits in the pipe or still moves at the surface; it is workable for "
+      "{:.0f} min "
       "(test.workable): it sets, which is not computed",
       minutes * oldest, minutes * v.scene.workable);
 }
@@ -155,7 +167,7 @@ scene::Outcome run_and_read(const Scene& scene, const RunOptions& options, const
   const Record raw = run(scene, observer);
   const View view{scene, raw};
   scene::Outcome outcome = outcome_of(readings(), view, options.measured.name, "bored pile");
-  add_reasons<View>({washed, too_old}, view, outcome.checks.reasons);
+  add_reasons<View>({washed, crowded, too_old}, view, outcome.checks.reasons);
   outcome.remarks = remarks_of(view);
   outcome.stage = stage_of(scene);
   outcome.axisymmetric = true;

@@ -12,9 +12,15 @@ namespace {
 
 constexpr double longest_step = 2.0;  ///< while nothing flows [s]
 
+/// In long pours points crowd where the velocity's divergence vanishes in the mean of a cell alone, and a little where they are
+/// evened out: 1.6 % of the volume with these, 3.3 % with a tenth of the viscosity, 1.8 % evened out at the full rate.
+constexpr double alternating_viscosity = 1000.0, evening_rate = 0.3;
+
 StepSettings step_settings(const Scene& scene) {
   StepSettings settings = experiment::step_settings(scene.model);
   settings.moving_surface = true;
+  settings.alternating_viscosity = alternating_viscosity;
+  settings.particle_shifting.rate = evening_rate;
   settings.wall_law = scene.walls;
   settings.time_error = 0.002 * scene.model.step_scale * scene.model.step_scale;
   settings.dt_longest = longest_step * scene.model.step_scale;
@@ -64,8 +70,8 @@ Record run(const Scene& scene, const scene::Observer& observer) {
       .frame = [&] { return frame_of(pour); },
       .state =
           [&](Archive& archive) {
-            archive(body, pour.load, pour.batched, pour.inlet.face, pour.placed, pour.wall_max,
-                    record.series);
+            archive(body, pour.load, pour.batched, pour.inlet.face, pour.placed, pour.short_for,
+                    pour.wall_max, record.series);
             for (Inlet::Column& column : pour.inlet.columns) archive(column.waiting);
           }};
   experiment::run_experiment(

@@ -4,16 +4,17 @@
 //
 // The pipe is a block of whole cells, from its mouth up; what flows in it is not computed. On the mouth the block prescribes the
 // velocity of a plug that sticks to the pipe's wall: downwards and uniform but for the last cell, where the spline takes it to
-// zero. As the plug comes down, rows of new points follow it. Volume that came in and is not a row yet waits, column by
+// zero. As the plug comes down, rows of new points follow it. Volume that came in and is not half a row yet waits, column by
 // column, so that what points hold and what waits is the flow times the time to rounding.
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <type_traits>
 #include <vector>
 
 #include "libmpm/grid/active_grid.hpp"
-#include "libmpm/particles/particles.hpp"
+#include "libmpm/transfer/apic.hpp"
 
 namespace tremie {
 
@@ -36,22 +37,26 @@ struct Inlet {
 /// The largest speed on the mouth [m/s].
 inline double plug_speed(const Inlet& inlet) { return inlet.flow * inlet.node_speed; }
 
-/// The mouth on a grid: `cells` across, at the face `face`, with `across` points in a cell and rows of height `row` [m].
+/// The mouth on a grid: `cells` across, at the face `face`, with `columns` of points that cover as much of it each, and rows of
+/// height `row` [m]. A ring of points spreads as it moves outwards: equal widths would make small ones of those near the axis.
 template <class Geometry>
-Inlet make_inlet(const std::array<Axis, 2>& axes, int cells, int face, int across, double row) {
+Inlet make_inlet(const std::array<Axis, 2>& axes, int cells, int face, int columns, double row) {
   Inlet inlet{.cells = cells, .face = face, .row = row};
-  const double h = axes[0].h, width = h / across;
+  constexpr int n = 64;  // midpoints between two columns
+  constexpr double power = std::is_same_v<Geometry, Axisymmetric> ? 0.5 : 1.0;
+  const double h = axes[0].h, edge = cells * h;
   double through = 0.0;  // at the speed 1 of the plug
-  for (int j = 0; j < cells * across; ++j) {
-    Inlet::Column column{.x = (j + 0.5) * width};
-    double flow = 0.0;  // three-point Gauss: the profile is quadratic, the measure linear
-    for (const double s : {-0.7745966692414834, 0.0, 0.7745966692414834}) {
-      const double x = column.x + 0.5 * s * width, into_last = std::max(0.0, x / h - (cells - 1));
-      const double area = width * (s == 0.0 ? 8.0 : 5.0) / 18.0 * Geometry::measure({x, 0.0});
-      column.area += area;
-      flow += area * (1.0 - into_last * into_last);
+  for (int j = 0; j < columns; ++j) {
+    const double from = edge * std::pow(static_cast<double>(j) / columns, power),
+                 to = edge * std::pow((j + 1.0) / columns, power);
+    Inlet::Column column;
+    double flow = 0.0, moment = 0.0;
+    for (int k = 0; k < n; ++k) {
+      const double x = from + (k + 0.5) / n * (to - from), into_last = std::max(0.0, x / h - (cells - 1));
+      const double area = (to - from) / n * Geometry::measure({x, 0.0}), v = 1.0 - into_last * into_last;
+      column.area += area, flow += area * v, moment += area * v * x;
     }
-    column.speed = flow / column.area;
+    column.x = moment / flow, column.speed = flow / column.area;
     through += flow;
     inlet.columns.push_back(column);
   }
@@ -74,15 +79,19 @@ inline void place_pipe(const Inlet& inlet, ActiveGrid<2>& grid) {
        }}};
 }
 
-/// What came in over dt: calls add(x, volume, speed) for every point of the rows that are full now.
+/// What came in over dt: calls add(x, volume, speed) for every point of the rows that follow it. Up to half a row waits: a void
+/// below the mouth would be filled from below by what evens the points out, and they would crowd there.
 template <class Add>
 void let_in(Inlet& inlet, const Axis& up, double dt, Add add) {
   const double mouth = up.origin + inlet.face * up.h;
   for (Inlet::Column& column : inlet.columns) {
     column.waiting += inlet.flow * column.speed * dt;
-    for (; column.waiting >= inlet.row; column.waiting -= inlet.row)
-      add(Vec<2>(column.x, mouth - column.waiting + 0.5 * inlet.row), column.area * inlet.row,
-          inlet.flow * column.speed);
+    const int rows = static_cast<int>(std::lround(column.waiting / inlet.row));
+    if (rows < 1) continue;
+    const double row = column.waiting / rows;
+    for (int k = 0; k < rows; ++k)
+      add(Vec<2>(column.x, mouth - (k + 0.5) * row), column.area * row, inlet.flow * column.speed);
+    column.waiting = 0.0;
   }
 }
 
@@ -91,6 +100,18 @@ inline double volume_waiting(const Inlet& inlet) {
   double volume = 0.0;
   for (const Inlet::Column& column : inlet.columns) volume += column.area * column.waiting;
   return volume;
+}
+
+/// Bends the last step's straight moves of the points by what a steady flow's velocity changes along them, dt^2/2 grad v v: of
+/// second order, like the volume of what moves. Straight moves of half a cell, step after step through the fan below a mouth,
+/// crowd the points by several per cent.
+inline void bend_paths(const ActiveGrid<2>& grid, double dt, Points<2>& points) {
+#pragma omp parallel for schedule(static)
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const Vec<2> from = points.x[p];
+    points.x[p] += 0.5 * dt * dt * points.C[p] * points.v[p];
+    keep_in_domain<2>(grid, from, points.x[p]);
+  }
 }
 
 /// Moves the mouth up by whole cells. The concrete that stood in the pipe there, and as much as the pipe's wall displaced,
