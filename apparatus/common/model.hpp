@@ -92,6 +92,8 @@ struct Frame {
   std::vector<double> pressure;                 ///< [Pa]
   std::vector<double> shear_rate;               ///< [1/s]
   std::vector<double> flocculation;             ///< empty without thixotropy
+  std::vector<double> age = {};                 ///< since batching [s]; empty where loads are not told apart
+  std::vector<double> load = {};                ///< number of the load, from 1; likewise
 };
 
 }  // namespace tremie

@@ -42,6 +42,8 @@ std::vector<Usual> usual_units(Dimension dimension) {
       return {{"rev/s"}, {"rpm", 3.0}};
     case Dimension::angle:
       return {{"deg"}};
+    case Dimension::flow:
+      return {{"m3/h"}};
     case Dimension::torque:
       return {{"N.m"}, {"mN.m", 20.0}};
     default:
@@ -81,6 +83,9 @@ std::span<const Unit> units(Dimension dimension) {
       {Dimension::rotation, {{"rad/s"}, {"rev/s", two_pi}, {"rpm", two_pi, 60}}},
       {Dimension::angle, {{"rad"}, {"deg", std::numbers::pi, 180}, {"°", std::numbers::pi, 180}}},
       {Dimension::torque, {{"N.m"}, {"N·m"}, {"N m"}, {"mN.m", 1, 1000}, {"mN·m", 1, 1000}}},
+      {Dimension::volume, {{"m3"}, {"m³"}, {"m^3"}, {"l", 1, 1000}}},
+      {Dimension::flow,
+       {{"m3/s"}, {"m³/s"}, {"m3/h", 1, 3600}, {"m³/h", 1, 3600}, {"l/s", 1, 1000}, {"l/min", 1, 60'000}}},
       {Dimension::consistency, {{"Pa.s^n"}, {"Pa·s^n"}, {"Pa s^n"}}},
       {Dimension::wall_drag, {{"Pa.s/m"}, {"Pa·s/m"}, {"Pa s/m"}, {"kPa.s/m", 1e3}}},
       {Dimension::acceleration, {{"m/s2"}, {"m/s²"}, {"m/s^2"}}}};

@@ -22,6 +22,8 @@ enum class Dimension {
   angle,          ///< rad
   torque,
   acceleration,
+  volume,
+  flow,        ///< m^3/s
   wall_drag,   ///< Pa s/m: stress over the speed along a wall
   consistency  ///< Pa s^n, n the flow index of the same mix
 };

@@ -17,7 +17,7 @@
 namespace tremie::detail {
 
 /// Surface of what stands on the floor of a section (its lowest cells): from there up, where a cell is less
-/// than half full. What hangs on a wall higher up has none.
+/// than half full. What hangs on a wall higher up has none, nor what stands below a block.
 template <class Geometry>
 std::vector<PointTerm<Geometry::dim>> surface_of_pool(const ImplicitBody<Geometry>& body, double dt) {
   constexpr int D = Geometry::dim, up = Geometry::up;
@@ -36,6 +36,7 @@ std::vector<PointTerm<Geometry::dim>> surface_of_pool(const ImplicitBody<Geometr
       if (next < 0) break;
       top = next;
     }
+    if (block_of_cell<D>(grid, at)) continue;
     for (const Vec<D>& across : {quadrature_point<D>(0), quadrature_point<D>(power(2, D) - 1)}) {
       Vec<D> s = across;
       s[up] = std::min(1.0, fill(top));

@@ -3,6 +3,7 @@
 #include "libmpm/implicit/step.hpp"
 
 #include <optional>
+#include <type_traits>
 
 #include "libmpm/geometry/spaces.hpp"
 #include "libmpm/implicit/detached_particles.hpp"
@@ -28,6 +29,8 @@ StepReport step_from_grid(ImplicitBody<Geometry>& body, const YieldLaw& law, con
   old_cells = {};
   lay_out_quadrature<Geometry>(body.grid, body.points, body.mix.tau_0, body.mix.K, body.quadrature,
                                settings.cut_cell_rule, settings.settle_on_floor);
+  if constexpr (std::is_same_v<Geometry, Axisymmetric>)
+    if (settings.alternating_viscosity > 0.0) lay_out_excess<Geometry>(body.grid, body.quadrature);
 
   // The step's convex problem and its solution, the velocities at the end of the step. One that does not
   // converge is tried again over half the time; so is a long one in which something starts to fall. The last try is

@@ -31,12 +31,12 @@ namespace fs = std::filesystem;
 struct SingleFrame {
   double time = 0.0;
   std::vector<std::array<float, 3>> position, velocity;
-  std::vector<float> volume, pressure, shear_rate, flocculation;
+  std::vector<float> volume, pressure, shear_rate, flocculation, age, load;
 };
 
 void visit(Archive& archive, SingleFrame& frame) {
   archive(frame.time, frame.position, frame.velocity, frame.volume, frame.pressure, frame.shear_rate,
-          frame.flocculation);
+          frame.flocculation, frame.age, frame.load);
 }
 
 template <class To, class From>
@@ -61,7 +61,9 @@ To frame_as(const From& from) {
           converted<Number>(from.volume),
           converted<Number>(from.pressure),
           converted<Number>(from.shear_rate),
-          converted<Number>(from.flocculation)};
+          converted<Number>(from.flocculation),
+          converted<Number>(from.age),
+          converted<Number>(from.load)};
 }
 
 constexpr std::array<char, 8> magic{'T', 'R', 'E', 'M', 'I', 'E', 'C', '1'};

@@ -14,9 +14,10 @@ using Words = std::map<std::string, std::string>;
 
 /// What no apparatus has for itself: the names of all, and the fields of frames.
 Words common_words() {
-  Words words{{"position", "places of the points"},        {"velocity", "velocities of the points"},
-              {"volume", "volumes of the points"},         {"pressure", "pressures of the points"},
-              {"shear_rate", "shear rates of the points"}, {"flocculation", "flocculation state λ"}};
+  Words words{{"position", "places of the points"},          {"velocity", "velocities of the points"},
+              {"volume", "volumes of the points"},           {"pressure", "pressures of the points"},
+              {"shear_rate", "shear rates of the points"},   {"flocculation", "flocculation state λ"},
+              {"age", "age of the concrete since batching"}, {"load", "number of its load"}};
   for (const auto& apparatus : scene::all_apparatus()) words[apparatus.keys.name] = apparatus.words;
   return words;
 }

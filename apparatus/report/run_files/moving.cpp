@@ -19,18 +19,53 @@ double turned_at(const scene::Stage& stage, double time) {
   return a[1] + (b[1] - a[1]) * (time - a[0]) / (b[0] - a[0]);
 }
 
-MovingFrame seen(const Frame& frame, const scene::Stage& stage, bool thixotropic) {
+/// A number of the points that colours them.
+struct ShownField {
+  std::vector<double> Frame::*values;
+  ColourField colours;
+  double factor = 1.0;
+};
+
+double largest(const std::vector<Frame>& frames, std::vector<double> Frame::*values) {
+  double most = 1e-3;
+  for (const Frame& frame : frames)
+    for (const double v : frame.*values) most = std::max(most, std::isfinite(v) ? v : 0.0);
+  return most;
+}
+
+/// What colours the points, the first at first: their loads where these are told apart, or the shear rate.
+std::vector<ShownField> fields_of(const std::vector<Frame>& frames) {
+  const auto all_have = [&](std::vector<double> Frame::*values) {
+    return std::all_of(frames.begin(), frames.end(), [&](const Frame& f) { return !(f.*values).empty(); });
+  };
+  std::vector<ShownField> fields;
+  if (all_have(&Frame::load)) {
+    constexpr double minutes = 1.0 / 60.0;
+    fields.push_back({&Frame::load, {"load", "", 0.0, largest(frames, &Frame::load), false}});
+    fields.push_back(
+        {&Frame::age, {"age", "min", 0.0, minutes * largest(frames, &Frame::age), false}, minutes});
+  }
+  fields.push_back({&Frame::shear_rate, {"shear rate", "1/s", 0.01, 10.0, true}});
+  if (all_have(&Frame::flocculation))
+    fields.push_back({&Frame::flocculation,
+                      {"flocculation state λ", "", 0.0, largest(frames, &Frame::flocculation), false}});
+  return fields;
+}
+
+MovingFrame seen(const Frame& frame, const scene::Stage& stage, const std::vector<ShownField>& fields) {
   MovingFrame result;
   result.time = frame.time;
   result.turned = turned_at(stage, frame.time);
-  result.values.resize(thixotropic ? 2 : 1);
+  result.values.resize(fields.size());
   const auto at = [](const std::array<double, 3>& x, int d) { return x[static_cast<std::size_t>(d)]; };
   for (std::size_t p = 0; p < frame.position.size(); ++p) {
     const auto& x = frame.position[p];
     if (stage.slice > 0.0 && std::abs(at(x, stage.depth)) > stage.slice) continue;
     result.places.push_back({static_cast<float>(at(x, stage.across)), static_cast<float>(at(x, stage.up))});
-    result.values[0].push_back(p < frame.shear_rate.size() ? static_cast<float>(frame.shear_rate[p]) : 0.0F);
-    if (thixotropic) result.values[1].push_back(static_cast<float>(frame.flocculation[p]));
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+      const auto& values = frame.*fields[i].values;
+      result.values[i].push_back(p < values.size() ? static_cast<float>(fields[i].factor * values[p]) : 0.0F);
+    }
   }
   return result;
 }
@@ -77,6 +112,8 @@ Frame thin_frame(const Frame& frame, std::size_t most) {
     thin.position.push_back(frame.position[p]);
     if (p < frame.shear_rate.size()) thin.shear_rate.push_back(frame.shear_rate[p]);
     if (p < frame.flocculation.size()) thin.flocculation.push_back(frame.flocculation[p]);
+    if (p < frame.age.size()) thin.age.push_back(frame.age[p]);
+    if (p < frame.load.size()) thin.load.push_back(frame.load[p]);
   }
   return thin;
 }
@@ -101,20 +138,13 @@ MovingPicture moving_picture(const scene::Outcome& outcome, const std::vector<Fr
   MovingPicture picture;
   if (!outcome.stage || frames.empty()) return picture;
   const scene::Stage& stage = *outcome.stage;
-  const bool thixotropic =
-      std::all_of(frames.begin(), frames.end(), [](const Frame& f) { return !f.flocculation.empty(); });
+  const std::vector<ShownField> fields = fields_of(frames);
   picture.caption = "The concrete over time; what was computed, point by point.";
   picture.fixed = stage.walls, picture.lifted = stage.lifted;
   picture.lift_speed = stage.lift_speed, picture.mirrored = stage.mirrored;
   picture.turning = stage.turning, picture.full = stage.full;
-  for (const Frame& frame : frames) picture.frames.push_back(seen(frame, stage, thixotropic));
-  picture.fields = {{"shear rate", "1/s", 0.01, 10.0, true}};
-  if (thixotropic) {
-    double most = 1e-3;
-    for (const Frame& frame : frames)
-      for (const double v : frame.flocculation) most = std::max(most, std::isfinite(v) ? v : 0.0);
-    picture.fields.push_back({"flocculation state λ", "", 0.0, most, false});
-  }
+  for (const Frame& frame : frames) picture.frames.push_back(seen(frame, stage, fields));
+  for (const ShownField& field : fields) picture.fields.push_back(field.colours);
   return picture;
 }
 

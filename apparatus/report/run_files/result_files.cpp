@@ -38,7 +38,9 @@ std::vector<Field> fields_of(const Frame& frame) {
                             {"volume", 1, "m^3", frame.volume},
                             {"pressure", 1, "Pa", frame.pressure},
                             {"shear_rate", 1, "1/s", frame.shear_rate},
-                            {"flocculation", 1, "1", frame.flocculation}};
+                            {"flocculation", 1, "1", frame.flocculation},
+                            {"age", 1, "s", frame.age},
+                            {"load", 1, "1", frame.load}};
   std::erase_if(fields, [](const Field& field) { return field.values.empty(); });
   return fields;
 }
@@ -125,7 +127,9 @@ Frame thinned(const Frame& frame) {
           .volume = strided(k, frame.volume),
           .pressure = strided(k, frame.pressure),
           .shear_rate = strided(k, frame.shear_rate),
-          .flocculation = strided(k, frame.flocculation)};
+          .flocculation = strided(k, frame.flocculation),
+          .age = strided(k, frame.age),
+          .load = strided(k, frame.load)};
 }
 
 }  // namespace

@@ -78,6 +78,8 @@ struct Quadrature {
   std::vector<double> V_cell;                       ///< sum of V [m^3]
   std::vector<double> p;                            ///< pressure at the start of the step [Pa]
   std::vector<std::array<Vec<D>, n_places>> place;  ///< local coordinates of the places, in a section
+  /// Rows of how the divergence at each place differs from its cell's mean [1/m]; empty where nothing asks for it.
+  std::vector<std::array<DivergenceRows, n_places>> excess;
 
   void resize(std::size_t n) {
     B.resize(n), resize_for_overwrite(V, n), resize_for_overwrite(tau_y, n), resize_for_overwrite(V_cell, n),
@@ -285,6 +287,22 @@ void lay_out_quadrature(const ActiveGrid<Geometry::dim>& grid, const Points<Geom
     }
     quadrature.p[c] = detail::mean_pressure(grid, points, K, c);
   }
+}
+
+/// Lays out the rows of the excess divergence of a section's quadrature.
+template <class Geometry>
+void lay_out_excess(const ActiveGrid<Geometry::dim>& grid, Quadrature<Geometry>& quadrature) {
+  constexpr int D = Geometry::dim;
+  quadrature.excess.resize(grid.cell_index.size());
+#pragma omp parallel for schedule(static)
+  for (int c = 0; c < grid.n_cells(); ++c)
+    for (int k = 0; k < power(2, D); ++k) {
+      const Vec<D>& s = quadrature.place[c][k];
+      const Stencil<D> st = stencil<D>(grid.axes, grid.cell_index[c], s);
+      const Vec<D> x = position_in_cell<D>(grid.axes, grid.cell_index[c], s);
+      for (int i = 0; i < power(3, D); ++i)
+        quadrature.excess[c][k][i] = Geometry::divergence_row(st.N[i], st.g[i], x) - quadrature.b[c][i];
+    }
 }
 
 }  // namespace tremie

@@ -28,6 +28,11 @@ Eigen::VectorXd residual_of_cells(const YieldProblem<Geometry>& problem,
              Geometry::divergence_part();
       for (int i = 0; i < n_local; ++i) local[c][i].noalias() -= quad.B[c][k][i].transpose() * s;
     }
+    if (!quad.excess.empty())
+      for (int k = 0; k < power(2, D); ++k) {
+        const double s = quad.V[c][k] * problem.zeta * excess_divergence(problem, v, c, k);
+        for (int i = 0; i < n_local; ++i) local[c][i] -= s * quad.excess[c][k][i];
+      }
   }
   Eigen::VectorXd R(grid.n_nodes() * D);
   for (int i = 0; i < grid.n_nodes(); ++i)
@@ -65,6 +70,10 @@ void assemble_cells(const YieldProblem<Geometry>& problem, const CellTangents<Ge
         TB += (quad.V[c][k] * problem.zeta) * Geometry::divergence_part() *
               (Geometry::divergence_part().transpose() * B);
       cell.noalias() += B.transpose() * TB;
+      if (!quad.excess.empty()) {
+        const Eigen::Map<const Vec<n_dof>> x(quad.excess[c][k][0].data());
+        cell.noalias() += (quad.V[c][k] * problem.zeta * x) * x.transpose();
+      }
     }
     const auto& rows = quad.divergence_rows(c);
     Vec<n_dof> b;

@@ -9,7 +9,7 @@
 // Phi the potential of the yield law, gamma_dot = |q| at quadrature point q, one divergence a cell. A velocity
 // that alternates from node to node has none in any cell: nothing but the shear stress resists it, and in a
 // fluid with little yield stress it gathers the points on every second face. zeta, a bulk viscosity of what
-// differs from the cell's mean, does; of a resolved flow it sees next to nothing. Its stationarity is the
+// differs from the cell's mean, does, in sections; of a resolved flow it sees next to nothing. Its stationarity is the
 // momentum balance; its solvers are in admm.hpp and newton.hpp.
 
 #include <algorithm>
@@ -65,7 +65,7 @@ struct YieldProblem {
   std::vector<PointTerm<D>> bound;       ///< walls inside the grid
   std::vector<PointTerm<D>> surface;     ///< head of the moving free surface, in a section
   std::vector<PointTerm<D>> bars;        ///< thinner than the grid resolves; ADMM alone
-  double zeta = 0.0;                     ///< [Pa s], plane strain alone
+  double zeta = 0.0;                     ///< [Pa s], sections alone
   std::vector<double> p_offset = {};     ///< of the cells' pressures [Pa]; empty: those before the step
   double K_share = 1.0;                  ///< K over the mix's
   double eta =
@@ -110,6 +110,16 @@ double excess_divergence(const Vec<Geometry::n_strain>& q, double mean) {
     return Geometry::divergence_of(q) - mean;
   else
     return 0.0;
+}
+
+/// The same at quadrature point k of cell c by its rows, where they are laid out.
+template <class Geometry>
+double excess_divergence(const YieldProblem<Geometry>& problem, const std::vector<Vec<Geometry::dim>>& v,
+                         int c, int k) {
+  double excess = 0.0;
+  for (int i = 0; i < power(3, Geometry::dim); ++i)
+    excess += problem.quadrature.excess[c][k][i].dot(v[problem.grid.cell_nodes[c][i]]);
+  return excess;
 }
 
 /// Turns the strain rates of a cell's quadrature points into stresses, in place.

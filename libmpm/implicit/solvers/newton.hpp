@@ -35,7 +35,8 @@ double energy(const YieldProblem<Geometry>& problem, const YieldLaw& law,
     sum += quad.V_cell[c] * div * (0.5 * problem.K * problem.dt * div - problem.offset(c));
     for (int k = 0; k < power(2, Geometry::dim); ++k) {
       const auto q = strain_rate(problem, v, c, k);
-      const double gamma_dot = q.norm(), excess = excess_divergence<Geometry>(q, div);
+      const double gamma_dot = q.norm(), excess = quad.excess.empty() ? excess_divergence<Geometry>(q, div)
+                                                                      : excess_divergence(problem, v, c, k);
       sum +=
           quad.V[c][k] * (0.5 * problem.mu * gamma_dot * gamma_dot +
                           potential(law, gamma_dot, quad.tau_y[c][k]) + 0.5 * problem.zeta * excess * excess);

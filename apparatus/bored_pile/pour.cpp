@@ -1,0 +1,148 @@
+#include "apparatus/bored_pile/pour.hpp"
+
+#include "apparatus/run/body_readings.hpp"
+#include "apparatus/run/step_settings.hpp"
+#include "libmpm/particles/seeding.hpp"
+
+namespace tremie::bored_pile {
+namespace {
+
+/// The axis from the middle to the wall, of cells of about `cell`: of the numbers of cells within a quarter of that the one of
+/// which a face is nearest to the pipe's outside.
+Axis across(const Scene& scene) {
+  const double wanted = scene.radius / scene.model.cell[0], share = scene.pipe.outer_radius / scene.radius;
+  const auto cost = [&](int n) {
+    const double faces = std::max(1.0, std::round(n * share));
+    return std::abs(n * share / faces - 1.0) + 0.1 * std::abs(n - wanted) / wanted;
+  };
+  int best = std::max(2, static_cast<int>(std::lround(wanted)));
+  for (int n = std::max(2, static_cast<int>(wanted / 1.25)); n <= 1.25 * wanted + 1.0; ++n)
+    if (cost(n) < cost(best)) best = n;
+  return {.h = scene.radius / best, .low = FaceKind::free_slip, .high = face(scene.walls), .n_cells = best};
+}
+
+/// Adds a point of the concrete that leaves the pipe.
+void add_concrete(const Scene& scene, Pour& pour, const Vec<2>& x, double V, double speed) {
+  auto& points = pour.body.points;
+  const Mix& mix = scene.mix;
+  const double under = std::max(0.0, mean_level(scene, pour) - x[1]);
+  const double ln_J = ln_J_under((mix.density - scene.fluid_density) * gravity * under, mix.K);
+  add_point<2>(points, x, mix.density * V, V * std::exp(-ln_J), ln_J);
+  points.v.back()[1] = -speed;
+  const std::size_t load = load_at(scene, pour.placed);
+  pour.load.push_back(static_cast<double>(load + 1));
+  pour.batched.push_back(pour.body.time - scene.loads[load].age);
+  if (!mix.thixotropy) return;
+  const double lambda = flocculation_at_mouth(scene, pour);
+  points.lambda.push_back(lambda), points.gamma_dot.push_back(0.0);
+  const auto shares = part_shares(mix.thixotropy->kinetics);
+  for (std::size_t i = 0; i < points.lambda_parts.size(); ++i)
+    points.lambda_parts[i].push_back(shares[i] * lambda);
+}
+
+/// The stretches of pause and pour, load by load; what stands in the pile at the start is taken off the first.
+std::vector<Phase> phases_of(const Scene& scene, double first_charge) {
+  std::vector<Phase> phases;
+  double time = 0.0, placed = first_charge, done = 0.0;
+  for (const Load& load : scene.loads) {
+    done += load.volume;
+    if (placed > first_charge && load.pause > 0.0) phases.push_back({time, time += load.pause, 0.0, placed});
+    if (done <= placed) continue;
+    phases.push_back({time, time + (done - placed) / scene.rate, scene.rate, placed});
+    time = phases.back().end, placed = done;
+  }
+  return phases;
+}
+
+/// Pulls the pipe by as many cells as leave it the least embedment.
+void pull(const Scene& scene, Pour& pour) {
+  const Axis& up = pour.body.grid.axes[1];
+  const double level = mean_level(scene, pour), embedment = level - mouth_of(pour);
+  const double length = std::min(scene.pipe.pull, embedment - scene.pipe.least);
+  const int cells = static_cast<int>(std::floor(length / up.h + 1e-9));
+  if (cells < 1) return;
+  double stays = 0.0;
+  pull_up(pour.inlet, up, cells, [&](const Vec<2>& x, double V, double speed) {
+    add_concrete(scene, pour, x, V, speed);
+    stays += V;
+  });
+  pour.placed += stays;
+  pour.body.wall_nodes.clear();
+}
+
+}  // namespace
+
+std::size_t load_at(const Scene& scene, double volume) {
+  std::size_t i = 0;
+  for (double end = scene.loads[0].volume; i + 1 < scene.loads.size() && volume >= end * (1.0 - 1e-9);)
+    end += scene.loads[++i].volume;
+  return i;
+}
+
+double flocculation_at_mouth(const Scene& scene, const Pour& pour) {
+  const Thixotropy& t = *scene.mix.thixotropy;
+  const std::size_t load = load_at(scene, pour.placed);
+  double before = 0.0;
+  for (std::size_t i = 0; i < load; ++i) before += scene.loads[i].volume;
+  // A pipe's filling stood still in the pause before its load.
+  const double r = scene.pipe.inner_radius;
+  const double filling = std::numbers::pi * r * r * std::max(0.0, mean_level(scene, pour) - mouth_of(pour));
+  const bool stood = before > pour.first_charge && pour.placed < before + filling;
+  return flocculation_after_rest(t.initial_flocculation, t, scene.mix.tau_0,
+                                 scene.loads[load].rest + (stood ? scene.loads[load].pause : 0.0));
+}
+
+Pour start_of(const Scene& scene) {
+  Pour pour;
+  auto& body = pour.body;
+  const auto [n, n_up] = scene.model.points_per_cell;
+  body.mix = scene.mix;
+  body.gravity[1] = -gravity * (1.0 - scene.fluid_density / scene.mix.density);
+  body.grid.axes[0] = across(scene);
+  const double h = body.grid.axes[0].h, h_up = scene.model.cell[1];
+  body.grid.axes[1] = {.h = h_up, .low = FaceKind::no_slip};
+  const int cells = std::max(1, static_cast<int>(std::lround(scene.pipe.outer_radius / h)));
+  const int face = std::max(1, static_cast<int>(std::lround(scene.pipe.start / h_up)));
+  pour.inlet = make_inlet<Section>(body.grid.axes, cells, face, n * cells, h_up / n_up);
+  const double mouth = mouth_of(pour), top = mouth + 2.0 * h_up, r = cells * h;
+  pour.placed = pour.first_charge = section_of(scene, pour) * top + std::numbers::pi * r * r * mouth;
+  const int rows = (face + 2) * n_up;
+  seed_box<Section>(
+      {0.0, 0.0}, {scene.radius, top}, {body.grid.axes[0].n_cells * n, rows}, scene.mix.density, scene.mix.K,
+      [&](const Vec<2>& x) { return x[0] > r || x[1] < mouth; },
+      [&](const Vec<2>& x) { return scene.mix.density * -body.gravity[1] * (top - x[1]); }, body.points);
+  experiment::rest(body, scene.loads[0].rest);
+  pour.load.assign(body.points.size(), 1.0);
+  pour.batched.assign(body.points.size(), -scene.loads[0].age);
+  pour.phases = phases_of(scene, pour.first_charge);
+  pour.wall_max.assign(static_cast<std::size_t>(scene.depth / h_up) + 2, 0.0);
+  return pour;
+}
+
+double prepare(const Scene& scene, double cfl, Pour& pour) {
+  if (mean_level(scene, pour) - mouth_of(pour) > scene.pipe.most) pull(scene, pour);
+  const double now = pour.body.time;
+  const auto after = std::find_if(pour.phases.begin(), pour.phases.end(),
+                                  [&](const Phase& p) { return now < p.end * (1.0 - 1e-12); });
+  const Phase& phase = after == pour.phases.end() ? pour.phases.back() : *after;
+  const double due = phase.before + phase.rate * (now - phase.begin), ahead = pour.placed - due;
+  const bool waits =
+      ahead > 1e-9 * pour.placed;  // a pulled pipe's concrete is there before the pump has brought it
+  pour.inlet.flow = waits ? 0.0 : phase.rate;
+  place_pipe(pour.inlet, pour.body.grid);
+  double left = phase.end - now;
+  if (waits && phase.rate > 0.0) left = std::min(left, ahead / phase.rate);
+  left = experiment::without_sliver(left, pour.body.dt);
+  const double fastest = plug_speed(pour.inlet);
+  return fastest > 0.0 ? std::min(left, cfl * pour.body.grid.axes[1].h / fastest) : left;
+}
+
+void let_in(const Scene& scene, Pour& pour) {
+  const double dt = pour.body.dt;
+  bend_paths(pour.body.grid, dt, pour.body.points);
+  tremie::let_in(pour.inlet, pour.body.grid.axes[1], dt,
+                 [&](const Vec<2>& x, double V, double speed) { add_concrete(scene, pour, x, V, speed); });
+  pour.placed += pour.inlet.flow * dt;
+}
+
+}  // namespace tremie::bored_pile

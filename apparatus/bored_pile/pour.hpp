@@ -1,0 +1,71 @@
+#pragma once
+
+// The state of a pour: the concrete with what it remembers of its loads, the pipe, and the schedule.
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "apparatus/bored_pile/bored_pile.hpp"
+#include "libmpm/boundary/inlet.hpp"
+#include "libmpm/constitutive/constants.hpp"
+#include "libmpm/implicit/step.hpp"
+
+namespace tremie::bored_pile {
+
+using Section = Axisymmetric;
+
+/// A stretch of the schedule.
+struct Phase {
+  double begin = 0.0, end = 0.0;  ///< [s]
+  double rate = 0.0;              ///< [m^3/s]
+  double before = 0.0;            ///< volume placed when it begins [m^3]
+};
+
+struct Pour {
+  ImplicitBody<Section> body;
+  std::vector<double> load, batched;  ///< of each point: its load from 1; when it was batched [s]
+  Inlet inlet;
+  std::vector<Phase> phases;
+  double placed = 0.0;           ///< volume that left the pipe [m^3]
+  double first_charge = 0.0;     ///< of it, what stands in the pile at the start
+  double short_for = 0.0;        ///< how long the head has not sufficed [s]
+  bool stopped = false;          ///< the head does not suffice
+  std::vector<double> wall_max;  ///< largest pressure on the wall so far, by cell [Pa]
+};
+
+/// The pile filled to just above the pipe's mouth.
+Pour start_of(const Scene& scene);
+
+inline double mouth_of(const Pour& pour) { return pour.inlet.face * pour.body.grid.axes[1].h; }
+inline double pipe_radius(const Pour& pour) { return pour.inlet.cells * pour.body.grid.axes[0].h; }
+/// Section of the pile beside the pipe [m^2].
+inline double section_of(const Scene& scene, const Pour& pour) {
+  return std::numbers::pi * (scene.radius * scene.radius - pipe_radius(pour) * pipe_radius(pour));
+}
+/// Mean level beside the pipe that the placed volume makes [m].
+inline double mean_level(const Scene& scene, const Pour& pour) {
+  const double r = pipe_radius(pour);
+  return (pour.placed - std::numbers::pi * r * r * mouth_of(pour)) / section_of(scene, pour);
+}
+/// Pressure of the displaced fluid [Pa].
+inline double fluid_pressure(const Scene& scene, double height) {
+  return scene.fluid_density * gravity * (scene.depth - height);
+}
+
+/// The load of the next volume, from 0.
+std::size_t load_at(const Scene& scene, double volume);
+/// lambda of the concrete that leaves the pipe.
+double flocculation_at_mouth(const Scene& scene, const Pour& pour);
+
+/// Sets the flow for the step to come and returns how long it may be [s]. Pulls the pipe where it is due.
+double prepare(const Scene& scene, double cfl, Pour& pour);
+/// What came in over the last step.
+void let_in(const Scene& scene, Pour& pour);
+
+/// Readings of the concrete as it stands.
+Sample read(const Scene& scene, const StepReport& step, Pour& pour);
+void read_results(const Scene& scene, const Pour& pour, const std::vector<Sample>& series, Results& results);
+
+}  // namespace tremie::bored_pile

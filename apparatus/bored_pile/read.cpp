@@ -1,0 +1,184 @@
+// What is read off the concrete in the pile.
+
+#include <limits>
+
+#include "apparatus/bored_pile/pour.hpp"
+#include "apparatus/run/body_readings.hpp"
+#include "libmpm/implicit/step_size.hpp"
+#include "rheometer/reference/pipe_flow.hpp"
+
+namespace tremie::bored_pile {
+namespace {
+
+/// Volume fractions of the cells, column by column from the axis and from the base up.
+std::vector<std::vector<double>> fills(const Pour& pour) {
+  const auto& axes = pour.body.grid.axes;
+  std::vector<std::vector<double>> fill(static_cast<std::size_t>(axes[0].n_cells));
+  const auto& points = pour.body.points;
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const auto c = detail::cell_of<2>(axes, points.x[p]);
+    auto& column = fill[static_cast<std::size_t>(c[0])];
+    const auto k = static_cast<std::size_t>(c[1]);
+    if (column.size() <= k) column.resize(k + 1, 0.0);
+    column[k] +=
+        points.volume(p) / (Section::measure({(c[0] + 0.5) * axes[0].h, 0.0}) * axes[0].h * axes[1].h);
+  }
+  return fill;
+}
+
+/// Height of the surface of a column [m]: what its highest cells hold, on those below. A few together, because points are not
+/// spread so evenly that each cell is full.
+double level_of(const std::vector<double>& fill, double h) {
+  constexpr std::size_t surface = 5;
+  std::size_t k = fill.size();
+  while (k > 0 && fill[k - 1] < 0.5) --k;
+  double level = static_cast<double>(k = k > surface ? k - surface : 0);
+  for (; k < fill.size(); ++k) level += fill[k];
+  return level * h;
+}
+
+struct Levels {
+  double pipe = 0.0, middle = 0.0, wall = 0.0, volume = 0.0;  ///< [m]; volume under the surface [m^3]
+};
+
+Levels levels(const Pour& pour) {
+  const auto fill = fills(pour);
+  const double h = pour.body.grid.axes[0].h, h_up = pour.body.grid.axes[1].h, r = pipe_radius(pour);
+  const auto first = static_cast<std::size_t>(pour.inlet.cells);
+  const auto at = [&](std::size_t c) { return level_of(fill[c], h_up); };
+  Levels levels{at(first), at((first + fill.size()) / 2), at(fill.size() - 1),
+                std::numbers::pi * r * r * mouth_of(pour) - volume_waiting(pour.inlet)};
+  for (std::size_t c = first; c < fill.size(); ++c)
+    levels.volume += at(c) * h * Section::measure({(static_cast<double>(c) + 0.5) * h, 0.0});
+  return levels;
+}
+
+/// Mean of a number of the points that are chosen, by volume; empty where none is.
+template <class Chosen, class Number>
+std::optional<double> mean_over(const Pour& pour, Chosen chosen, Number number) {
+  const auto& points = pour.body.points;
+  double sum = 0.0, volume = 0.0;
+  for (std::size_t p = 0; p < points.size(); ++p)
+    if (chosen(points.x[p])) sum += points.volume(p) * number(p), volume += points.volume(p);
+  return volume > 0.0 ? std::optional(sum / volume) : std::nullopt;
+}
+
+double own_pressure(const Pour& pour, std::size_t p) {
+  return pressure(pour.body.points.ln_J[p], pour.body.mix.K);
+}
+
+double pressure_at_mouth(const Scene& scene, const Pour& pour) {
+  const double mouth = mouth_of(pour), h = pour.body.grid.axes[1].h,
+               weight = pour.body.mix.density * pour.body.gravity[1];
+  const auto own = mean_over(
+      pour, [&](const Vec<2>& x) { return x[0] < pipe_radius(pour) && x[1] < mouth && x[1] > mouth - h; },
+      [&](std::size_t p) { return own_pressure(pour, p) + weight * (mouth - pour.body.points.x[p][1]); });
+  return std::max(0.0, own.value_or(0.0)) + fluid_pressure(scene, mouth);
+}
+
+/// Height of concrete in the pipe above its mouth that the flow needs [m].
+double head_needed(const Scene& scene, const Pour& pour, double at_mouth) {
+  const Mix& mix = scene.mix;
+  const double tau_y =
+      static_yield_stress(mix.thixotropy ? flocculation_at_mouth(scene, pour) : 0.0, mix.tau_0);
+  const double left = mix.density * gravity - pipe_pressure_gradient(pour.inlet.flow, scene.pipe.inner_radius,
+                                                                     scene.model.law, mix.mu, tau_y);
+  return left > 0.0 ? at_mouth / left : std::numeric_limits<double>::infinity();
+}
+
+/// Largest static yield stress of the points within a cell of the surface [Pa].
+double stress_of_surface(const Scene& scene, const Pour& pour) {
+  const double from = mean_level(scene, pour) - pour.body.grid.axes[1].h;
+  double largest = scene.mix.tau_0;
+  const auto& points = pour.body.points;
+  for (std::size_t p = 0; p < points.lambda.size(); ++p)
+    if (points.x[p][1] > from)
+      largest = std::max(largest, static_yield_stress(points.lambda[p], scene.mix.tau_0));
+  return largest;
+}
+
+/// The concrete along the wall, cell by cell.
+std::vector<AtWall> along_wall(const Scene& scene, const Pour& pour) {
+  const auto& axes = pour.body.grid.axes;
+  const auto& points = pour.body.points;
+  std::vector<AtWall> wall(pour.wall_max.size());
+  std::vector<double> volume(wall.size(), 0.0);
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const auto c = detail::cell_of<2>(axes, points.x[p]);
+    const auto k = static_cast<std::size_t>(c[1]);
+    if (c[0] != axes[0].n_cells - 1 || k >= wall.size()) continue;
+    const double V = points.volume(p);
+    volume[k] += V;
+    wall[k].pressure_end += V * (own_pressure(pour, p) + fluid_pressure(scene, points.x[p][1]));
+    if (points.thixotropic()) wall[k].flocculation += V * points.lambda[p];
+    wall[k].age += V * (pour.body.time - pour.batched[p]);
+  }
+  const double level = mean_level(scene, pour);
+  std::size_t n = 0;
+  for (; n < wall.size() && volume[n] > 0.0; ++n) {
+    AtWall& at = wall[n];
+    at.pressure_end /= volume[n], at.flocculation /= volume[n], at.age /= volume[n];
+    at.height = (static_cast<double>(n) + 0.5) * axes[1].h;
+    at.pressure_max = std::max(pour.wall_max[n], at.pressure_end);
+    at.hydrostatic = fluid_pressure(scene, at.height) -
+                     scene.mix.density * pour.body.gravity[1] * std::max(0.0, level - at.height);
+  }
+  wall.resize(n);
+  return wall;
+}
+
+}  // namespace
+
+Sample read(const Scene& scene, const StepReport& step, Pour& pour) {
+  const auto& body = pour.body;
+  const Levels level = levels(pour);
+  for (std::size_t k = 0; const AtWall& at : along_wall(scene, pour)) pour.wall_max[k++] = at.pressure_max;
+  Sample now{.time = body.time, .time_step = step.dt, .volume = pour.placed};
+  now.level = mean_level(scene, pour);
+  now.level_pipe = level.pipe, now.level_middle = level.middle, now.level_wall = level.wall;
+  now.mouth = mouth_of(pour), now.pressure_mouth = pressure_at_mouth(scene, pour);
+  if (pour.inlet.flow > 0.0) now.head = head_needed(scene, pour, now.pressure_mouth);
+  now.load = static_cast<double>(load_at(scene, pour.placed) + 1);
+  now.surface_stress = stress_of_surface(scene, pour);
+  now.max_speed = step.max_speed, now.shear_rate_mean = step.shear_rate_mean;
+  now.flocculation_mean = experiment::mean_flocculation(body.points);
+  now.volume_change = experiment::volume_change(body.points);
+  now.iterations = step.iterations;
+  // The pressure under the mouth swings for a step where points cross cells: what lasts counts.
+  constexpr double lasts = 5.0;  // [s]
+  const bool suffices = !now.head || *now.head <= scene.depth + scene.pipe.above - now.mouth;
+  pour.short_for = suffices ? 0.0 : pour.short_for + step.dt;
+  pour.stopped = pour.short_for > lasts || (now.head && std::isinf(*now.head));
+  return now;
+}
+
+void read_results(const Scene& scene, const Pour& pour, const std::vector<Sample>& series, Results& r) {
+  const auto& points = pour.body.points;
+  const double level = mean_level(scene, pour);
+  r.level_end = level, r.placed = pour.placed;
+  r.volume_error = levels(pour).volume / (pour.placed - volume_waiting(pour.inlet)) - 1.0;
+  double head = 0.0;
+  for (const Sample& s : series) {
+    head = std::max(head, s.head.value_or(0.0));
+    r.washed = r.washed || s.level - s.mouth < 0.9 * pour.body.grid.axes[1].h;
+  }
+  if (std::isfinite(head)) r.head_needed = head;
+  r.head_suffices = !pour.stopped;
+  if (pour.stopped) r.stopped_at = level;
+  r.cover.assign(scene.loads.size(), 0.0);
+  double top = 0.0, cover = 0.0;
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const double V = points.volume(p);
+    if (points.x[p][1] > level - 1.0) top += V, r.plug_share += pour.load[p] == 1.0 ? V : 0.0;
+    if (points.x[p][0] > scene.radius - cover_depth)
+      cover += V, r.cover[static_cast<std::size_t>(pour.load[p]) - 1] += V;
+    if (points.x[p][1] > level - pour.body.grid.axes[1].h)
+      r.oldest_at_surface = std::max(r.oldest_at_surface, pour.body.time - pour.batched[p]);
+  }
+  r.plug_share /= top;
+  for (double& share : r.cover) share /= cover;
+  r.wall = along_wall(scene, pour);
+  for (const AtWall& at : r.wall) r.pressure_max = std::max(r.pressure_max, at.pressure_max);
+}
+
+}  // namespace tremie::bored_pile

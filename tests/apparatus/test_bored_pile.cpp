@@ -1,0 +1,124 @@
+// The pour of a bored pile: its volume, its pressure, its loads, what stops it and what is refused.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "apparatus/registry/registry.hpp"
+
+namespace tremie {
+namespace {
+
+// A short pile on coarse cells, of three loads; the pipe is pulled twice.
+constexpr const char* pile = R"(
+apparatus = "bored_pile"
+[mix]
+yield_stress = "50 Pa"
+plastic_viscosity = "30 Pa.s"
+[pile]
+radius = "0.3 m"
+depth = "1.2 m"
+[pipe]
+inner_radius = "50 mm"
+outer_radius = "55 mm"
+embedment = ["0.2 m", "0.5 m"]
+pull = "0.25 m"
+start = "0.1 m"
+[test]
+rate = "8 m3/h"
+[[load]]
+volume = "0.1 m3"
+[[load]]
+volume = "0.1 m3"
+pause = "30 s"
+[[load]]
+volume = "0.1 m3"
+[model]
+cell = "40 mm"
+[output]
+frames = false
+)";
+
+scene::Outcome run(const std::vector<std::string>& overrides = {}) {
+  return scene::run(scene::read_text(pile, "pile.toml", overrides));
+}
+
+double result(const scene::Outcome& outcome, const char* name) {
+  return std::get<double>(*scene::find_result(outcome, name));
+}
+
+// What was placed is what stands in the pile, within 0.1 % of its volume; the level is that of the volume beside the pipe
+// (its radius on the grid is within 10 % of 55 mm); at rest the wall bears the weight of concrete and fluid above it
+// (2400 and 1100 kg/m3), which the flow may raise by its yield stress over the gap, 2 tau_0 H/(R - r).
+TEST(BoredPile, HoldsWhatWasPlaced) {
+  const scene::Outcome outcome = run();
+  EXPECT_TRUE(outcome.checks.reasons.empty()) << outcome.checks.reasons.front();
+  EXPECT_NEAR(result(outcome, "placed_m3"), 0.3, 1e-9);
+  EXPECT_LE(std::abs(result(outcome, "volume_error")), 1e-3);
+  const double level = result(outcome, "level_end_m"), g = 9.80665, area = std::numbers::pi * 0.3 * 0.3;
+  EXPECT_GT(level, 0.3 / area);
+  EXPECT_LT(level, 0.3 / (area - std::numbers::pi * 0.06 * 0.06));
+  EXPECT_LE(std::abs(outcome.checks.mass_error), 1e-3);
+  const double at_rest = 1100.0 * g * 1.2 + 1300.0 * g * level;
+  EXPECT_GT(result(outcome, "wall_pressure_max_Pa"), 0.97 * at_rest);
+  EXPECT_LT(result(outcome, "wall_pressure_max_Pa"), at_rest + 2.0 * 50.0 * level / 0.24 + 500.0);
+  double cover = 0.0;
+  for (const auto& [name, share] :
+       std::get<std::vector<scene::Result>>(*scene::find_result(outcome, "cover")))
+    cover += std::get<double>(share);
+  EXPECT_NEAR(cover, 1.0, 1e-12);
+}
+
+// The pressure at the mouth is that of the fluid and the concrete above it, and what the annulus takes: the head that the pipe
+// needs balances it with the pipe's own friction, 2 tau_0/r and more.
+TEST(BoredPile, TellsTheHead) {
+  const scene::Outcome outcome = run();
+  const double head = result(outcome, "head_needed_m");
+  const auto* mouth = scene::find_column(outcome.series, "mouth_m");
+  EXPECT_GT(head, (1100.0 * (1.2 - mouth->values.front())) / 2400.0);
+  EXPECT_LT(head, 1.2);
+  EXPECT_TRUE(std::get<bool>(*scene::find_result(outcome, "head_suffices")));
+}
+
+// 5000 Pa take 2 tau_0/r = 200 kPa a metre of the pipe, eight times their weight: the pour stops where it stands, which is an
+// answer.
+TEST(BoredPile, StopsWhereNoHeadSuffices) {
+  const scene::Outcome outcome = run({"mix.yield_stress=5 kPa"});
+  EXPECT_TRUE(outcome.checks.reasons.empty());
+  EXPECT_FALSE(std::get<bool>(*scene::find_result(outcome, "head_suffices")));
+  EXPECT_TRUE(std::holds_alternative<std::monostate>(*scene::find_result(outcome, "head_needed_m")));
+  EXPECT_LT(result(outcome, "level_end_m"), 0.3);
+}
+
+// A concrete without a yield stress fills the pile as well.
+TEST(BoredPile, PoursAFluid) {
+  const scene::Outcome outcome = run({"mix.yield_stress=0 Pa"});
+  EXPECT_TRUE(outcome.checks.reasons.empty()) << outcome.checks.reasons.front();
+  EXPECT_LE(std::abs(result(outcome, "volume_error")), 1e-3);
+}
+
+// Concrete that waits in a pause gains A_thix times the pause (30 s of 2 Pa/s) where nothing shears it.
+TEST(BoredPile, SurfaceGainsStrengthInAPause) {
+  const scene::Outcome outcome =
+      run({"mix.thixotropy.structuration_rate=2 Pa/s", "mix.thixotropy.destructuration=0.1"});
+  EXPECT_GT(result(outcome, "static_yield_stress_surface_Pa"), 50.0 + 60.0);
+}
+
+// Concrete that is older than it is workable is told; so is a mouth that is pulled out of it.
+TEST(BoredPile, TellsOldConcreteAndAWashedMouth) {
+  EXPECT_FALSE(run({"load[1].age=300 min", "test.rate=50 m3/h"}).checks.reasons.empty());
+  EXPECT_FALSE(run({"pipe.embedment=[\"0 m\", \"0.4 m\"]", "pipe.pull=0.4 m", "model.cell=20 mm"})
+                   .checks.reasons.empty());
+}
+
+TEST(BoredPile, RefusesWhatCannotBePoured) {
+  for (const char* set : {"pipe.outer_radius=0.3 m", "pipe.inner_radius=60 mm", "pipe.pull=0.4 m",
+                          "pipe.embedment=[\"0.5 m\", \"0.2 m\"]", "pipe.start=1.1 m", "test.rate=0 m3/h",
+                          "fluid.density=2500 kg/m3", "load[0].volume=0.01 m3", "cage.bars=16",
+                          "model.scheme=explicit", "model.cell=0.2 m"})
+    EXPECT_THROW(run({set}), scene::InputError) << set;
+}
+
+}  // namespace
+}  // namespace tremie
