@@ -14,6 +14,8 @@ struct Checkpoints {
   std::function<bool()> due;                       ///< asked between two steps
   std::function<void(const VisitState&)> keep;     ///< writes the state
   std::function<void(const VisitState&)> restore;  ///< reads one to go on from; empty: from the start
+  /// Writes the last state that the test's end has no part in, for a longer test to go on from; empty: nobody wants it.
+  std::function<void(const VisitState&)> keep_for_longer = {};
 };
 
 /// Whether a run goes on from where an earlier one stood.

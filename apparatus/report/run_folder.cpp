@@ -186,8 +186,9 @@ void remove_earlier(const fs::path& old, const fs::path& target) {
 
 }  // namespace
 
-fs::path find_checkpoint(const fs::path& folder) {
+fs::path find_checkpoint(const fs::path& folder, bool longer) {
   const fs::path target = resolved_folder(folder), hidden = hidden_name(target);
+  if (longer) return is_there(target / for_longer / "state") ? target / for_longer : fs::path{};
   for (const fs::path& part : {target.parent_path() / hidden, target / hidden, target})
     if (is_there(part / "checkpoint/state")) return part / "checkpoint";
   return {};
@@ -228,9 +229,10 @@ RunFolder::RunFolder(const fs::path& folder, bool replace, const std::vector<fs:
   clear(staging_, ours);
 }
 
-RunFolder::RunFolder(const fs::path& folder, Resumed) : target_(resolved_folder(folder)), replace_(true) {
-  if (find_checkpoint(target_).empty())
-    throw scene::InputError(fmt::format("{}: holds no unfinished run", target_.string()));
+RunFolder::RunFolder(const fs::path& folder, Resumed resumed)
+    : target_(resolved_folder(folder)), replace_(true) {
+  if (find_checkpoint(target_, resumed.longer).empty())
+    throw scene::InputError(fmt::format("{}: holds no run to go on with any more", target_.string()));
   if (refuse_what_is_no_folder(target_) && !is_free(target_))
     if (const auto changed = changed_files(target_); !changed.empty())
       refuse_folder(target_,
@@ -238,7 +240,7 @@ RunFolder::RunFolder(const fs::path& folder, Resumed) : target_(resolved_folder(
                                 "moved elsewhere first",
                                 short_list(changed)));
   make_staging();
-  take_over_checkpoint();
+  take_over_checkpoint(find_checkpoint(target_, resumed.longer));
 }
 
 void RunFolder::make_staging() {
@@ -290,11 +292,10 @@ void RunFolder::lock() {
   }
 }
 
-/// The checkpoint of an interrupted run lies in its result, which stays as it is until this run is done.
-void RunFolder::take_over_checkpoint() {
+/// The checkpoint of an earlier run lies in its result, which stays as it is until this run is done.
+void RunFolder::take_over_checkpoint(const fs::path& from) {
   clear(staging_, "checkpoint");
   std::ofstream(staging_ / ours);
-  const fs::path from = find_checkpoint(target_);
   std::error_code error;
   if (from.parent_path() != staging_) {
     const fs::path copy = staging_ / "checkpoint.copy";  // which is none until all of it is there

@@ -6,8 +6,13 @@
 
 namespace tremie::report {
 
-/// Goes on with an unfinished run.
-struct Resumed {};
+/// In a finished result: the folder of the checkpoint that a longer test goes on from.
+inline constexpr const char* for_longer = ".for_longer";
+
+/// Goes on with an unfinished run; or `longer`: with a finished one.
+struct Resumed {
+  bool longer = false;
+};
 
 /// A folder that a result appears in whole or not at all. Everything is written into a hidden folder beside it
 /// (inside it, where it is there already and empty), which publish() puts in its place; without publish() nothing
@@ -20,8 +25,8 @@ class RunFolder {
   /// writes there, or where it cannot be written.
   RunFolder(const std::filesystem::path& folder, bool replace,
             const std::vector<std::filesystem::path>& inputs = {});
-  /// What others have put beside the interrupted result stays there. Goes on where find_checkpoint(folder) finds a run's checkpoint, which lies in checkpoint() then. Throws
-  /// scene::InputError where there is none, and as above.
+  /// What others have put beside the earlier result stays there. Goes on where find_checkpoint(folder, longer) finds a run's
+  /// checkpoint, which lies in checkpoint() then. Throws scene::InputError where there is none, and as above.
   RunFolder(const std::filesystem::path& folder, Resumed);
   ~RunFolder();
   RunFolder(const RunFolder&) = delete;
@@ -46,7 +51,7 @@ class RunFolder {
   void remove_made_parents();
   void refuse_what_came_meanwhile();
   void lock();
-  void take_over_checkpoint();
+  void take_over_checkpoint(const std::filesystem::path& from);
   void move_inside();
   void put_in_place();
 
@@ -59,8 +64,8 @@ class RunFolder {
 };
 
 /// The folder with the checkpoint of the unfinished run that was to fill `folder`: beside it where the run was killed,
-/// inside where it was interrupted. Empty where there is none.
-std::filesystem::path find_checkpoint(const std::filesystem::path& folder);
+/// inside where it was interrupted. `longer`: of the finished run that fills it. Empty where there is none.
+std::filesystem::path find_checkpoint(const std::filesystem::path& folder, bool longer = false);
 
 /// The hidden folder that another process writes into at this moment, to fill `folder`; empty where there is none.
 std::filesystem::path find_work(const std::filesystem::path& folder);

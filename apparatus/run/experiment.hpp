@@ -44,6 +44,7 @@ void run_experiment(const Flow& flow, Body<Geometry>& body,
   Squeeze squeeze;
   squeeze.see(start_volume_change, 0.0);
   Flow watched = flow;
+  watched.end = showing.duration;
   watched.collapsed = [&] { return squeeze.collapsed(); };
   const auto read_and_show = [&](const StepReport& step) {
     squeeze.see(volume_change(body.points), body.time);

@@ -3,6 +3,7 @@
 // The one loop by which every apparatus runs its test, by implicit or explicit steps.
 
 #include <functional>
+#include <limits>
 #include <optional>
 
 #include "apparatus/common/outcome.hpp"
@@ -29,9 +30,10 @@ struct RestWatch {
 
 /// One test as the loop sees it. The functions refer to the apparatus' own body, schedule and series.
 struct Flow {
-  std::function<double()> time;      ///< of the body [s]
-  std::function<bool()> unfinished;  ///< whether the schedule has time left
-  std::function<void()> prepare;     ///< moves gate, cone or vane for the step to come, and bounds the step
+  double end = std::numeric_limits<double>::infinity();  ///< when the schedule has no time left [s]
+  std::function<double()> time;                          ///< of the body [s]
+  std::function<bool()> unfinished;                      ///< whether the schedule has time left
+  std::function<void()> prepare;  ///< moves gate, cone or vane for the step to come, and bounds the step
   /// Steps to the next reading: one implicit step, or many explicit ones. Counts them.
   std::function<StepReport(Checks&, Cost&)> advance;
   std::function<Frame()> frame;            ///< the points as they are now

@@ -84,7 +84,7 @@ A run fills a folder ([which files](../guide/slump_flow.md#what-a-run-leaves)); 
 | `frames/00000/position`, `velocity` | points, 3 | [m], [m/s] |
 | `frames/00000/volume`, `pressure`, `shear_rate`, `flocculation` | points | [m³], [Pa], [1/s], [1] |
 
-`fit`, `estimate`, `study` and `calibrate` leave files of their own: what is in them is on their pages of the guide. A run that was cut short keeps its state in `.NAME.part/checkpoint` beside its folder, for the very build that wrote it: points, time, step, grid, the solver's stresses and rates, friction, bars' drag, and the apparatus' own series.
+`fit`, `estimate`, `study` and `calibrate` leave files of their own: what is in them is on their pages of the guide. A run that was cut short keeps its state in `.NAME.part/checkpoint` beside its folder, for the very build that wrote it: points, time, step, grid, the solver's stresses and rates, friction, bars' drag, and the apparatus' own series. A finished result keeps the same in `.for_longer`, as it was before the end of the test shortened a step: `tremie resume DIR --until` goes on from it.
 """
 apparatus = listed_readings()
 listed = says("--commands")

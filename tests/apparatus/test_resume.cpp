@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+#include <string>
+#include <utility>
+
 #include "tests/apparatus/killed_runs.hpp"
 
 namespace tremie {
@@ -14,6 +18,72 @@ TEST(Resume, KilledRunsEndWithTheSameBytes) {
     if (scene.name == "cone" || scene.name == "explicit" || scene.name == "couette" || scene.name == "box")
       runs.kill(scene, 1);
   EXPECT_EQ(runs.killed(), 4);
+}
+
+/// The folder of a scene, with the program's runs of it in folders of their own.
+class Longer {
+ public:
+  explicit Longer(const std::string& name) {
+    for (const test::KilledScene& scene : test::killed_scenes)
+      if (scene.name == name) test::write_file(folder_ / "scene.toml", scene.text);
+  }
+  test::Result run(const std::string& out, const std::string& duration) const {
+    return tremie("run scene.toml --quiet --out " + out +
+                  (duration.empty() ? "" : " --set test.duration='" + duration + "'"));
+  }
+  test::Result resume(const std::string& out, const std::string& until) const {
+    return tremie("resume " + out + " --quiet --until '" + until + "'");
+  }
+  std::map<std::string, std::string> bytes(const std::string& out) const {
+    return test::bytes_of(folder_ / out);
+  }
+
+ private:
+  test::Result tremie(const std::string& words) const {
+    return test::shell("'" TREMIE_PROGRAM "' " + words, folder_.path());
+  }
+  test::TemporaryFolder folder_;
+};
+
+// A run that is over goes on to a later end, and again to a later one, as if it had been asked for at once: the end that it
+// had has shortened no step of it.
+TEST(Resume, AFinishedRunGoesOnToTheBytesOfALongerOne) {
+  for (const char* name : {"cone", "explicit", "box"}) {
+    const Longer folder(name);
+    const auto whole = folder.run("whole", "0.5 s");
+    EXPECT_TRUE(whole.code == 0 || whole.code == 3) << name << whole.text;
+    const auto brief = folder.run("longer", "0.3 s");
+    EXPECT_TRUE(brief.code == 0 || brief.code == 3) << name << brief.text;
+    for (const char* until : {"0.4 s", "0.5 s"}) {
+      const auto longer = folder.resume("longer", until);
+      EXPECT_TRUE(longer.code == 0 || longer.code == 3) << name << longer.text;
+    }
+    EXPECT_TRUE(folder.bytes("whole") == folder.bytes("longer")) << name;
+  }
+}
+
+// What is no later end of the test is refused, and the result stays as it was.
+TEST(Resume, RefusesWhatIsNoLaterEnd) {
+  const Longer box("box");
+  box.run("out", "0.3 s");
+  const auto before = box.bytes("out");
+  for (const auto& [until, why] : {std::pair{"0.2 s", "no later than the end of the run"},
+                                   {"0.3 s", "no later than the end of the run"},
+                                   {"300", "unit"},
+                                   {"300 mm", "mm"},
+                                   {"-3 s", "not greater than 0"}}) {
+    const auto refused = box.resume("out", until);
+    EXPECT_EQ(refused.code, 2) << refused.text;
+    EXPECT_NE(refused.text.find("--until"), std::string::npos) << refused.text;
+    EXPECT_NE(refused.text.find(why), std::string::npos) << refused.text;
+  }
+  EXPECT_EQ(box.resume("nowhere", "1 s").code, 2);
+  EXPECT_TRUE(box.bytes("out") == before);
+  const Longer vane("couette");
+  vane.run("out", "");
+  const auto schedule = vane.resume("out", "10 s");
+  EXPECT_EQ(schedule.code, 2);
+  EXPECT_NE(schedule.text.find("its schedule"), std::string::npos) << schedule.text;
 }
 
 class Refused : public ::testing::Test {
@@ -61,6 +131,12 @@ TEST_F(Refused, WhatIsDamagedCutOrOfAnotherScene) {
   expect_refused("another scene");
   std::filesystem::resize_file(folder_ / "out/checkpoint/state", 500);
   expect_refused("damaged or cut");
+}
+
+TEST_F(Refused, ALongerTestOfAnUnfinishedRunNamesResume) {
+  const auto longer = tremie("'" TREMIE_PROGRAM "' resume out --until '200 s'");
+  EXPECT_EQ(longer.code, 2);
+  EXPECT_NE(longer.text.find("`tremie resume out` first"), std::string::npos) << longer.text;
 }
 
 TEST_F(Refused, ARunOverAnUnfinishedOneNamesResume) {

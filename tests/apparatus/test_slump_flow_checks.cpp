@@ -142,6 +142,20 @@ TEST(SlumpFlowChecks, ALiftSlowerThanAnyVerifiedIsMarked) {
   EXPECT_FALSE(marked("instant"));
 }
 
+// 300 Pa under a cone lifted at 40 mm/s spread to 536 mm on cells of 30 mm and to 613 mm on those of 6 mm where nothing holds
+// them along the floor; at 10 mm/s to 442 and 614 mm with a friction of 0.1, to 374 and 384 mm where the floor holds.
+TEST(SlumpFlowChecks, ASlowLiftOverASlipperyFloorIsMarkedOnCoarseCells) {
+  const auto marked = [](std::vector<std::string> more) {
+    more.insert(more.end(), {"mix.yield_stress=300 Pa", "model.cell=[\"24 mm\", \"30 mm\"]"});
+    return marked_as("over a floor along which the concrete slides", more);
+  };
+  EXPECT_TRUE(marked({"test.lift_speed=40 mm/s", "floor.contact=free_slip"}));
+  EXPECT_TRUE(marked({"test.lift_speed=100 mm/s", "floor.contact=free_slip"}));
+  EXPECT_TRUE(marked({"test.lift_speed=10 mm/s", "floor.contact=friction", "floor.coefficient=0.1"}));
+  EXPECT_FALSE(marked({"test.lift_speed=10 mm/s", "floor.contact=no_slip"}));
+  EXPECT_FALSE(marked({"test.lift_speed=150 mm/s", "floor.contact=free_slip"}));
+}
+
 // A wall just stiff enough for the pressure in one step let 17 % through at 5 mm/s (lift.md).
 TEST(SlumpFlowChecks, ASlowConeHoldsTheConcreteBack) {
   const auto marked = [](const char* speed, const char* duration) {

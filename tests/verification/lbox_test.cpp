@@ -32,6 +32,7 @@ TEST_P(RestProfile, IsTheClosedForms) {
       ratio);
   EXPECT_LE(error.worst, 0.04);
   EXPECT_NEAR(passing / ratio, 1.0, 0.07);
+  EXPECT_NEAR(outcome.results.h2.value_or(0.0) / form.depth(form.end - 0.05), 1.0, 0.03);
   EXPECT_LE(heap, lbox_reference::heap_that_is_borne(tau_0) + 0.005);
   EXPECT_GE(heap, -0.005);
   EXPECT_LE(std::abs(outcome.checks.volume_change), 0.002);

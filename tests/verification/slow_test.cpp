@@ -51,8 +51,8 @@ TEST(Slow, ASlowConeKeepsItsConcrete) {
 }
 
 // The L-box at rest on cells of 10 mm: the closed form within 3 % over any 100 mm, in both modes
-// (lbox_test.cpp says where). With side walls at 50 Pa within 5 %: the bed comes to rest steeper, by as much on cells of 5
-// to 10 mm (lbox_study.md).
+// (lbox_test.cpp says where). Between side walls within 1.5 % and what the plug's normal stress may hold, 0.7 % at 15 Pa and
+// 3.3 % at 50 Pa, where floor and walls hold with all they can (lbox_study.md).
 TEST(Slow, TheLBoxRestsOnItsClosedForm) {
   for (bool side_walls : {false, true})
     for (double tau_0 : {15.0, 50.0}) {
@@ -63,7 +63,8 @@ TEST(Slow, TheLBoxRestsOnItsClosedForm) {
       std::printf("%g Pa%s: error %.1f %% rms, worst of 100 mm %.1f %%, ratio %.3f, closed form %.3f\n",
                   tau_0, side_walls ? ", side walls" : "", 100 * error.rms, 100 * error.worst, passing,
                   ratio);
-      const double bound = side_walls && tau_0 == 50.0 ? 0.05 : 0.03;
+      const double bound =
+          side_walls ? 0.015 + lbox_reference::share_of_the_plug(tau_0, form.depth(form.end)) : 0.03;
       EXPECT_LE(error.worst, bound);
       EXPECT_NEAR(passing / ratio, 1.0, bound);
     }

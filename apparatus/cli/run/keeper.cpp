@@ -24,6 +24,7 @@ Keeper::Keeper(const std::filesystem::path& folder, double interval, const repor
   });
   checkpoints_.due = [this] { return is_due(); };
   checkpoints_.keep = [this](const VisitState& state) { keep(state); };
+  checkpoints_.keep_for_longer = [this](const VisitState& state) { keep_for_longer(state); };
   if (from) checkpoints_.restore = [from = *from](const VisitState& state) { report::restore(from, state); };
 }
 
@@ -46,13 +47,22 @@ bool Keeper::is_due() const {
   return writer_ && seconds(Clock::now() - last_) >= wait;
 }
 
+/// With what the run took so far.
+report::RunRequest Keeper::request_now() const {
+  report::RunRequest request = request_;
+  request.wall += seconds(Clock::now() - start_);
+  request.cpu += cpu_seconds();
+  return request;
+}
+
+void Keeper::keep_for_longer(const VisitState& state) {
+  if (writer_) attempt([&] { writer_->end(request_now(), state); });
+}
+
 void Keeper::keep(const VisitState& state) {
   if (!writer_) return;
   const auto begin = Clock::now();
-  report::RunRequest request = request_;
-  request.wall += seconds(begin - start_);
-  request.cpu += cpu_seconds();
-  attempt([&] { writer_->state(request, state); });
+  attempt([&] { writer_->state(request_now(), state); });
   last_ = Clock::now();
   cost_ = seconds(last_ - begin);
 }

@@ -28,6 +28,8 @@ class Keeper {
   using Clock = std::chrono::steady_clock;
   bool is_due() const;
   void keep(const VisitState& state);
+  void keep_for_longer(const VisitState& state);
+  report::RunRequest request_now() const;
   template <class Write>
   void attempt(Write write);
 

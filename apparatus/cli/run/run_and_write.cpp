@@ -155,6 +155,8 @@ int run_and_publish(const scene::Scene& scene, const report::RunRequest& request
   const auto outcome = run_and_write(scene, request, screen != Screen::everything, folder, from, notes);
   if (outcome.status == Status::interrupted && folder.holds_finished_result())
     return leave_finished_result(folder, screen);
+  if (outcome.status == Status::completed)
+    report::keep_for_longer(folder.checkpoint(), folder.staging() / report::for_longer);
   folder.publish();
   if (outcome.status != Status::interrupted) report::remove_checkpoint(folder.target() / "checkpoint");
   print_reasons(outcome);

@@ -135,6 +135,31 @@ std::uint64_t size_of(const fs::path& path) {
 
 constexpr std::size_t sum_size = sizeof(std::uint32_t);
 
+/// Writes a state with what it was asked and the length and sum of its frames; `at_once`: it is on the disk then.
+void write_state(const fs::path& path, bool at_once, RunRequest request, std::uint64_t frames_length,
+                 std::uint32_t frames_sum, const VisitState& state) {
+  const fs::path part = path.string() + ".part";
+  {
+    const File file = open_file(part, "wb");
+    if (!file) io::fail_to_write(part);
+    std::uint64_t length = 0;
+    std::uint32_t sum = 0;
+    Archive archive = writer(file.get(), part, length, sum);
+    std::array<char, 8> begin = magic;
+    std::string written_by = program();
+    archive(begin, written_by, request, frames_length, frames_sum);
+    state(archive);
+    write_or_throw(&sum, sum_size, file.get(), part);
+    if (at_once)
+      bring_to_disk(file.get(), part);
+    else if (std::fflush(file.get()) != 0)
+      io::fail_to_write(part);
+  }
+  std::error_code error;
+  fs::rename(part, path, error);
+  if (error) io::fail_to_write(path);
+}
+
 /// Whether the file ends with the sum over all before.
 bool is_whole(const fs::path& path) {
   const std::uint64_t size = size_of(path);
@@ -171,24 +196,16 @@ void CheckpointWriter::frame(const Frame& frame) {
 
 void CheckpointWriter::state(const RunRequest& request, const VisitState& state) {
   bring_to_disk(frames_, folder_ / "frames");
-  const fs::path path = folder_ / "state", part = folder_ / "state.part";
-  {
-    const File file = open_file(part, "wb");
-    if (!file) io::fail_to_write(part);
-    std::uint64_t length = 0;
-    std::uint32_t sum = 0;
-    Archive archive = writer(file.get(), part, length, sum);
-    std::array<char, 8> begin = magic;
-    std::string written_by = program();
-    RunRequest asked = request;
-    archive(begin, written_by, asked, length_, sum_);
-    state(archive);
-    write_or_throw(&sum, sum_size, file.get(), part);
-    bring_to_disk(file.get(), part);
-  }
-  std::error_code error;
-  fs::rename(part, path, error);
-  if (error) io::fail_to_write(path);
+  write("state", true, request, state);
+}
+
+void CheckpointWriter::end(const RunRequest& request, const VisitState& state) {
+  write("end", false, request, state);
+}
+
+void CheckpointWriter::write(const char* name, bool at_once, const RunRequest& request,
+                             const VisitState& state) {
+  write_state(folder_ / name, at_once, request, length_, sum_, state);
 }
 
 Checkpoint read_checkpoint(const fs::path& folder) {
@@ -213,6 +230,30 @@ Checkpoint read_checkpoint(const fs::path& folder) {
   if (sum_of(folder / "frames", checkpoint.frames_length) != checkpoint.frames_sum)
     refuse_to_resume(folder, "the checkpoint's frames are damaged or cut");
   return checkpoint;
+}
+
+void keep_for_longer(const fs::path& checkpoint, const fs::path& folder) {
+  std::error_code error, ignored;
+  if (!fs::exists(checkpoint / "end", ignored)) return;
+  fs::create_directory(folder, error);
+  if (!error) fs::create_hard_link(checkpoint / "frames", folder / "frames", error);
+  if (error) fs::copy_file(checkpoint / "frames", folder / "frames", error);
+  if (!error) fs::rename(checkpoint / "end", folder / "state", error);
+  if (error) fs::remove_all(folder, ignored);
+}
+
+void ask_for_longer(const Checkpoint& checkpoint, const RunRequest& request) {
+  const fs::path path = checkpoint.folder / "state";
+  constexpr std::size_t block = 4096;
+  const std::size_t size = size_of(path) - sum_size - checkpoint.state_at;
+  std::vector<std::array<char, block>> blocks(size / block);
+  std::vector<char> rest(size % block);
+  const VisitState as_it_stands = [&](Archive& archive) {
+    for (auto& bytes : blocks) archive(bytes);
+    for (char& byte : rest) archive(byte);
+  };
+  restore(checkpoint, as_it_stands);
+  write_state(path, true, request, checkpoint.frames_length, checkpoint.frames_sum, as_it_stands);
 }
 
 void remove_checkpoint(const fs::path& folder) {

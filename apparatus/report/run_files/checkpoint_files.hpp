@@ -5,7 +5,8 @@
 //
 // `state` appears whole or not at all: it is written beside, brought to the disk and renamed. It names the bytes of
 // `frames` that belong to it and their sum, so that what came later is cut off. Both are for the program that wrote
-// them and no other.
+// them and no other. `end` is a state too, the last that the end of the test's time has no part in: a finished run keeps it,
+// with its frames, in a folder of its result.
 
 #include <cstdint>
 #include <cstdio>
@@ -39,8 +40,12 @@ class CheckpointWriter {
 
   void frame(const Frame& frame);
   void state(const RunRequest& request, const VisitState& state);
+  /// For a longer test to go on from.
+  void end(const RunRequest& request, const VisitState& state);
 
  private:
+  void write(const char* name, bool at_once, const RunRequest& request, const VisitState& state);
+
   std::filesystem::path folder_;
   std::uint64_t length_;
   std::uint32_t sum_;
@@ -58,6 +63,12 @@ struct Checkpoint {
 
 /// Throws scene::InputError where it is damaged, cut, or of another version of tremie.
 Checkpoint read_checkpoint(const std::filesystem::path& folder);
+/// Makes a folder with the checkpoint that a longer test goes on from, of the `end` in a run's checkpoint; none where there
+/// is no `end`, or no room.
+void keep_for_longer(const std::filesystem::path& checkpoint, const std::filesystem::path& folder);
+/// Writes another request over that of the checkpoint in a folder. Throws io::WriteError.
+void ask_for_longer(const Checkpoint& checkpoint, const RunRequest& request);
+
 /// Removes a checkpoint that nobody needs any more; one that is half removed is none.
 void remove_checkpoint(const std::filesystem::path& folder);
 /// Fills the state that it was written from.

@@ -55,6 +55,15 @@ inline double passing_ratio(const Profile& profile) {
   return profile.depth(profile.end - 0.05) / profile.depth(-0.05);
 }
 
+/// How far the plug's normal stress, which the closed form leaves out, may take a bed at its yield stress off it: a share of
+/// the depth h. The plug is pressed together before the end wall and stretched behind the gate, by up to tau_0 where the
+/// floor's shear leaves room: sigma_xx - sigma_zz over the depth is up to (pi/2) tau_0 h (Balmforth and Craster, J.
+/// Non-Newtonian Fluid Mech. 84 (1999) 65), which is rho g h times a depth of (pi/2) tau_0 / (rho g); half of that at each end
+/// keeps the volume.
+inline double share_of_the_plug(double tau_0, double h) {
+  return 0.25 * std::numbers::pi * tau_0 / (rho_g * h);
+}
+
 /// Concrete that falls off the column's walls lands within a depth of the gate and may stand there above the
 /// profile: a heap on a deep bed of yield stress tau_0 is a chunk on a cohesive ground, which bears (2 + pi)
 /// tau_0. Depth of such a heap [m].
