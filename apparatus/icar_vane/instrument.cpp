@@ -83,7 +83,7 @@ std::optional<double> couette_reference(const Scene& scene, const Instrument& in
     bingham.tau_0 = static_yield_stress(lambda, bingham.tau_0);
     return reiner_riwlin(bingham, omega, instrument).torque;
   }
-  if (!has_integrated_references() || !part_shares(flow.thixotropy.kinetics).empty()) return std::nullopt;
+  if (!has_integrated_references()) return std::nullopt;
   flow.omega_of_time = [omega](double time) { return omega * start_up(time); };
   const double times[] = {0.0, scene.duration};
   return thixotropic_couette(flow, times, instrument).torque.back();

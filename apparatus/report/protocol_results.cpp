@@ -56,15 +56,38 @@ Json saturation_json(const std::optional<Saturation>& s) {
           {"longest_rest_by_the_shorter_Pa", json_of(s->forecast_of_longest)}};
 }
 
+Json models_json(const Breakdown& b) {
+  Json models = Json::array();
+  for (const Candidate& c : b.candidates)
+    models.push_back({{"name", c.name},
+                      {"parameters", c.parameters},
+                      {"relative_scatter", c.scatter},
+                      {"aicc_difference", json_of(c.difference)},
+                      {"chosen", c.chosen}});
+  return models;
+}
+
 Json breakdown_json(const Breakdown& b) {
   Json times = Json::array(), modes = Json::array();
   for (const BreakdownTime& t : b.times)
     times.push_back({{"section", t.section},
                      {"speed_rev_per_s", t.omega / two_pi},
                      {"shear_rate_per_s", t.rate},
-                     {"half_time_s", t.half_time}});
+                     {"half_time_s", t.half_time},
+                     {"half_time_by_law_s", json_of(t.half_time_by_law)},
+                     {"onset_s", t.onset},
+                     {"breakdown_rate_per_s", json_of(t.breakdown_rate)},
+                     {"relative_scatter", json_of(t.scatter)}});
   for (const BreakdownMode& mode : b.modes) modes.push_back({mode.share, mode.factor});
-  return {{"half_times", times}, {"modes", modes}};
+  return {{"half_times", times}, {"modes", modes}, {"models", models_json(b)}, {"choice", b.choice}};
+}
+
+Json forecasts_json(const std::vector<PeakForecast>& forecasts) {
+  Json list = Json::array();
+  for (const PeakForecast& f : forecasts)
+    list.push_back(
+        {{"rest_s", f.rest}, {"static_yield_stress_Pa", f.measured}, {"by_shorter_rests_Pa", f.forecast}});
+  return list;
 }
 
 }  // namespace
@@ -80,6 +103,7 @@ Json protocol_results(const ProtocolReading& r) {
                         {"static_yield_stress_Pa", a.stress},
                         {"relative_scatter", json_of(a.scatter)},
                         {"saturation", saturation_json(a.saturation)},
+                        {"forecasts", forecasts_json(a.forecasts)},
                         {"rate_short_rests_Pa_per_s", json_of(a.early)},
                         {"rate_long_rests_Pa_per_s", json_of(a.late)}};
   j["breakdown_rate_per_s"] = json_of(r.breakdown.rate);

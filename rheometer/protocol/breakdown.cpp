@@ -1,138 +1,241 @@
 #include "rheometer/protocol/breakdown.hpp"
 
 #include <algorithm>
-#include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
-#include <numbers>
+#include <limits>
+#include <string>
+#include <utility>
 
+#include "rheometer/protocol/joint_fall_fit.hpp"
 #include "rheometer/reference/instrument.hpp"
-#include "rheometer/regression/statistics.hpp"
+#include "rheometer/regression/lack_of_fit.hpp"
+#include "rheometer/regression/random_effects.hpp"
+#include "rheometer/tables/text.hpp"
 
 namespace tremie {
 
 namespace {
 
 constexpr double least_ratio_of_speeds = 2.0;
+constexpr int most_modes = 4;
 
-double end_of(const std::vector<double>& torque) {
-  const std::size_t n = std::max<std::size_t>(1, torque.size() / 20);
-  return median({torque.end() - static_cast<std::ptrdiff_t>(n), torque.end()});
+/// What all fits of a record share.
+struct Falls {
+  FallRows rows;
+  std::vector<double> scatter;  ///< of each fall, by a first fit: weights of all others
+  std::vector<char> left_out;   ///< outliers of the chosen fit
+  double independent = 0.0;     ///< readings, the correlation of their noise taken off
+
+  double aicc(const FallFit& fit) const {
+    return corrected_akaike(mean_square(rows, fit, scatter, left_out), independent,
+                            static_cast<int>(fit.fit.parameters.size()));
+  }
+};
+
+/// Fits by one set of parameters with one mode more each, as far as the rows tell them.
+std::vector<FallFit> fits_by_modes(const FallRows& rows, RateOfFalls rate, const std::vector<double>& scatter,
+                                   int most) {
+  std::vector<FallFit> fits;
+  for (int modes = 1; modes <= most; ++modes) {
+    auto fit = fit_falls(rows, {rate, modes}, scatter, fits.empty() ? nullptr : &fits.back());
+    if (!fit || !tells_shape(*fit)) break;
+    fits.push_back(std::move(*fit));
+  }
+  return fits;
 }
 
-/// The line through ln(1/half time) over ln(rate): its slope is a.
-void find_exponent(Breakdown& b) {
-  std::vector<double> x, y;
-  for (const BreakdownTime& t : b.times) {
-    x.push_back(std::log(t.rate));
-    y.push_back(std::log(std::numbers::ln2 / t.half_time));
+/// Correlation of the noise of successive readings, without what a smooth curve explains; mean over the falls.
+double noise_correlation(const FallRows& rows, const FallFit& fit) {
+  double sum = 0.0;
+  for (std::size_t s = 0; s < rows.falls.size(); ++s) {
+    std::vector<double> time, residual;
+    for (std::size_t i = rows.begin[s]; i < rows.begin[s + 1]; ++i) {
+      if (fit.fit.outlier[i]) continue;
+      time.push_back(rows.falls[s].time[i - rows.begin[s]]);
+      residual.push_back(fit.fit.residual[i]);
+    }
+    sum += lack_of_fit(time, residual).correlation / static_cast<double>(rows.falls.size());
   }
-  const auto [slowest, fastest] = std::minmax_element(x.begin(), x.end());
-  if (x.empty() || *fastest - *slowest < std::log(least_ratio_of_speeds)) {
-    b.notes.push_back("rate_exponent: needs decays at two speeds, one at least twice the other");
-    return;
+  return sum;
+}
+
+/// The number of modes with the smallest AICc, by one set of parameters.
+std::optional<FallFit> best_shape(Falls& falls, RateOfFalls rate) {
+  const std::vector<FallFit> rough = fits_by_modes(falls.rows, rate, {}, 2);
+  if (rough.empty()) return std::nullopt;
+  falls.scatter = rough.back().scatter;
+  const std::vector<FallFit> fits = fits_by_modes(falls.rows, rate, falls.scatter, most_modes);
+  if (fits.empty()) return std::nullopt;
+  falls.left_out = fits.back().fit.outlier;
+  const auto readings =
+      static_cast<double>(std::count(falls.left_out.begin(), falls.left_out.end(), static_cast<char>(0)));
+  falls.independent = effective_number(readings, noise_correlation(falls.rows, fits.back()));
+  return *std::min_element(fits.begin(), fits.end(),
+                           [&](const FallFit& x, const FallFit& y) { return falls.aicc(x) < falls.aicc(y); });
+}
+
+/// The mode with the largest share: it has the factor 1.
+std::size_t main_mode(const std::vector<BreakdownMode>& modes) {
+  const auto largest = std::max_element(modes.begin(), modes.end(),
+                                        [](const auto& x, const auto& y) { return x.share < y.share; });
+  return static_cast<std::size_t>(largest - modes.begin());
+}
+
+/// ln of the rates at which the main mode of each fall breaks down, with their covariance row by row.
+struct LogRates {
+  std::vector<double> value, covariance;
+};
+
+LogRates log_rates_of(const FallFit& f) {
+  const std::size_t all = f.fit.parameters.size(), main = main_mode(modes_of(f));
+  const std::size_t at = f.first_of_shape + main - 1;  // of its factor, where it is not the first
+  const auto covariance = [&](std::size_t i, std::size_t j) { return f.fit.covariance[i * all + j]; };
+  LogRates rates;
+  for (std::size_t i = f.first_of_rate; i < f.first_of_shape; ++i) {
+    rates.value.push_back(f.fit.parameters[i] + (main > 0 ? f.fit.parameters[at] : 0.0));
+    for (std::size_t j = f.first_of_rate; j < f.first_of_shape; ++j)
+      rates.covariance.push_back(
+          covariance(i, j) + (main > 0 ? covariance(i, at) + covariance(at, j) + covariance(at, at) : 0.0));
   }
-  const StraightLine line = straight_line(x, y);
+  return rates;
+}
+
+std::vector<BreakdownMode> relative_to_main(std::vector<BreakdownMode> modes) {
+  const double factor = modes[main_mode(modes)].factor;
+  for (BreakdownMode& mode : modes) mode.factor /= factor;
+  std::sort(modes.begin(), modes.end(), [](const auto& x, const auto& y) { return x.share > y.share; });
+  return modes;
+}
+
+bool has_two_speeds(const std::vector<double>& shear_rate) {
+  const auto [slowest, fastest] = std::minmax_element(shear_rate.begin(), shear_rate.end());
+  return !shear_rate.empty() && *fastest >= least_ratio_of_speeds * *slowest;
+}
+
+void report_law(const Falls& falls, const FallFit& fit, const LogRates& rates, Breakdown& b) {
+  std::vector<double> x;
+  for (const double rate : falls.rows.shear_rate) x.push_back(std::log(rate));
+  const LineOfEstimates line =
+      line_of_estimates(x, rates.value, rates.covariance, fit.fit.degrees_of_freedom);
+  const auto power = [&](double half) { return std::exp(line.intercept + half); };
   b.exponent = ParameterEstimate{line.slope, std::nullopt, false};
-  b.rate = ParameterEstimate{std::exp(line.at(0.0)), std::nullopt, false};
-  if (line.n < 3.0) {
-    b.notes.push_back("rate_exponent: two decays tell no interval");
-    return;
+  b.rate = ParameterEstimate{power(0.0), std::nullopt, false};
+  if (std::isfinite(line.half_of_slope) && std::isfinite(line.half_of_intercept)) {
+    b.exponent->ci95 = Interval{line.slope - line.half_of_slope, line.slope + line.half_of_slope};
+    b.rate->ci95 = Interval{power(-line.half_of_intercept), power(line.half_of_intercept)};
   }
-  const double slope = line.half_width_of_slope(), at_one = line.half_width(0.0);
-  b.exponent->ci95 = Interval{line.slope - slope, line.slope + slope};
-  b.rate->ci95 = Interval{std::exp(line.at(0.0) - at_one), std::exp(line.at(0.0) + at_one)};
+  if (line.between > 0.0)
+    b.notes.push_back(
+        text_of("rate_exponent: the falls' own rates scatter about k gamma_dot^a by %.0f %%, which the "
+                "intervals contain",
+                100.0 * line.between));
   b.notes.push_back(
       "rate_exponent: by the shear rate of a Newtonian fluid at the vane; where a slow vane shears a thinner "
       "layer, "
       "the rates differ by less and a is larger by that share");
 }
 
-/// Scatter of S_end - C e^(-rest/t) at a time t, by the best S_end and C.
-StraightLine bent_line(const std::vector<double>& rest, const std::vector<double>& stress, double time) {
-  std::vector<double> left;
-  for (const double r : rest) left.push_back(std::exp(-r / time));
-  return straight_line(left, stress);
+/// The torque of a fall by the law from its onset on, as it was before.
+std::optional<double> half_time_by_law(const Falls& falls, const FallFit& fit, std::size_t s,
+                                       const Fall& whole, double rate) {
+  Fall by_law = whole;
+  const std::size_t onset = onset_of(whole);
+  for (std::size_t i = onset; i < whole.time.size(); ++i)
+    by_law.torque[i] = fitted_torque(falls.rows, fit, s, whole.time[i] - whole.time[onset], rate);
+  return excess_half_time(by_law);
 }
 
-/// The time with the least scatter, by the golden section over its logarithm; empty: at an end of the range.
-std::optional<double> time_of(const std::vector<double>& rest, const std::vector<double>& stress) {
-  const double longest = *std::max_element(rest.begin(), rest.end());
-  const double first = std::log(0.1 * longest), last = std::log(20.0 * longest);
-  const auto scatter = [&](double u) { return bent_line(rest, stress, std::exp(u)).deviation; };
-  double low = first, high = last;
-  for (int i = 0; i < 80; ++i) {
-    const double step = (high - low) / std::numbers::phi;
-    (scatter(high - step) < scatter(low + step) ? high : low) =
-        scatter(high - step) < scatter(low + step) ? low + step : high - step;
+void report_falls(const std::vector<Fall>& whole, const Falls& falls, const FallFit& fit,
+                  const LogRates& rates, Breakdown& b) {
+  const std::vector<BreakdownMode> modes = modes_of(fit);
+  const double to_fit = 1.0 / modes[main_mode(modes)].factor;
+  for (std::size_t s = 0; s < falls.rows.falls.size(); ++s) {
+    const auto same = [&](const auto& t) { return t.section == falls.rows.falls[s].section; };
+    BreakdownTime& time = *std::find_if(b.times.begin(), b.times.end(), same);
+    time.breakdown_rate = std::exp(rates.value[s]);
+    time.scatter = fit.scatter[s];
+    if (b.rate)
+      time.half_time_by_law =
+          half_time_by_law(falls, fit, s, *std::find_if(whole.begin(), whole.end(), same),
+                           to_fit * b.rate->value * std::pow(time.rate, b.exponent->value));
   }
-  const double u = 0.5 * (low + high);
-  return u - first < 1e-3 || last - u < 1e-3 ? std::nullopt : std::optional(std::exp(u));
+}
+
+/// One set of parameters for all falls, modes added one by one; empty where the falls do not tell it.
+std::optional<FallFit> fit_of_law(const Falls& falls, FallModel model) {
+  const int modes = model.modes;
+  std::optional<FallFit> fit;
+  for (model.modes = 1; model.modes <= modes; ++model.modes) {
+    auto next = fit_falls(falls.rows, model, falls.scatter, fit ? &*fit : nullptr);
+    if (!next) return std::nullopt;
+    fit = std::move(next);
+  }
+  return fit;
+}
+
+/// Roussel's law, its power and rate_power with one mode and with those of `shape`.
+void compare_kinetics(const Falls& falls, const FallFit& shape, Breakdown& b) {
+  std::vector<std::pair<std::string, FallModel>> laws{{"roussel", {RateOfFalls::strain}},
+                                                      {"power", {RateOfFalls::strain, 1, true}},
+                                                      {"rate_power", {RateOfFalls::power}}};
+  if (shape.model.modes > 1) laws.push_back({"rate_power, modes", {RateOfFalls::power, shape.model.modes}});
+  for (const auto& law : laws) {
+    const auto fit = fit_of_law(falls, law.second);
+    if (!fit) continue;
+    Candidate c;
+    c.name = law.first;
+    c.parameters = static_cast<int>(fit->fit.parameters.size());
+    c.scatter = std::sqrt(mean_square(falls.rows, *fit, {}, falls.left_out));
+    c.correlation = fit->fit.correlation;
+    if (const double aicc = falls.aicc(*fit); std::isfinite(aicc)) c.aicc = aicc;
+    b.candidates.push_back(std::move(c));
+  }
+  double least = std::numeric_limits<double>::infinity();
+  for (const Candidate& c : b.candidates) least = std::min(least, c.aicc.value_or(least));
+  for (Candidate& c : b.candidates) {
+    if (!c.aicc) continue;
+    c.difference = *c.aicc - least;
+    c.chosen = *c.aicc == least && b.choice.empty();
+    if (c.chosen)
+      b.choice = text_of("%s: the smallest AICc of %zu laws, each by one set of parameters over all falls",
+                         c.name.c_str(), b.candidates.size());
+  }
 }
 
 }  // namespace
 
-std::optional<double> excess_half_time(const Fall& f) {
-  if (f.torque.size() < 8) return std::nullopt;
-  const double end = end_of(f.torque), half = 0.5 * (f.torque.front() + end);
-  if (!(f.torque.front() - end > 0.1 * f.torque.front())) return std::nullopt;
-  for (std::size_t i = 1; i < f.torque.size(); ++i) {
-    if (f.torque[i] > half) continue;
-    const double share = (f.torque[i - 1] - half) / (f.torque[i - 1] - f.torque[i]);
-    const double time = f.time[i - 1] + share * (f.time[i] - f.time[i - 1]);
-    return time > 0.0 ? std::optional(time) : std::nullopt;
-  }
-  return std::nullopt;
-}
-
-std::vector<BreakdownMode> modes_of_gamma(double m, double t_0, double rate) {
-  // A mode stands for the rates of a half decade, with their mean; the first and the last for all beyond.
-  constexpr int n = RatePowerKinetics::most_modes;
-  std::vector<BreakdownMode> modes;
-  double from = 0.0, below = 0.0, mean_below = 0.0;
-  for (int i = 0; i < n; ++i) {
-    from = rate * t_0 * std::pow(10.0, 0.5 * (i - 3));
-    const double share = i + 1 < n ? boost::math::gamma_p(m, from) : 1.0;
-    const double mean = m * (i + 1 < n ? boost::math::gamma_p(m + 1.0, from) : 1.0);
-    modes.insert(modes.begin(), {share - below, (mean - mean_below) / ((share - below) * t_0 * rate)});
-    below = share, mean_below = mean;
-  }
-  std::erase_if(modes, [](const BreakdownMode& mode) { return !(mode.share > 1e-4); });
-  double sum = 0.0;
-  for (const BreakdownMode& mode : modes) sum += mode.share;
-  for (BreakdownMode& mode : modes) mode.share /= sum;
-  return modes;
-}
-
-Breakdown breakdown_of(const std::vector<Fall>& falls, const Instrument& instrument) {
+Breakdown breakdown_of(const std::vector<Fall>& all, const Instrument& instrument, bool compare) {
   Breakdown b;
-  for (const Fall& f : falls)
-    if (const auto half = excess_half_time(f); half && f.omega > 0.0)
-      b.times.push_back({f.section, f.omega, newtonian_shear_rate(f.omega, instrument), *half});
-  find_exponent(b);
+  std::vector<Fall> whole;
+  std::vector<double> shear_rate;
+  for (const Fall& f : all) {
+    const auto half = excess_half_time(f);
+    if (!half || !(f.omega > 0.0)) continue;
+    whole.push_back(f);
+    shear_rate.push_back(newtonian_shear_rate(f.omega, instrument));
+    b.times.push_back({f.section, f.omega, shear_rate.back(), *half, f.time[onset_of(f)], {}, {}, {}});
+  }
+  Falls falls{rows_of(whole, shear_rate), {}, {}, 0.0};
+  const bool two_speeds = has_two_speeds(falls.rows.shear_rate);
+  if (!two_speeds)
+    b.notes.push_back(
+        "rate_exponent: not identifiable from one speed; it needs decays at two speeds, one at least twice "
+        "the other");
+  if (falls.rows.falls.empty()) return b;
+  // one set of parameters first, so that a mode is the same for all falls; then each fall's own rate near it
+  const auto law = best_shape(falls, two_speeds ? RateOfFalls::power : RateOfFalls::strain);
+  auto fit = law;
+  if (law) fit = fit_falls(falls.rows, {RateOfFalls::of_each, law->model.modes}, falls.scatter, &*law);
+  if (!fit) {
+    b.notes.push_back("breakdown_rate: the falls tell no rate of breakdown");
+    return b;
+  }
+  const LogRates rates = log_rates_of(*fit);
+  if (fit->model.modes > 1) b.modes = relative_to_main(modes_of(*fit));
+  if (two_speeds) report_law(falls, *fit, rates, b);
+  report_falls(whole, falls, *fit, rates, b);
+  if (two_speeds && compare) compare_kinetics(falls, *fit, b);
   return b;
-}
-
-std::optional<Saturation> saturation_of(const std::vector<double>& rest, const std::vector<double>& stress) {
-  if (rest.size() < 4) return std::nullopt;
-  const auto time = time_of(rest, stress);
-  if (!time) return std::nullopt;
-  const StraightLine bent = bent_line(rest, stress, *time), line = straight_line(rest, stress);
-  const double n = static_cast<double>(rest.size());
-  Saturation s;
-  s.end_stress = bent.at(0.0);
-  s.time = *time;
-  const double squares = bent.deviation * bent.deviation * (n - 2.0),
-               of_line = line.deviation * line.deviation * (n - 2.0);
-  s.scatter = std::sqrt(squares / (n - 3.0)) / bent.mean_y;
-  s.chance = fisher_tail((of_line - squares) / std::max(squares / (n - 3.0), 1e-300), 1.0, n - 3.0);
-  const auto longest = std::max_element(rest.begin(), rest.end()) - rest.begin();
-  std::vector<double> shorter = rest, their_stress = stress;
-  shorter.erase(shorter.begin() + longest);
-  their_stress.erase(their_stress.begin() + longest);
-  if (const auto without = time_of(shorter, their_stress))
-    s.forecast_of_longest = bent_line(shorter, their_stress, *without)
-                                .at(std::exp(-rest[static_cast<std::size_t>(longest)] / *without));
-  return s;
 }
 
 }  // namespace tremie

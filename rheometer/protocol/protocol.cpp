@@ -88,39 +88,6 @@ DecayShape read_decay_shape(const std::vector<double>& time, const std::vector<d
   return d;
 }
 
-/// Torque of a decay or of a start-up from its peak on; empty where it has none.
-Fall fall_of(const ProtocolRecord& r, const Section& s, std::size_t number) {
-  Fall fall{s.omega, {}, {}, number};
-  const auto first = r.torque.begin() + static_cast<std::ptrdiff_t>(s.begin);
-  const auto peak = s.kind == SectionKind::constant_rate
-                        ? peak_of(r, s)
-                        : static_cast<std::size_t>(
-                              std::max_element(first, r.torque.begin() + static_cast<std::ptrdiff_t>(s.end)) -
-                              r.torque.begin());
-  for (std::size_t i = peak; i < s.end; ++i) {
-    fall.time.push_back(r.time[i] - r.time[peak]);
-    fall.torque.push_back(r.torque[i]);
-  }
-  return fall;
-}
-
-/// k and a of all sections that fall, with the modes of the fastest.
-Breakdown read_breakdown(const ProtocolRecord& record, const std::vector<SectionReading>& sections,
-                         const Instrument& instrument) {
-  std::vector<Fall> falls;
-  for (std::size_t i = 0; i < sections.size(); ++i)
-    if (sections[i].decay || (sections[i].start_up && sections[i].start_up->peak_inside))
-      falls.push_back(fall_of(record, sections[i].section, i + 1));
-  Breakdown b = breakdown_of(falls, instrument);
-  const auto fastest = std::max_element(b.times.begin(), b.times.end(),
-                                        [](const auto& x, const auto& y) { return x.omega < y.omega; });
-  if (fastest == b.times.end()) return b;
-  const auto& shape = sections[fastest->section - 1].decay;
-  if (shape && shape->power_m && shape->power_t0)
-    b.modes = modes_of_gamma(*shape->power_m, *shape->power_t0, std::numbers::ln2 / fastest->half_time);
-  return b;
-}
-
 /// The integral of the torque over the speed between the two branches, over the speeds that both have.
 std::optional<double> area_between(const ProtocolRecord& r, const Section& up, const Section& down) {
   const auto branch = [&](const Section& s) {
@@ -238,7 +205,9 @@ ProtocolReading read_protocol(const ProtocolRecord& record, const FitInput& inpu
                                "): " + why);
   }
   result.structuration = structuration_of(result.sections);
-  result.breakdown = read_breakdown(record, result.sections, input.instrument);
+  std::vector<Section> sections;
+  for (const SectionReading& s : result.sections) sections.push_back(s.section);
+  result.breakdown = breakdown_of(falls_of(record, sections), input.instrument, input.choose_kinetics);
   return result;
 }
 

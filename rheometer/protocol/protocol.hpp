@@ -9,6 +9,7 @@
 
 #include "rheometer/fits/fit.hpp"
 #include "rheometer/protocol/breakdown.hpp"
+#include "rheometer/protocol/saturation.hpp"
 #include "rheometer/records/sections.hpp"
 
 namespace tremie {
@@ -50,6 +51,7 @@ struct Structuration {
   std::optional<double> scatter;      ///< of the peaks about the line, relative to their mean
   std::optional<double> early, late;  ///< slope between the two shortest and the two longest rests [Pa/s]
   std::optional<Saturation> saturation;
+  std::vector<PeakForecast> forecasts;
   std::vector<double> rest, stress;  ///< what was used [s], [Pa]
   std::vector<std::string> notes;
 };

@@ -125,6 +125,7 @@ Structuration structuration_of(const std::vector<SectionReading>& sections) {
     return rest > 0.0 ? std::optional((result.stress[b] - result.stress[a]) / rest) : std::nullopt;
   };
   result.saturation = saturation_of(result.rest, result.stress);
+  result.forecasts = forecasts_of(result.rest, result.stress);
   result.early = between(order[0], order[1]);
   result.late = between(order[order.size() - 2], order.back());
   if (*result.scatter > 0.05 && result.early && result.late &&

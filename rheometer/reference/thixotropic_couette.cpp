@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "rheometer/reference/kinetics_equations.hpp"
@@ -15,21 +16,35 @@ namespace tremie {
 
 namespace {
 
-/// The discretised gap. Unknowns: lambda at the n nodes, then s = T/(2 pi h R_i^2), the stress at the vane
-/// [Pa].
+/// A part of lambda: its share and the kinetics of lambda_i/share_i.
+struct Part {
+  double share = 1.0;
+  Kinetics kinetics;
+};
+
+/// The discretised gap. Unknowns: the parts of lambda at the n nodes, node by node, then s = T/(2 pi h R_i^2), the stress
+/// at the vane [Pa].
 struct Gap {
   double tau_0 = 0.0, mu = 0.0, build_rate = 0.0, gamma_c = 0.0, dx = 0.0;
-  Kinetics kinetics;
+  std::vector<Part> parts;  ///< one where kinetics have no modes
   bool gated = true, find_gate = true;
   std::vector<double> x, stress_share;  ///< ln(r/R_i) and (R_i/r)^2 of the nodes
   std::vector<char> flowing;            ///< the gate's side, gated alone
   std::function<double(double)> omega;
 
   std::size_t nodes() const { return x.size(); }
+  std::size_t unknowns() const { return nodes() * parts.size(); }  ///< but for s, which stands behind them
+
+  double lambda(std::size_t i, std::span<const double> y) const {
+    const double* part = &y[i * parts.size()];
+    double sum = part[0];
+    for (std::size_t j = 1; j < parts.size(); ++j) sum += part[j];
+    return sum;
+  }
 
   /// Shear rate if the material yields; negative: it does not.
   double excess(std::size_t i, std::span<const double> y) const {
-    return (y[nodes()] * stress_share[i] - (1.0 + y[i]) * tau_0) / mu;
+    return (y[unknowns()] * stress_share[i] - (1.0 + lambda(i, y)) * tau_0) / mu;
   }
 
   bool flows(std::size_t i, double e) const {
@@ -37,8 +52,11 @@ struct Gap {
     return find_gate ? flowing[i] != 0 : e >= gamma_c;
   }
 
-  double rate_of_lambda(std::size_t i, double lambda, double e) const {
-    return kinetics_equations::rate_of_lambda(kinetics, build_rate, lambda, std::max(0.0, e), flows(i, e));
+  /// Of part j, whose value is `value`.
+  double rate_of_part(std::size_t i, std::size_t j, double value, double e) const {
+    const Part& p = parts[j];
+    return p.share * kinetics_equations::rate_of_lambda(p.kinetics, build_rate, value / p.share,
+                                                        std::max(0.0, e), flows(i, e));
   }
 };
 
@@ -86,8 +104,8 @@ double speed_by_stress(const Gap& gap, const std::vector<double>& d_excess) {
 /// Puts the s into y that turns the vane at omega. The speed is convex in s, so Newton from above stays
 /// above.
 void solve_stress(const Gap& gap, std::span<double> y, double omega) {
-  double& s = y[gap.nodes()];
-  s = (1.0 + y[0]) * gap.tau_0 + gap.mu * omega;
+  double& s = y[gap.unknowns()];
+  s = (1.0 + gap.lambda(0, y)) * gap.tau_0 + gap.mu * omega;
   while (speed_of(gap, y, nullptr) < omega) s *= 2.0;
   std::vector<double> d_excess;
   for (int i = 0; i < 100; ++i) {
@@ -103,21 +121,27 @@ void consistent_rates(const Gap& gap, double t, std::span<const double> y, std::
   std::vector<double> d_excess;
   speed_of(gap, y, &d_excess);
   double by_lambda = 0.0;
-  for (std::size_t i = 0; i < gap.nodes(); ++i) {
-    rates[i] = gap.rate_of_lambda(i, y[i], gap.excess(i, y));
-    by_lambda -= d_excess[i] * gap.tau_0 / gap.mu * rates[i];
+  for (std::size_t i = 0, at = 0; i < gap.nodes(); ++i) {
+    const double e = gap.excess(i, y);
+    for (std::size_t j = 0; j < gap.parts.size(); ++j, ++at) {
+      rates[at] = gap.rate_of_part(i, j, y[at], e);
+      by_lambda -= d_excess[i] * gap.tau_0 / gap.mu * rates[at];
+    }
   }
   const double dt = 1e-6, d_omega = (gap.omega(t + dt) - gap.omega(t)) / dt;
-  rates[gap.nodes()] = (d_omega - by_lambda) / speed_by_stress(gap, d_excess);
+  rates[gap.unknowns()] = (d_omega - by_lambda) / speed_by_stress(gap, d_excess);
 }
 
 int residual(sunrealtype t, N_Vector y_vector, N_Vector rates_vector, N_Vector result, void* user) {
   const Gap& gap = *static_cast<const Gap*>(user);
   const std::span<double> y = values(y_vector), rates = values(rates_vector), f = values(result);
-  for (std::size_t i = 0; i < gap.nodes(); ++i)
-    f[i] = rates[i] - gap.rate_of_lambda(i, y[i], gap.excess(i, y));
-  f[gap.nodes()] = speed_of(gap, y, nullptr) - gap.omega(t);
-  return std::isfinite(f[gap.nodes()]) ? 0 : 1;  // 1: IDA tries a smaller step
+  for (std::size_t i = 0, at = 0; i < gap.nodes(); ++i) {
+    const double e = gap.excess(i, y);
+    for (std::size_t j = 0; j < gap.parts.size(); ++j, ++at)
+      f[at] = rates[at] - gap.rate_of_part(i, j, y[at], e);
+  }
+  f[gap.unknowns()] = speed_of(gap, y, nullptr) - gap.omega(t);
+  return std::isfinite(f[gap.unknowns()]) ? 0 : 1;  // 1: IDA tries a smaller step
 }
 
 int distance_to_gate(sunrealtype, N_Vector y_vector, N_Vector, sunrealtype* g, void* user) {
@@ -127,9 +151,55 @@ int distance_to_gate(sunrealtype, N_Vector y_vector, N_Vector, sunrealtype* g, v
   return 0;
 }
 
-/// Newton's system is an arrow: each lambda_i couples to itself and to s, the constraint to all. Eliminating
-/// the lambda_i leaves one equation for s, so a solve costs O(n) where a dense factorisation would cost
-/// O(n^3).
+/// The block of a node in Newton's system: diag(diagonal) + by_sum 1^T over its parts, as the shear rate hangs on their
+/// sum; `column` by s. A node of one part is a number, by_sum in its diagonal.
+struct NodeBlock {
+  std::span<double> diagonal, by_sum, column;
+};
+
+void fill_block(const Gap& gap, std::size_t i, std::span<const double> y, double cj, const NodeBlock& block) {
+  const double e = gap.excess(i, y);
+  for (std::size_t j = 0; j < gap.parts.size(); ++j) {
+    const Part& p = gap.parts[j];
+    const auto d = kinetics_equations::derivatives_of(
+        p.kinetics, gap.build_rate, y[i * gap.parts.size() + j] / p.share, std::max(0.0, e), gap.flows(i, e));
+    const double by_rate = p.share * d.broken_by_rate;
+    block.diagonal[j] = cj - d.build_by_lambda;
+    block.by_sum[j] = block.column[j] = 0.0;
+    if (!(e > 0.0)) continue;
+    block.column[j] = d.k * by_rate * gap.stress_share[i] / gap.mu;
+    if (gap.parts.size() > 1) block.by_sum[j] = -d.k * by_rate * gap.tau_0 / gap.mu;
+    const double of_rate = gap.parts.size() > 1 ? 0.0 : by_rate * gap.tau_0 / gap.mu;
+    block.diagonal[j] += d.k * (d.broken_by_lambda - of_rate);
+  }
+}
+
+/// block^-1 (b - column x_s), by Sherman and Morrison.
+void solve_block(const NodeBlock& block, std::span<const double> b, double x_s, std::span<double> x) {
+  double sum = 0.0, by_sum = 1.0;
+  for (std::size_t j = 0; j < x.size(); ++j) {
+    x[j] = (b[j] - block.column[j] * x_s) / block.diagonal[j];
+    sum += x[j];
+    by_sum += block.by_sum[j] / block.diagonal[j];
+  }
+  if (x.size() == 1) return;
+  for (std::size_t j = 0; j < x.size(); ++j) x[j] -= block.by_sum[j] / block.diagonal[j] * sum / by_sum;
+}
+
+/// Sums over the parts of block^-1 column and of block^-1 b, each times `row`.
+std::pair<double, double> eliminated(const NodeBlock& block, std::span<const double> b, double row) {
+  if (b.size() == 1) return {row * block.column[0] / block.diagonal[0], row * b[0] / block.diagonal[0]};
+  double column = 0.0, right = 0.0, by_sum = 1.0;
+  for (std::size_t j = 0; j < b.size(); ++j) {
+    column += block.column[j] / block.diagonal[j];
+    right += b[j] / block.diagonal[j];
+    by_sum += block.by_sum[j] / block.diagonal[j];
+  }
+  return {row * column / by_sum, row * right / by_sum};
+}
+
+/// Newton's system is an arrow: the parts of a node couple among themselves and to s, the constraint to all. Eliminating
+/// them leaves one equation for s, so a solve costs O(n) where a dense factorisation would cost O(n^3).
 int solve_arrow(SUNLinearSolver solver, SUNMatrix, N_Vector x_vector, N_Vector b_vector, sunrealtype) {
   void* memory = solver->content;
   sunrealtype t = 0.0, cj = 0.0;
@@ -139,29 +209,28 @@ int solve_arrow(SUNLinearSolver solver, SUNMatrix, N_Vector x_vector, N_Vector b
                             &user);
   const Gap& gap = *static_cast<const Gap*>(user);
   const std::span<double> y = values(y_vector), x = values(x_vector), b = values(b_vector);
-  const std::size_t n = gap.nodes();
+  const std::size_t n = gap.unknowns(), parts = gap.parts.size();
 
-  thread_local std::vector<double> d_excess, diagonal, column;
+  thread_local std::vector<double> d_excess, blocks;
   speed_of(gap, y, &d_excess);
-  diagonal.assign(n, cj);
-  column.assign(n, 0.0);
+  blocks.resize(3 * n);
+  const auto block_at = [&](std::size_t at) {
+    const std::span<double> all(blocks);
+    return NodeBlock{all.subspan(at, parts), all.subspan(n + at, parts), all.subspan(2 * n + at, parts)};
+  };
   double pivot = speed_by_stress(gap, d_excess), right = b[n];
-  for (std::size_t i = 0; i < n; ++i) {
-    const double e = gap.excess(i, y);
-    const auto d = kinetics_equations::derivatives_of(gap.kinetics, gap.build_rate, y[i], std::max(0.0, e),
-                                                      gap.flows(i, e));
-    diagonal[i] -= d.build_by_lambda;
-    if (e > 0.0) {
-      diagonal[i] += d.k * (d.broken_by_lambda - d.broken_by_rate * gap.tau_0 / gap.mu);
-      column[i] = d.k * d.broken_by_rate * gap.stress_share[i] / gap.mu;
-    }
+  for (std::size_t i = 0; i < gap.nodes(); ++i) {
+    const NodeBlock block = block_at(i * parts);
+    fill_block(gap, i, y, cj, block);
     const double row = -d_excess[i] * gap.tau_0 / gap.mu;
-    pivot -= row * column[i] / diagonal[i];
-    right -= row * b[i] / diagonal[i];
+    const std::pair<double, double> gone = eliminated(block, b.subspan(i * parts, parts), row);
+    pivot -= gone.first;
+    right -= gone.second;
   }
   if (!(std::abs(pivot) > 0.0)) return 1;  // recoverable: IDA tries a smaller step
   x[n] = right / pivot;
-  for (std::size_t i = 0; i < n; ++i) x[i] = (b[i] - column[i] * x[n]) / diagonal[i];
+  for (std::size_t at = 0; at < n; at += parts)
+    solve_block(block_at(at), b.subspan(at, parts), x[n], x.subspan(at, parts));
   return 0;
 }
 
@@ -189,8 +258,6 @@ void check(const CouetteFlow& flow) {
     throw std::invalid_argument("the yield stress and the plastic viscosity must be greater than 0");
   if (!flow.omega_of_time && !positive(flow.omega))
     throw std::invalid_argument("the speed must be greater than 0");
-  if (!part_shares(flow.thixotropy.kinetics).empty())
-    throw std::invalid_argument("the Couette reference takes kinetics of one time, without modes");
   kinetics_equations::check(flow.thixotropy, flow.thixotropy.initial_flocculation);
 }
 
@@ -200,7 +267,8 @@ Gap make_gap(const CouetteFlow& flow, double width, const CouetteOptions& option
   gap.tau_0 = flow.bingham.tau_0;
   gap.mu = flow.bingham.mu;
   gap.build_rate = t.A_thix / flow.bingham.tau_0;
-  gap.kinetics = t.kinetics;
+  for (const BreakdownMode& mode : kinetics_equations::modes_of(t.kinetics))
+    if (mode.share > 0.0) gap.parts.push_back({mode.share, kinetics_equations::of_part(t.kinetics, mode)});
   gap.gated = gate(t.kinetics).has_value();
   gap.gamma_c = gate(t.kinetics).value_or(0.0);
   gap.find_gate = options.find_gate;
@@ -218,14 +286,14 @@ class Integrator {
  public:
   Integrator(Gap gap, double lambda, const CouetteOptions& options)
       : gap_(std::move(gap)),
-        y_(gap_.nodes() + 1, context_),
-        rates_(gap_.nodes() + 1, context_),
+        y_(gap_.unknowns() + 1, context_),
+        rates_(gap_.unknowns() + 1, context_),
         memory_(IDACreate(context_.get)),
         solver_(arrow_solver(memory_.get(), context_)) {
     const std::span<double> y = values(y_.get);
-    std::fill(y.begin(), y.end(), lambda);
+    for (std::size_t i = 0; i < gap_.unknowns(); ++i) y[i] = gap_.parts[i % gap_.parts.size()].share * lambda;
     solve_stress(gap_, y, gap_.omega(0.0));
-    if (!std::isfinite(y[gap_.nodes()])) throw std::runtime_error("the Couette flow has no finite torque");
+    if (!std::isfinite(y[gap_.unknowns()])) throw std::runtime_error("the Couette flow has no finite torque");
     for (std::size_t i = 0; i < gap_.nodes(); ++i) gap_.flowing.push_back(gap_.excess(i, y) >= gap_.gamma_c);
     consistent_rates(gap_, 0.0, y, values(rates_.get));
     void* m = memory_.get();
@@ -256,14 +324,14 @@ class Integrator {
 
   void report(double t, bool keep_profile, const Instrument& in, CouetteDecay& result) const {
     const std::span<const double> y = values(y_.get);
-    const double r_i = in.vane_radius, s = y[gap_.nodes()];
+    const double r_i = in.vane_radius, s = y[gap_.unknowns()];
     result.time.push_back(t);
     result.torque.push_back(s * 2.0 * std::numbers::pi * r_i * r_i * in.vane_height);
     result.sheared_radius.push_back(r_i * std::exp(sheared_x(y)));
     if (!keep_profile) return;
     CouetteProfile& profile = result.profile.emplace_back();
     for (std::size_t i = 0; i < gap_.nodes(); ++i) {
-      profile.lambda.push_back(y[i]);
+      profile.lambda.push_back(gap_.lambda(i, y));
       profile.gamma_dot.push_back(std::max(0.0, gap_.excess(i, y)));
     }
   }

@@ -7,7 +7,8 @@
 //   int gamma_dot/r dr = Omega(t)                                                                     no slip
 //   d lambda/dt = A_thix/tau_0 - alpha lambda gamma_dot                                               equation (3),
 //
-// or any other kinetics of kinetics_equations.hpp. Material moves in circles, so every radius keeps its own lambda.
+// or any other kinetics of kinetics_equations.hpp; with modes lambda is the sum of parts, each with an equation of its own.
+// Material moves in circles, so every radius keeps its own lambda.
 //
 // Discretised on equal intervals of x = ln(r/R_i), where the constraint is int gamma_dot dx: lambda at the
 // nodes, the excess stress linear between them, its positive part integrated exactly (the plug's edge lies

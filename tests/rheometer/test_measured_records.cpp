@@ -71,9 +71,23 @@ TEST(MeasuredRecord, ThePasteIsReadSectionBySection) {
   ASSERT_TRUE(r.structuration.saturation && r.structuration.saturation->forecast_of_longest);
   EXPECT_NEAR(*r.structuration.saturation->forecast_of_longest, 1463.0, 307.0);
   EXPECT_LT(r.structuration.saturation->chance, 0.01);
-  // Speeds differ by 346, half times by some 1.6: far from a = 1, breakdown by strain.
+  // The peaks after 240 and 480 s by the shorter rests, within the scatter that the source's other records have.
+  ASSERT_EQ(r.structuration.forecasts.size(), 2u);
+  EXPECT_NEAR(r.structuration.forecasts[0].forecast, r.structuration.forecasts[0].measured, 207.0);
+  EXPECT_NEAR(r.structuration.forecasts[1].forecast, r.structuration.forecasts[1].measured, 307.0);
+  // Speeds differ by 346, half times by some 1.6: far from a = 1, breakdown by strain. One set of modes describes the
+  // decay at 40 rpm within 2 %; k and a give every half time within a fifth, as far as the start-ups differ among them.
   ASSERT_TRUE(r.breakdown.exponent && r.breakdown.exponent->ci95);
   EXPECT_LT(r.breakdown.exponent->ci95->high, 0.5);
+  EXPECT_LT(r.breakdown.exponent->ci95->low, 0.1);
+  EXPECT_GE(r.breakdown.modes.size(), 2u);
+  EXPECT_LT(*r.breakdown.times.front().scatter, 0.02);
+  for (const BreakdownTime& t : r.breakdown.times)
+    EXPECT_NEAR(t.half_time_by_law.value_or(t.half_time), t.half_time, 0.2 * t.half_time) << t.section;
+  ASSERT_GE(r.breakdown.candidates.size(), 4u);
+  EXPECT_EQ(r.breakdown.candidates.front().name, "roussel");
+  EXPECT_GT(*r.breakdown.candidates.front().difference, 50.0);
+  EXPECT_TRUE(r.breakdown.candidates.back().chosen);
 }
 
 TEST(MeasuredRecord, StepsRampsAndAClockThatStartsAgain) {

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "rheometer/reference/flocculation_ode.hpp"
@@ -152,6 +153,37 @@ TEST(ThixotropicCouette, FollowsAChangingSpeed) {
   const CouetteDecay d = thixotropic_couette(flow, times);
   for (std::size_t i = 0; i < times.size(); ++i)
     EXPECT_NEAR(d.torque[i] / reiner_riwlin(mix_a, flow.omega_of_time(times[i])).torque, 1.0, 2e-5);
+}
+
+Thixotropy in_modes(std::vector<BreakdownMode> modes) {
+  return {1.3, RatePowerKinetics{0.3, 0.4, 0.0, 1.0, 20.0, std::move(modes)}, rested};
+}
+
+// Two modes with one factor are one mode: the difference is the integrator's tolerance.
+TEST(ThixotropicCouette, EqualModesAreOne) {
+  const std::vector<double> times{0.0, 1.0, 5.0, 20.0};
+  const CouetteDecay one = thixotropic_couette({mix_a, in_modes({}), angular_speed(0.25), {}}, times);
+  const CouetteDecay two =
+      thixotropic_couette({mix_a, in_modes({{0.3, 1.0}, {0.7, 1.0}}), angular_speed(0.25), {}}, times);
+  for (std::size_t i = 0; i < times.size(); ++i)
+    EXPECT_NEAR(two.torque[i] / one.torque[i], 1.0, 1e-6) << times[i];
+}
+
+// In a gap of 1e-5 of its radius the shear is even and constant, and each mode follows CVODE: tau = (1 + lambda) tau_0 + mu
+// gamma_dot within the gap's 1e-5 and IDA's tolerance.
+TEST(ThixotropicCouette, ModesInANarrowGapFollowCvode) {
+  const Thixotropy t = in_modes({{0.5, 1.0}, {0.3, 0.1}, {0.2, 10.0}});
+  const std::vector<double> times{0.0, 0.1, 1.0, 10.0, 60.0};
+  const double rate = 3.0;
+  CouetteOptions o;
+  o.intervals = 20;
+  const CouetteDecay d =
+      thixotropic_couette({mix_a, t, rate * evenly_sheared_speed, {}}, times, evenly_sheared(), o);
+  const ShearPiece piece{60.0, [rate](double) { return rate; }};
+  const OdeResult exact = flocculation_ode(std::vector{piece}, t, mix_a.tau_0, rested, times);
+  for (std::size_t i = 0; i < times.size(); ++i)
+    EXPECT_NEAR(d.torque[i] / ((1.0 + exact.lambda[i]) * mix_a.tau_0 + mix_a.mu * rate), 1.0, 5e-5)
+        << times[i];
 }
 
 TEST(ThixotropicCouette, RefusesWhatHasNoMeaning) {

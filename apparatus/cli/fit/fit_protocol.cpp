@@ -56,6 +56,22 @@ std::string summary_line(const SectionReading& s, bool stress) {
   return text.substr(0, text.size() - 2);
 }
 
+void print_fall(const BreakdownTime& t) {
+  std::string text = fmt::format("section {}, {:.3g} 1/s: half of the excess lost after {:.3g} s", t.section,
+                                 t.rate, t.half_time);
+  if (t.half_time_by_law) text += fmt::format(", {:.3g} s by k and a", *t.half_time_by_law);
+  if (t.scatter) text += fmt::format("; scatter {:.2g} %", 100.0 * *t.scatter);
+  say("{:<22} {}\n", "", text);
+}
+
+void print_modes(const Breakdown& b) {
+  if (b.modes.empty()) return;
+  std::string text;
+  for (const BreakdownMode& mode : b.modes)
+    text += fmt::format("{}[{:.3g}, {:.3g}]", text.empty() ? "" : ", ", mode.share, mode.factor);
+  say("{:<22} [{}]\n", "modes (share, factor)", text);
+}
+
 }  // namespace
 
 void print_protocol(const ProtocolReading& r) {
@@ -81,9 +97,11 @@ void print_protocol(const ProtocolReading& r) {
         100.0 * r.structuration.scatter.value_or(0.0));
   print_estimate("breakdown rate k", r.breakdown.rate, "1/s");
   print_estimate("rate exponent a", r.breakdown.exponent, "");
-  for (const BreakdownTime& t : r.breakdown.times)
-    say("{:<22} section {}, {:.3g} 1/s: half of the excess lost after {:.3g} s\n", "", t.section, t.rate,
-        t.half_time);
+  for (const BreakdownTime& t : r.breakdown.times) print_fall(t);
+  print_modes(r.breakdown);
+  for (const Candidate& c : r.breakdown.candidates)
+    say("{:<22} {}: {} parameters, scatter {:.2g} %, AICc {:+.1f}\n", "", c.name, c.parameters,
+        100.0 * c.scatter, c.difference.value_or(0.0));
   for (const auto& note : r.breakdown.notes) say("{:<22} {}\n", "note", note);
   for (const auto& note : r.structuration.notes) say("{:<22} {}\n", "note", note);
 }
