@@ -70,8 +70,11 @@ std::optional<FallFit> best_shape(Falls& falls, RateOfFalls rate) {
   const auto readings =
       static_cast<double>(std::count(falls.left_out.begin(), falls.left_out.end(), static_cast<char>(0)));
   falls.independent = effective_number(readings, noise_correlation(falls.rows, fits.back()));
-  return *std::min_element(fits.begin(), fits.end(),
-                           [&](const FallFit& x, const FallFit& y) { return falls.aicc(x) < falls.aicc(y); });
+  const auto best = std::min_element(fits.begin(), fits.end(), [&](const FallFit& x, const FallFit& y) {
+    return falls.aicc(x) < falls.aicc(y);
+  });
+  return std::isfinite(falls.aicc(*best)) ? *best
+                                          : fits.back();  // smooth misfits leave nothing to penalise by
 }
 
 /// The mode with the largest share: it has the factor 1.
