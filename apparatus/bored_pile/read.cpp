@@ -5,7 +5,7 @@
 #include "apparatus/bored_pile/pour.hpp"
 #include "apparatus/run/body_readings.hpp"
 #include "libmpm/implicit/step_size.hpp"
-#include "rheometer/reference/pipe_flow.hpp"
+#include "apparatus/parts/pipe_flow.hpp"
 
 namespace tremie::bored_pile {
 namespace {

@@ -21,6 +21,8 @@ StepSettings step_settings(const Scene& scene) {
   settings.moving_surface = true;
   settings.alternating_viscosity = alternating_viscosity;
   settings.wall_law = scene.walls;
+  // Newton's method would leave the pressure of stiff concrete where it was.
+  if (settings.method == YieldMethod::automatic) settings.method = YieldMethod::admm;
   settings.time_error = 0.002 * scene.model.step_scale * scene.model.step_scale;
   settings.dt_longest = longest_step * scene.model.step_scale;
   return settings;
