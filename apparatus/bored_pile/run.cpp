@@ -94,17 +94,17 @@ scene::SizeEstimate estimate(const Scene& scene) {
   experiment::refuse_what_has_no_engine(scene.model, "bored pile");
   const Pour pour = start_of(scene);
   const auto& axes = pour.body.grid.axes;
-  const auto [n, n_up] = scene.model.points_per_cell;
   scene::SizeEstimate e;
   e.cells_active = experiment::whole_steps(axes[0].n_cells * scene.depth / axes[1].h);
-  e.points = e.cells_active * n * n_up;
+  const Inlet::Column& column = pour.inlet.columns.front();
+  e.points = experiment::whole_steps(pile_volume(scene) / (column.area * pour.inlet.row));
   e.bytes_per_point = bytes_per_point<2>(scene.mix.thixotropy.has_value());
   const double step = StepSettings{}.cfl * axes[1].h / (scene.rate * pour.inlet.node_speed);
   e.time_expected = pour_time(scene);
   e.steps = e.steps_expected =
       experiment::whole_steps(scene.model.time_step ? e.time_expected / *scene.model.time_step
-                                                    : pile_volume(scene) / scene.rate / step);
-  e.point_step = 1e-6;
+                                                    : 1.5 * pile_volume(scene) / scene.rate / step);
+  e.point_step = 0.7e-6;  // of the points at the end, of which half are there in the mean
   return e;
 }
 

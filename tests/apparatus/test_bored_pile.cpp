@@ -39,6 +39,7 @@ pause = "30 s"
 volume = "0.1 m3"
 [model]
 cell = "40 mm"
+points_per_cell = 3
 [output]
 frames = false
 )";
