@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "apparatus/bored_pile/bored_pile.hpp"
-#include "libmpm/boundary/inlet.hpp"
+#include "libmpm/boundary/openings/inlet.hpp"
 #include "libmpm/constitutive/constants.hpp"
 #include "libmpm/implicit/step.hpp"
 

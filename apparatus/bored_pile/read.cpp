@@ -5,7 +5,7 @@
 #include "apparatus/bored_pile/pour.hpp"
 #include "apparatus/run/body_readings.hpp"
 #include "libmpm/implicit/step_size.hpp"
-#include "rheometer/reference/pipe_flow.hpp"
+#include "apparatus/parts/pipe_flow.hpp"
 
 namespace tremie::bored_pile {
 namespace {
@@ -53,6 +53,13 @@ Levels levels(const Pour& pour) {
   return levels;
 }
 
+/// Mean height of the surface beside the pipe [m].
+double surface_of(const Scene& scene, const Pour& pour, const Levels& levels) {
+  const double r = pipe_radius(pour);
+  return (levels.volume + volume_waiting(pour.inlet) - std::numbers::pi * r * r * mouth_of(pour)) /
+         section_of(scene, pour);
+}
+
 /// Mean of a number of the points that are chosen, by volume; empty where none is.
 template <class Chosen, class Number>
 std::optional<double> mean_over(const Pour& pour, Chosen chosen, Number number) {
@@ -87,8 +94,8 @@ double head_needed(const Scene& scene, const Pour& pour, double at_mouth) {
 }
 
 /// Largest static yield stress of the points within a cell of the surface [Pa].
-double stress_of_surface(const Scene& scene, const Pour& pour) {
-  const double from = mean_level(scene, pour) - pour.body.grid.axes[1].h;
+double stress_of_surface(const Scene& scene, const Pour& pour, double surface) {
+  const double from = surface - pour.body.grid.axes[1].h;
   double largest = scene.mix.tau_0;
   const auto& points = pour.body.points;
   for (std::size_t p = 0; p < points.lambda.size(); ++p)
@@ -139,7 +146,7 @@ Sample read(const Scene& scene, const StepReport& step, Pour& pour) {
   now.mouth = mouth_of(pour), now.pressure_mouth = pressure_at_mouth(scene, pour);
   if (pour.inlet.flow > 0.0) now.head = head_needed(scene, pour, now.pressure_mouth);
   now.load = static_cast<double>(load_at(scene, pour.placed) + 1);
-  now.surface_stress = stress_of_surface(scene, pour);
+  now.surface_stress = stress_of_surface(scene, pour, surface_of(scene, pour, level));
   now.max_speed = step.max_speed, now.shear_rate_mean = step.shear_rate_mean;
   now.flocculation_mean = experiment::mean_flocculation(body.points);
   now.volume_change = experiment::volume_change(body.points);
@@ -156,7 +163,9 @@ void read_results(const Scene& scene, const Pour& pour, const std::vector<Sample
   const auto& points = pour.body.points;
   const double level = mean_level(scene, pour);
   r.level_end = level, r.placed = pour.placed;
-  r.volume_error = levels(pour).volume / (pour.placed - volume_waiting(pour.inlet)) - 1.0;
+  const Levels under = levels(pour);
+  const double surface = surface_of(scene, pour, under);
+  r.volume_error = under.volume / (pour.placed - volume_waiting(pour.inlet)) - 1.0;
   double head = 0.0;
   for (const Sample& s : series) {
     head = std::max(head, s.head.value_or(0.0));
@@ -169,10 +178,10 @@ void read_results(const Scene& scene, const Pour& pour, const std::vector<Sample
   double top = 0.0, cover = 0.0;
   for (std::size_t p = 0; p < points.size(); ++p) {
     const double V = points.volume(p);
-    if (points.x[p][1] > level - 1.0) top += V, r.plug_share += pour.load[p] == 1.0 ? V : 0.0;
+    if (points.x[p][1] > surface - 1.0) top += V, r.plug_share += pour.load[p] == 1.0 ? V : 0.0;
     if (points.x[p][0] > scene.radius - cover_depth)
       cover += V, r.cover[static_cast<std::size_t>(pour.load[p]) - 1] += V;
-    if (points.x[p][1] > level - pour.body.grid.axes[1].h)
+    if (points.x[p][1] > surface - pour.body.grid.axes[1].h)
       r.oldest_at_surface = std::max(r.oldest_at_surface, pour.body.time - pour.batched[p]);
   }
   r.plug_share /= top;

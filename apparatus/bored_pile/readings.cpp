@@ -120,7 +120,7 @@ std::string washed(const View& v) {
 }
 
 std::string crowded(const View& v) {
-  constexpr double most = 0.03;
+  constexpr double most = 0.01;
   if (std::abs(v.r.volume_error) <= most) return {};
   return fmt::format(
       "the points crowd: the volume under the surface is {:+.1f} % off what was placed, more than {:g} %: "

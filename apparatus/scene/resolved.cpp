@@ -139,7 +139,12 @@ std::string write_template(const ApparatusKeys& apparatus) {
   for (const Preset& preset : apparatus.presets)
     text +=
         with_comment(fmt::format("# preset = \"{}\"", preset.name), "values in place of the defaults below");
+  const auto nothing_to_show = [](const Key& key) {
+    const std::string value = template_value(key);
+    return (value.empty() || value == "\"\"") && !key.required;
+  };
   for (const Section& section : apparatus.schema) {
+    if (section.optional && std::all_of(section.keys.begin(), section.keys.end(), nothing_to_show)) continue;
     if (!section.name.empty())
       text += fmt::format("\n# {}\n{}{}{}\n", section.help, section.repeated ? "[[" : "[", section.name,
                           section.repeated ? "]]" : "]");

@@ -4,6 +4,9 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <variant>
+#include <vector>
 
 #include "apparatus/registry/registry.hpp"
 
@@ -20,8 +23,8 @@ plastic_viscosity = "30 Pa.s"
 radius = "0.3 m"
 depth = "1.2 m"
 [pipe]
-inner_radius = "50 mm"
-outer_radius = "55 mm"
+inner_radius = "75 mm"
+outer_radius = "82 mm"
 embedment = ["0.2 m", "0.5 m"]
 pull = "0.25 m"
 start = "0.1 m"
@@ -36,6 +39,7 @@ pause = "30 s"
 volume = "0.1 m3"
 [model]
 cell = "40 mm"
+points_per_cell = 3
 [output]
 frames = false
 )";
@@ -48,21 +52,22 @@ double result(const scene::Outcome& outcome, const char* name) {
   return std::get<double>(*scene::find_result(outcome, name));
 }
 
-// What was placed is what stands in the pile, within 0.1 % of its volume; the level is that of the volume beside the pipe
-// (its radius on the grid is within 10 % of 55 mm); at rest the wall bears the weight of concrete and fluid above it
-// (2400 and 1100 kg/m3), which the flow may raise by its yield stress over the gap, 2 tau_0 H/(R - r).
+// Every point that entered is there, and the loads are placed in full; the level is that of the volume beside the pipe. The
+// surface is read to a fraction of a cell of 40 mm in a pile of 1.2 m: its volume within 0.5 % of what was placed. At rest the
+// wall bears the weight of concrete and fluid above it (2400 and 1100 kg/m3), which the flow may raise by its yield stress over
+// the gap, 2 tau_0 H/(R - r), and its viscosity.
 TEST(BoredPile, HoldsWhatWasPlaced) {
   const scene::Outcome outcome = run();
   EXPECT_TRUE(outcome.checks.reasons.empty()) << outcome.checks.reasons.front();
   EXPECT_NEAR(result(outcome, "placed_m3"), 0.3, 1e-9);
-  EXPECT_LE(std::abs(result(outcome, "volume_error")), 1e-3);
+  EXPECT_LE(std::abs(result(outcome, "volume_error")), 5e-3);
   const double level = result(outcome, "level_end_m"), g = 9.80665, area = std::numbers::pi * 0.3 * 0.3;
   EXPECT_GT(level, 0.3 / area);
-  EXPECT_LT(level, 0.3 / (area - std::numbers::pi * 0.06 * 0.06));
-  EXPECT_LE(std::abs(outcome.checks.mass_error), 1e-3);
+  EXPECT_LT(level, 0.3 / (area - std::numbers::pi * 0.09 * 0.09));
+  EXPECT_LE(std::abs(outcome.checks.mass_error), 1e-9);
   const double at_rest = 1100.0 * g * 1.2 + 1300.0 * g * level;
   EXPECT_GT(result(outcome, "wall_pressure_max_Pa"), 0.97 * at_rest);
-  EXPECT_LT(result(outcome, "wall_pressure_max_Pa"), at_rest + 2.0 * 50.0 * level / 0.24 + 500.0);
+  EXPECT_LT(result(outcome, "wall_pressure_max_Pa"), at_rest + 2.0 * 50.0 * level / 0.22 + 1000.0);
   double cover = 0.0;
   for (const auto& [name, share] :
        std::get<std::vector<scene::Result>>(*scene::find_result(outcome, "cover")))
@@ -77,7 +82,7 @@ TEST(BoredPile, TellsTheHead) {
   const double head = result(outcome, "head_needed_m");
   const auto* mouth = scene::find_column(outcome.series, "mouth_m");
   EXPECT_GT(head, (1100.0 * (1.2 - mouth->values.front())) / 2400.0);
-  EXPECT_LT(head, 1.2);
+  EXPECT_LT(head, 2.0);
   EXPECT_TRUE(std::get<bool>(*scene::find_result(outcome, "head_suffices")));
 }
 
@@ -95,10 +100,10 @@ TEST(BoredPile, StopsWhereNoHeadSuffices) {
 TEST(BoredPile, PoursAFluid) {
   const scene::Outcome outcome = run({"mix.yield_stress=0 Pa"});
   EXPECT_TRUE(outcome.checks.reasons.empty()) << outcome.checks.reasons.front();
-  EXPECT_LE(std::abs(result(outcome, "volume_error")), 1e-3);
+  EXPECT_LE(std::abs(result(outcome, "volume_error")), 5e-3);
 }
 
-// Concrete that waits in a pause gains A_thix times the pause (30 s of 2 Pa/s) where nothing shears it.
+// Concrete at the surface rides up unsheared and gains A_thix for as long, the pause of 30 s included: more than 60 Pa at 2 Pa/s.
 TEST(BoredPile, SurfaceGainsStrengthInAPause) {
   const scene::Outcome outcome =
       run({"mix.thixotropy.structuration_rate=2 Pa/s", "mix.thixotropy.destructuration=0.1"});
@@ -113,7 +118,7 @@ TEST(BoredPile, TellsOldConcreteAndAWashedMouth) {
 }
 
 TEST(BoredPile, RefusesWhatCannotBePoured) {
-  for (const char* set : {"pipe.outer_radius=0.3 m", "pipe.inner_radius=60 mm", "pipe.pull=0.4 m",
+  for (const char* set : {"pipe.outer_radius=0.3 m", "pipe.inner_radius=90 mm", "pipe.pull=0.4 m",
                           "pipe.embedment=[\"0.5 m\", \"0.2 m\"]", "pipe.start=1.1 m", "test.rate=0 m3/h",
                           "fluid.density=2500 kg/m3", "load[0].volume=0.01 m3", "cage.bars=16",
                           "model.scheme=explicit", "model.cell=0.2 m"})

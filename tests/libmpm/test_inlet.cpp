@@ -6,9 +6,9 @@
 
 #include <numbers>
 
+#include "apparatus/parts/pipe_flow.hpp"
 #include "apparatus/verification/references/bodies.hpp"
-#include "libmpm/boundary/inlet.hpp"
-#include "rheometer/reference/pipe_flow.hpp"
+#include "libmpm/boundary/openings/inlet.hpp"
 
 namespace tremie {
 namespace {
@@ -114,7 +114,7 @@ struct Annulus {
   }
 };
 
-// Beside a pipe, far from its mouth, concrete flows as between two cylinders. Sixteen cells between them, a third of the gap
+// Beside a pipe, far from its mouth, concrete flows as between two cylinders. With 16 cells between them, a third of the gap
 // a plug: within 2 % of the largest speed everywhere, and of the flow.
 TEST(Inlet, FlowBesideThePipeIsThatOfAnAnnulus) {
   omp_set_num_threads(1);
@@ -147,9 +147,10 @@ TEST(Inlet, FlowBesideThePipeIsThatOfAnAnnulus) {
   EXPECT_NEAR(flow / exact_flow, 1.0, 0.02);
 }
 
-// Sixteen metres of concrete of 350 MPa, seeded with the pressure of three quarters of its weight: after a minute the pressure
-// on the base is that of the weight within 0.2 %, and an hour in long steps leaves it there.
-TEST(Inlet, PressureUnderSixteenMetresIsHydrostatic) {
+// 16 m of concrete of 350 MPa, seeded with the pressure of three quarters of its weight: in seconds the pressure on the base is
+// that of the weight within 0.2 %. By ADMM alone: Newton's method, which stands in where ADMM does not converge, leaves it where
+// it began.
+TEST(Inlet, PressureUnderAPileIsHydrostatic) {
   omp_set_num_threads(1);
   constexpr double h = 0.1, depth = 16.0;
   ImplicitBody<Axisymmetric> body;
@@ -161,18 +162,16 @@ TEST(Inlet, PressureUnderSixteenMetresIsHydrostatic) {
                          [&](const Vec<2>& x) { return 0.75 * body.mix.density * g * (depth - x[1]); });
   StepSettings settings;
   settings.moving_surface = true;
-  for (const double until : {60.0, 3660.0}) {
-    settings.dt_max = until < 100.0 ? 0.5 : 30.0;
-    while (body.time < until) ASSERT_FALSE(implicit_step(body, ExactBingham{}, settings).failed);
-    double sum = 0.0, weight = 0.0;
-    for (std::size_t p = 0; p < body.points.size(); ++p)
-      if (body.points.x[p][1] < h)
-        sum += body.points.mass[p] * pressure(body.points.ln_J[p], body.mix.K) /
-               (body.mix.density * g * (depth - body.points.x[p][1])),
-            weight += body.points.mass[p];
-    std::printf("%.0f s: pressure on the base %+.3f %% off\n", body.time, 100.0 * (sum / weight - 1.0));
-    EXPECT_NEAR(sum / weight, 1.0, 2e-3);
-  }
+  settings.method = YieldMethod::admm;
+  while (body.time < 10.0) ASSERT_TRUE(implicit_step(body, ExactBingham{}, settings).converged);
+  double sum = 0.0, weight = 0.0;
+  for (std::size_t p = 0; p < body.points.size(); ++p)
+    if (body.points.x[p][1] < h)
+      sum += body.points.mass[p] * pressure(body.points.ln_J[p], body.mix.K) /
+             (body.mix.density * g * (depth - body.points.x[p][1])),
+          weight += body.points.mass[p];
+  std::printf("pressure on the base %+.3f %% off\n", 100.0 * (sum / weight - 1.0));
+  EXPECT_NEAR(sum / weight, 1.0, 2e-3);
 }
 
 // Buckingham and Reiner's closed form, from a plug that fills nearly the whole pipe to none.

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "libmpm/boundary/outlet.hpp"
+#include "libmpm/boundary/openings/outlet.hpp"
 
 namespace tremie {
 namespace {

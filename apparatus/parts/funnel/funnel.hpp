@@ -12,7 +12,7 @@
 #include "apparatus/common/model.hpp"
 #include "apparatus/parts/funnel/shape.hpp"
 #include "apparatus/run/record.hpp"
-#include "libmpm/boundary/outlet.hpp"
+#include "libmpm/boundary/openings/outlet.hpp"
 #include "libmpm/constitutive/mix.hpp"
 
 namespace tremie::funnel {
