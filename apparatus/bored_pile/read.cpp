@@ -3,9 +3,9 @@
 #include <limits>
 
 #include "apparatus/bored_pile/pour.hpp"
+#include "apparatus/parts/pipe_flow.hpp"
 #include "apparatus/run/body_readings.hpp"
 #include "libmpm/implicit/step_size.hpp"
-#include "apparatus/parts/pipe_flow.hpp"
 
 namespace tremie::bored_pile {
 namespace {
@@ -139,7 +139,10 @@ std::vector<AtWall> along_wall(const Scene& scene, const Pour& pour) {
 Sample read(const Scene& scene, const StepReport& step, Pour& pour) {
   const auto& body = pour.body;
   const Levels level = levels(pour);
-  for (std::size_t k = 0; const AtWall& at : along_wall(scene, pour)) pour.wall_max[k++] = at.pressure_max;
+  // A flow that begins or stops within a step is a blow, which no pump makes.
+  constexpr double blow = 2.0;  // [s]
+  if (body.time > pour.changed_at + blow)
+    for (std::size_t k = 0; const AtWall& at : along_wall(scene, pour)) pour.wall_max[k++] = at.pressure_max;
   Sample now{.time = body.time, .time_step = step.dt, .volume = pour.placed};
   now.level = mean_level(scene, pour);
   now.level_pipe = level.pipe, now.level_middle = level.middle, now.level_wall = level.wall;
