@@ -169,9 +169,7 @@ double prepare(const Scene& scene, double cfl, Pour& pour) {
   const double due = phase.before + phase.rate * (now - phase.begin), ahead = pour.placed - due;
   const bool waits =
       ahead > 1e-9 * pour.placed;  // a pulled pipe's concrete is there before the pump has brought it
-  const double flow = waits ? 0.0 : phase.rate;
-  if (flow != pour.inlet.flow) pour.changed_at = now;
-  pour.inlet.flow = flow;
+  pour.inlet.flow = waits ? 0.0 : phase.rate;
   place_pipe(pour.inlet, pour.body.grid);
   double left = phase.end - now;
   if (waits && phase.rate > 0.0) left = std::min(left, ahead / phase.rate);

@@ -72,7 +72,7 @@ Record run(const Scene& scene, const scene::Observer& observer) {
       .state =
           [&](Archive& archive) {
             archive(body, pour.load, pour.batched, pour.inlet.face, pour.placed, pour.short_for,
-                    pour.changed_at, pour.inlet.flow, pour.wall_max, record.series);
+                    pour.wall_before, pour.wall_max, record.series);
             for (Inlet::Column& column : pour.inlet.columns) archive(column.waiting);
           }};
   experiment::run_experiment(
