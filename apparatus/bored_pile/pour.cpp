@@ -96,7 +96,10 @@ void even_layers(Pour& pour) {
 void pull(const Scene& scene, Pour& pour) {
   const Axis& up = pour.body.grid.axes[1];
   const double level = mean_level(scene, pour), embedment = level - mouth_of(pour);
-  const double length = std::min(scene.pipe.pull, embedment - scene.pipe.least);
+  const Phase& last = pour.phases.back();
+  const double to_come = last.before + last.rate * (last.end - last.begin) - pour.placed;
+  const double length = std::min({scene.pipe.pull, embedment - scene.pipe.least,
+                                  to_come / (std::numbers::pi * std::pow(pipe_radius(pour), 2))});
   const int cells = static_cast<int>(std::floor(length / up.h + 1e-9));
   if (cells < 1) return;
   double stays = 0.0;

@@ -28,11 +28,12 @@ struct Pour {
   std::vector<double> load, batched;  ///< of each point: its load from 1; when it was batched [s]
   Inlet inlet;
   std::vector<Phase> phases;
-  double placed = 0.0;           ///< volume that left the pipe [m^3]
-  double first_charge = 0.0;     ///< of it, what stands in the pile at the start
-  double short_for = 0.0;        ///< how long the head has not sufficed [s]
-  bool stopped = false;          ///< the head does not suffice
-  std::vector<double> wall_max;  ///< largest pressure on the wall so far, by cell [Pa]
+  double placed = 0.0;              ///< volume that left the pipe [m^3]
+  double first_charge = 0.0;        ///< of it, what stands in the pile at the start
+  double short_for = 0.0;           ///< how long the head has not sufficed [s]
+  bool stopped = false;             ///< the head does not suffice
+  std::vector<double> wall_before;  ///< of the last step, likewise
+  std::vector<double> wall_max;     ///< largest pressure on the wall so far, by cell [Pa]
 };
 
 /// The pile filled to just above the pipe's mouth.

@@ -3,9 +3,9 @@
 #include <limits>
 
 #include "apparatus/bored_pile/pour.hpp"
+#include "apparatus/parts/pipe_flow.hpp"
 #include "apparatus/run/body_readings.hpp"
 #include "libmpm/implicit/step_size.hpp"
-#include "apparatus/parts/pipe_flow.hpp"
 
 namespace tremie::bored_pile {
 namespace {
@@ -139,7 +139,13 @@ std::vector<AtWall> along_wall(const Scene& scene, const Pour& pour) {
 Sample read(const Scene& scene, const StepReport& step, Pour& pour) {
   const auto& body = pour.body;
   const Levels level = levels(pour);
-  for (std::size_t k = 0; const AtWall& at : along_wall(scene, pour)) pour.wall_max[k++] = at.pressure_max;
+  // A flow that begins or stops within a step is a blow, which no pump makes: what lasts for two steps counts.
+  const std::vector<AtWall> wall = along_wall(scene, pour);
+  pour.wall_before.resize(pour.wall_max.size(), 0.0);
+  for (std::size_t k = 0; k < wall.size(); ++k) {
+    pour.wall_max[k] = std::max(pour.wall_max[k], std::min(pour.wall_before[k], wall[k].pressure_end));
+    pour.wall_before[k] = wall[k].pressure_end;
+  }
   Sample now{.time = body.time, .time_step = step.dt, .volume = pour.placed};
   now.level = mean_level(scene, pour);
   now.level_pipe = level.pipe, now.level_middle = level.middle, now.level_wall = level.wall;

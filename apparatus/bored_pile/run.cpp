@@ -44,7 +44,7 @@ Record run(const Scene& scene, const scene::Observer& observer) {
   auto& body = pour.body;
   StepSettings settings = step_settings(scene);
   Record record;
-  const double duration = pour_time(scene);
+  const double duration = pour.phases.back().end;
   record.series.push_back(read(scene, StepReport{}, pour));
   if (observer.on_frame && observer.all_frames && !goes_on(observer.checkpoints))
     observer.on_frame(frame_of(pour));
@@ -72,7 +72,7 @@ Record run(const Scene& scene, const scene::Observer& observer) {
       .state =
           [&](Archive& archive) {
             archive(body, pour.load, pour.batched, pour.inlet.face, pour.placed, pour.short_for,
-                    pour.wall_max, record.series);
+                    pour.wall_before, pour.wall_max, record.series);
             for (Inlet::Column& column : pour.inlet.columns) archive(column.waiting);
           }};
   experiment::run_experiment(
