@@ -159,7 +159,7 @@ std::vector<Load> read_loads(const Values& values) {
 ApparatusKeys keys() {
   const Section model =
       model_section({"axisymmetric"}, {.cell = "45 mm",
-                                       .points_per_cell = "2",
+                                       .points_per_cell = "3",
                                        .cell_help = "[across, up], or one length; across so that "
                                                     "the pipe's outside lies on a face"});
   return {.name = "bored_pile",
