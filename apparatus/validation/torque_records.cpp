@@ -76,14 +76,17 @@ void compare_paste(Section& section) {
           {fmt::format("paste after {:.0f} s, from shorter rests, saturating", rest[next]), "Pa",
            stress[next], peak_scatter * stress[next], *saturating->forecast_of_longest, NAN});
   }
-  const auto& [times, rate, exponent, modes, notes] = reading.breakdown;
+  const std::vector<BreakdownTime>& times = reading.breakdown.times;
+  const auto &rate = reading.breakdown.rate, &exponent = reading.breakdown.exponent;
   if (rate && exponent && exponent->ci95)
     section.findings.push_back(fmt::format(
         "Half of the paste's excess torque is lost after {:.1f} s at 40 rpm and {:.1f} to {:.1f} s at 0.115 "
-        "rpm: k γ̇^a with a = {:.2f} [{:.2f}, {:.2f}], k = {:.2f} 1/s. Breakdown by strain, a = 1, would take "
+        "rpm: k γ̇^a with a = {:.2f} [{:.2f}, {:.2f}], k = {:.2f} 1/s{}. Breakdown by strain, a = 1, would "
+        "take "
         "346 times as long at the lower speed.",
         times.front().half_time, times.back().half_time, times[1].half_time, exponent->value,
-        exponent->ci95->low, exponent->ci95->high, rate->value));
+        exponent->ci95->low, exponent->ci95->high, rate->value,
+        reading.breakdown.modes.empty() ? "" : " for the mode of the largest share"));
   if (reading.structuration.early && reading.structuration.late)
     section.findings.push_back(
         fmt::format("The paste gains {:.1f} Pa/s between its first two rests, {:.1f} between its last: every "
@@ -105,7 +108,7 @@ Section torque_records(const Settings& settings) {
   compare_site(section);
   compare_paste(section);
   section.findings.push_back(
-      "The paste's decay at 40 rpm follows no kinetics of Tremie's, and `tremie fit` gives no α for it (code "
+      "One exponential describes no decay of the paste at 40 rpm, and `tremie fit` gives no α for it (code "
       "3).");
   return section;
 }
