@@ -4,6 +4,8 @@
 #include <iterator>
 
 #include "rheometer/fits/flow_law.hpp"
+#include "rheometer/tables/text.hpp"
+#include "rheometer/tables/text.hpp"
 
 namespace tremie {
 
@@ -75,6 +77,15 @@ std::vector<FitParameter> parameters_of(const FitResult& fit) {
 
 void set_value(FitResult& fit, const FitParameter& parameter, const std::optional<ParameterEstimate>& value) {
   (parameter.member ? fit.*parameter.member : fit.of_law[parameter.name]) = value;
+}
+
+std::string scene_walls(const FitResult& fit) {
+  const auto tau_i = value_of(fit, interface_parameters()[0]), k_i = value_of(fit, interface_parameters()[1]);
+  if (!tau_i || !k_i) return {};
+  return text_of(
+      "[walls]\ncontact = \"interface\"\ninterface_yield_stress = \"%.4g Pa\"\ninterface_viscosity = \"%.4g "
+      "Pa.s/m\"\n",
+      tau_i->value, k_i->value);
 }
 
 }  // namespace tremie

@@ -42,4 +42,7 @@ std::vector<FitParameter> parameters_of(const FitResult& fit);
 
 void set_value(FitResult& fit, const FitParameter& parameter, const std::optional<ParameterEstimate>& value);
 
+/// The lines of a scene that say the wall of a tribometer's fit: "[walls]\ncontact = ...". Empty where a parameter is not identifiable.
+std::string scene_walls(const FitResult& fit);
+
 }  // namespace tremie

@@ -259,13 +259,4 @@ std::vector<double> fill_heights(const std::string& text) {
   return heights;
 }
 
-std::string scene_walls(const FitResult& fit) {
-  const auto tau_i = value_of(fit, interface_parameters()[0]), k_i = value_of(fit, interface_parameters()[1]);
-  if (!tau_i || !k_i) return {};
-  return text_of(
-      "[walls]\ncontact = \"interface\"\ninterface_yield_stress = \"%.4g Pa\"\ninterface_viscosity = \"%.4g "
-      "Pa.s/m\"\n",
-      tau_i->value, k_i->value);
-}
-
 }  // namespace tremie

@@ -28,7 +28,4 @@ FitResult fit_tribometer(const std::vector<TribometerSeries>& series, const FitI
 /// "100 mm; 150 mm" [m]. Throws std::invalid_argument that names what is no length.
 std::vector<double> fill_heights(const std::string& text);
 
-/// The lines of a scene that say this wall: "[walls]\ncontact = ...". Empty where a parameter is not identifiable.
-std::string scene_walls(const FitResult& fit);
-
 }  // namespace tremie
