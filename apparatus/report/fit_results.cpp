@@ -3,7 +3,7 @@
 #include "apparatus/report/protocol_results.hpp"
 #include "libmpm/constitutive/constants.hpp"
 #include "rheometer/fits/flow_law.hpp"
-#include "rheometer/whole_fit/tribometer.hpp"
+#include "rheometer/fits/parameters.hpp"
 
 namespace tremie::report {
 

@@ -5,7 +5,6 @@
 
 #include "rheometer/fits/flow_law.hpp"
 #include "rheometer/tables/text.hpp"
-#include "rheometer/tables/text.hpp"
 
 namespace tremie {
 

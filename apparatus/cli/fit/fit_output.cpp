@@ -7,7 +7,7 @@
 #include "apparatus/cli/fit/fit_protocol.hpp"
 #include "apparatus/cli/process/say.hpp"
 #include "apparatus/scene/units.hpp"
-#include "rheometer/whole_fit/tribometer.hpp"
+#include "rheometer/fits/parameters.hpp"
 
 namespace tremie::cli {
 
