@@ -83,11 +83,12 @@ std::set<std::string> files_below(const Json& graph, const std::string& id) {
   return files;
 }
 
+/// Files that a reader sees: not those that `tremie resume --until` and `--force` need.
 std::set<std::string> files_in(const fs::path& folder) {
   std::set<std::string> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     const std::string name = entry.path().lexically_relative(folder).string();
-    if (entry.is_regular_file() && name != report::list_of_own_files && name != "ro-crate-metadata.json")
+    if (entry.is_regular_file() && !name.starts_with('.') && name != "ro-crate-metadata.json")
       files.insert(name);
   }
   return files;

@@ -6,6 +6,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -94,7 +95,10 @@ void judge_scenes(int mutations) {
     if (name.starts_with("cell")) continue;
     bases.push_back(test::read_file(entry.path()));
     // with every key, coarse and short, so that most can be run
-    for (const char* cell : {"model.cell=25 mm", "model.cell=33 mm"})
+    if (name.starts_with("bored_pile")) continue;  // it has no duration: it ends when it is full
+    const bool narrow = name.starts_with("v_funnel") || name.starts_with("orimet");
+    for (const char* cell : narrow ? std::array{"model.cell=10 mm", "model.cell=20 mm"}
+                                   : std::array{"model.cell=25 mm", "model.cell=33 mm"})
       if (name.find("flow_curve") == std::string::npos && name.find("site") == std::string::npos)
         bases.push_back(scene::read(entry.path(), {cell, "test.duration=0.2 s"}).resolved);
   }

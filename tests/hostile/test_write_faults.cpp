@@ -24,6 +24,12 @@ Files files_in(const std::filesystem::path& folder) {
   return files;
 }
 
+/// Without what `tremie resume --until` goes on from: like a checkpoint, a run does without where it cannot be written.
+std::size_t files_of_the_result(const Files& files) {
+  return static_cast<std::size_t>(std::count_if(
+      files.begin(), files.end(), [](const auto& file) { return !file.first.starts_with(".for_longer"); }));
+}
+
 struct Fault {
   int error;
   bool stays;  ///< every later write fails, too
@@ -67,7 +73,7 @@ output = {checkpoint_interval = "0.001 s", frame_interval = "0.1 s"})");
                              result.text;
     const Files now = files_in(folder_ / "results/out");
     if (result.code == code_) {
-      EXPECT_EQ(now.size(), earlier_.size()) << what;
+      EXPECT_EQ(files_of_the_result(now), files_of_the_result(earlier_)) << what;
       for (const auto& name : {"timeseries.csv", "results.h5", "frames.pvd", "scene.toml"})
         EXPECT_TRUE(now.contains(name) && now.at(name) == earlier_.at(name)) << what << ": " << name;
     } else {

@@ -166,7 +166,7 @@ class Rheometer(Folder):
 
     def test_fit_takes_the_options_of_the_command(self):
         said = re.findall(r"^\s+(?:-\w,)?--([a-z-]+)", program("fit", "--help").stdout, re.MULTILINE)
-        of_the_command = {name.replace("-", "_") for name in said} - {"help", "json", "out", "quiet", "force"}
+        of_the_command = {name.replace("-", "_") for name in said} - {"help", "json", "out", "quiet", "force", "crate"}
         of_python = set(inspect.signature(tremie.fit).parameters) - {"t", "torque", "speeds"}
         self.assertGreater(len(of_python), 15)
         self.assertEqual(of_python, of_the_command)
