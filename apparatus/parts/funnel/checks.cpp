@@ -32,8 +32,10 @@ std::string went_through_the_wall(const View& v) {
   constexpr double most = 0.3;
   if (!(v.r.through_the_wall > most)) return {};
   return fmt::format(
-      "{:.2g} % of the concrete was pressed into the funnel's wall and put back: a smaller model.cell",
-      100.0 * v.r.through_the_wall);
+      "concrete was pressed into the funnel's wall and put back, in all {:.2g} times its mass by half a "
+      "cell, more "
+      "than {:g}: use a smaller model.cell",
+      v.r.through_the_wall, most);
 }
 
 std::string lost_volume(const View& v) {
