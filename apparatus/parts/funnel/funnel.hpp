@@ -52,8 +52,6 @@ struct Results {
   std::optional<double> stopped_at;  ///< where its yield stress holds it [s]
   double volume = 0.0;               ///< of the concrete in the funnel at the start [m^3]
   double volume_error = 0.0;         ///< what has left and what is left, over the volume at the start, less 1
-  double through_the_wall =
-      0.0;  ///< share of the volume that was put back from behind the wall, by half a cell
 };
 
 using Outcome = experiment::Record<Results, Sample>;

@@ -105,7 +105,6 @@ double discharge(const std::vector<Sample>& series, const Sample& now, double vo
 struct Course {
   Outflow left = {};
   double mass_at_start = 0.0, volume_at_start = 0.0;  ///< of the section
-  double through_the_wall = 0.0;                      ///< share of the mass
   bool light = false;
 };
 
@@ -126,17 +125,15 @@ Sample read(const Scene& scene, const Body<Geometry>& body, const StepReport& st
   return s;
 }
 
-/// Puts back what a step took through the wall. Returns its share of the mass where it was half a cell deep, less where it was
-/// less deep.
+/// Puts back what a step took through the wall.
 template <class Geometry>
-double keep_inside(const RigidWall<2>& wall, double before, const std::vector<Vec<2>>& from, double margin,
-                   double mass_at_start, Body<Geometry>& body) {
-  double through = 0.0;
-  for (std::size_t p = 0; p < from.size(); ++p)
-    if (const auto view = wall(body.points.x[p], body.time); view && view->gap < 0.0)
-      through -= body.points.mass[p] * view->gap / (0.5 * body.grid.cell_size_min());
-  if (through > 0.0) keep_on_its_side<2>(wall, before, body.time, from, margin, body.points.x);
-  return through / mass_at_start;
+void keep_inside(const RigidWall<2>& wall, double before, const std::vector<Vec<2>>& from, double margin,
+                 Body<Geometry>& body) {
+  const bool through = std::any_of(body.points.x.begin(), body.points.x.end(), [&](const Vec<2>& x) {
+    const auto view = wall(x, body.time);
+    return view && view->gap < 0.0;
+  });
+  if (through) keep_on_its_side<2>(wall, before, body.time, from, margin, body.points.x);
 }
 
 template <class Geometry>
@@ -149,7 +146,6 @@ void read_results(const Scene& scene, const Body<Geometry>& body, const Course& 
   r.volume = volume(scene.shape);
   const double now = course.left.volume + experiment::total_volume(body.points);
   r.volume_error = now / course.volume_at_start - 1.0;
-  r.through_the_wall = course.through_the_wall;
   outcome.checks.mass_error =
       (course.left.mass + experiment::total_mass(body.points)) / course.mass_at_start - 1.0;
 }
@@ -171,7 +167,7 @@ Outcome run_in(const Scene& scene, const scene::Observer& observer) {
       .prepare =
           [&] {
             const double left = scene.duration - body.time;
-            settings.time_left = experiment::without_sliver(left, body.dt * (1.0 + 1e-9));
+            settings.time_left = experiment::without_sliver(left, body.dt);
             settings.fixed_dt = experiment::fixed_step(scene.model, left);
           },
       .advance =
@@ -182,7 +178,7 @@ Outcome run_in(const Scene& scene, const scene::Observer& observer) {
             if (step.failed) return step;
             experiment::count_step(body, step, checks, cost);
             experiment::watch_fixed_step(body, scene.model, step, checks);
-            course.through_the_wall += keep_inside(wall, before, from, margin, course.mass_at_start, body);
+            keep_inside(wall, before, from, margin, body);
             course.light = light_seen(scene, body.points);
             if (!course.light) let_out(outlet, body.points, course.left);
             return step;
