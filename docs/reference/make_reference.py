@@ -86,14 +86,27 @@ A run fills a folder ([which files](../guide/slump_flow.md#what-a-run-leaves)); 
 
 `fit`, `estimate`, `study` and `calibrate` leave files of their own: what is in them is on their pages of the guide. A run that was cut short keeps its state in `.NAME.part/checkpoint` beside its folder, for the very build that wrote it: points, time, step, grid, the solver's stresses and rates, friction, bars' drag, and the apparatus' own series. A finished result keeps the same in `.for_longer`, as it was before the end of the test shortened a step: `tremie resume DIR --until` goes on from it.
 """
+def scene_sections(names):
+    """What `tremie new` prints of each, a table that stood before in the same words named alone."""
+    first, sections = {}, []
+    for name in names:
+        blocks = []
+        for block in (says("new", name) or "").split("\n\n"):
+            header = re.search(r"^(\[+[\w.]+\]+)$", block, re.M)
+            before = first.setdefault(block, name) if header else name
+            blocks.append(block if before == name else f"# {header[1]}: as for \"{before}\"")
+        sections.append(section(f"`apparatus = \"{name}\"`", "toml", "\n\n".join(blocks)))
+    return sections
+
+
 apparatus = listed_readings()
 listed = says("--commands")
 commands = [line.split("\t")[0] for line in listed.splitlines()] if listed else []
 pages = {
     "scenes.md": (
         "# Every key of a scene\n\nWhat `tremie new APPARATUS` prints: every key with its default, a comment and the words it takes. "
-        "A value with a dimension is a string with a unit.\n",
-        [section(f"`apparatus = \"{name}\"`", "toml", says("new", name) or "") for name in apparatus]),
+        "A value with a dimension is a string with a unit. A table that stood before in the same words is named alone.\n",
+        scene_sections(apparatus)),
     "commands.md": (
         "# Every command\n\nWhat `tremie COMMAND --help` prints.\n",
         [section("`tremie`", "text", says("--help") or "")]
