@@ -113,7 +113,7 @@ const std::vector<ColumnOf<AtWall>> wall_columns{
      [](const AtWall& w) { return minutes * w.age; }}};
 
 /// By how much the pressure on the wall alternates from cell to cell, largest, over that at rest on the base. Seen in the report of
-/// the 2 m model pile: a fifth. The level, the volume and where each load goes do not follow it.
+/// the 2 m model pile: two fifths. The level, the volume and where each load goes do not follow it.
 double swing_on_the_wall(const std::vector<AtWall>& wall) {
   double swing = 0.0;
   for (std::size_t i = 1; i + 1 < wall.size(); ++i)
