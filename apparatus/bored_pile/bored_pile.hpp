@@ -3,6 +3,7 @@
 // The pour of a bored pile through a tremie pipe: a section of the pile, the concrete entering at the pipe's mouth load after
 // load, the pipe withdrawn in pieces.
 
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,6 +27,16 @@ struct Pipe {
          above = 2.0;  ///< pulled at a time; mouth over the base at first; top over the pile's [m]
 };
 
+/// Reinforcement: upright bars on a circle, with hoops around them.
+struct Cage {
+  double radius = 0.0;         ///< of the circle through the bars' axes [m]
+  int bars = 0;                ///< on it
+  double bar_diameter = 0.0;   ///< [m]
+  double hoop_spacing = 0.0;   ///< [m]; 0: no hoops
+  double hoop_diameter = 0.0;  ///< [m]
+  double bar_spacing() const { return 2.0 * std::numbers::pi * radius / bars; }
+};
+
 /// A checked scene, SI units.
 struct Scene {
   Mix mix;
@@ -35,6 +46,7 @@ struct Scene {
   double rate = 27.0 / 3600.0;    ///< of the pour [m^3/s]
   double workable = 14400.0;      ///< age up to which the concrete is [s]
   std::vector<Load> loads;
+  std::optional<Cage> cage = {};
   WallLaw walls = NoSlip{};
   Model model;
   double frame_interval = 0.0, rest = 0.0;  ///< [s]
@@ -46,7 +58,8 @@ struct Sample {
   double time = 0.0, time_step = 0.0;                                          ///< [s]
   double volume = 0.0;                                                         ///< placed [m^3]
   double level = 0.0, level_pipe = 0.0, level_middle = 0.0, level_wall = 0.0;  ///< over the pile's base [m]
-  double mouth = 0.0, pressure_mouth = 0.0;                                    ///< [m], [Pa]
+  std::optional<double> level_step = {};     ///< inside the cage less outside [m]
+  double mouth = 0.0, pressure_mouth = 0.0;  ///< [m], [Pa]
   std::optional<double> head =
       {};             ///< needed in the pipe above its mouth while it flows [m]; infinite: none pushes it
   double load = 1.0;  ///< that is placed, from 1
@@ -68,11 +81,12 @@ struct Results {
   double level_end = 0.0, volume_error = 0.0;  ///< [m]; level against volume
   std::optional<double> head_needed = {};      ///< largest [m]; empty: no head pushes it
   bool head_suffices = true;
-  double plug_share = 0.0;         ///< of the first load in the top metre
-  std::vector<double> cover;       ///< share of each load in it
-  double pressure_max = 0.0;       ///< on the wall [Pa]
-  double oldest_at_surface = 0.0;  ///< [s]
-  double placed = 0.0;             ///< [m^3]
+  double plug_share = 0.0;                ///< of the first load in the top metre
+  std::vector<double> cover;              ///< share of each load in the cover
+  std::optional<double> level_step = {};  ///< inside the cage less outside, mean while it flows [m]
+  double pressure_max = 0.0;              ///< on the wall [Pa]
+  double oldest_at_surface = 0.0;         ///< [s]
+  double placed = 0.0;                    ///< [m^3]
   std::vector<AtWall> wall = {};
   bool washed = false;                    ///< the mouth came within a cell of the surface
   std::optional<double> stopped_at = {};  ///< [m] level where the head did not suffice
@@ -80,7 +94,10 @@ struct Results {
 
 using Record = experiment::Record<Results, Sample>;
 
-inline constexpr double cover_depth = 0.075;  ///< of a pile without a cage [m]
+/// Depth of the cover [m]: what lies outside the cage, or 75 mm where there is none.
+inline double cover_depth(const Scene& scene) {
+  return scene.cage ? scene.radius - scene.cage->radius - 0.5 * scene.cage->bar_diameter : 0.075;
+}
 
 /// Volume that the pile holds with the pipe out of it [m^3].
 double pile_volume(const Scene& scene);

@@ -81,12 +81,18 @@ Schema pile_sections() {
        .help = "Of the bore; its base and the pipe's outside hold the concrete.",
        .keys = contact_keys(false)},
       {.name = "cage",
-       .help = "Reinforcement: not computed yet.",
-       .keys = {{.name = "radius", .range = positive},
-                {.name = "bars", .kind = Kind::integer, .range = between(1, 1000)},
-                {.name = "bar_diameter", .range = positive},
-                {.name = "hoop_spacing", .range = positive},
-                {.name = "hoop_diameter", .range = positive}},
+       .help = "Reinforcement; left out: none.",
+       .keys = {{.name = "radius",
+                 .range = positive,
+                 .fallback = "0.65 m",
+                 .help = "of the circle through the axes of the upright bars"},
+                {.name = "bars", .kind = Kind::integer, .range = between(1, 1000), .fallback = "16"},
+                {.name = "bar_diameter", .range = positive, .fallback = "32 mm"},
+                {.name = "hoop_spacing",
+                 .range = not_negative,
+                 .fallback = "150 mm",
+                 .help = "from hoop to hoop; 0: no hoops"},
+                {.name = "hoop_diameter", .range = positive, .fallback = "16 mm"}},
        .optional = true}};
 }
 
@@ -104,8 +110,6 @@ void check_embedment(const Values& values) {
 void settle(Values& values) {
   settle_mix(values);
   settle_interface(values, "walls");
-  if (values.has_section("cage"))
-    values.fail("cage", "is not computed yet; leave the table out: the pile is poured without reinforcement");
   if (values.word("model.scheme") != "implicit")
     values.fail("model.scheme", "explicit steps have no inlet; allowed: \"implicit\"");
   check_embedment(values);
@@ -143,6 +147,35 @@ void check_pile(const Values& values, const Scene& scene) {
                             write_quantity(first, Dimension::volume)));
   const auto [n, n_up] = scene.model.points_per_cell;
   check_points(values, scene.radius / h * n * scene.depth / h_up * n_up);
+}
+
+/// The drag of a row of bars holds from three diameters on; the cover needs cells of its own.
+void check_cage(const Values& values, const Scene& scene) {
+  const Cage& cage = *scene.cage;
+  const auto length = [](double x) { return write_quantity(x, Dimension::length); };
+  const double h = scene.model.cell[0], least = scene.pipe.outer_radius + h, most = scene.radius - 2.0 * h;
+  if (cage.radius < least || cage.radius > most)
+    values.fail(
+        "cage.radius",
+        fmt::format("needs a cell to the pipe and two to the wall; allowed: \"{}\" to \"{}\" on these "
+                    "cells",
+                    length(least), length(std::max(least, most))));
+  const auto row = [&](const char* key, double diameter, double spacing) {
+    if (diameter > spacing / 3.0)
+      values.fail(
+          key, fmt::format("leaves gaps for which no drag is known; allowed: at most a third of the spacing, "
+                           "\"{}\"",
+                           length(spacing / 3.0)));
+  };
+  row("cage.bar_diameter", cage.bar_diameter, cage.bar_spacing());
+  if (cage.hoop_spacing > 0.0) row("cage.hoop_diameter", cage.hoop_diameter, cage.hoop_spacing);
+}
+
+std::optional<Cage> read_cage(const Values& values) {
+  if (!values.has_section("cage")) return std::nullopt;
+  return Cage{values.number("cage.radius"), static_cast<int>(values.integer("cage.bars")),
+              values.number("cage.bar_diameter"), values.number("cage.hoop_spacing"),
+              values.number("cage.hoop_diameter")};
 }
 
 std::vector<Load> read_loads(const Values& values) {
@@ -200,7 +233,9 @@ Scene read_scene(const Values& values) {
   scene.walls = read_wall_law(values, "walls");
   scene.model = read_model(values);
   scene.frame_interval = read_output(values).frame_interval;
+  scene.cage = read_cage(values);
   check_pile(values, scene);
+  if (scene.cage) check_cage(values, scene);
   return scene;
 }
 

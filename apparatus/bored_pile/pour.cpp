@@ -156,6 +156,7 @@ Pour start_of(const Scene& scene) {
   pour.load.assign(body.points.size(), 1.0);
   pour.batched.assign(body.points.size(), -scene.loads[0].age);
   pour.phases = phases_of(scene, pour.first_charge);
+  if (scene.cage) body.bars = screen_of(*scene.cage, scene.depth, h_up);
   pour.wall_max.assign(static_cast<std::size_t>(scene.depth / h_up) + 2, 0.0);
   return pour;
 }

@@ -28,13 +28,17 @@ struct Pour {
   std::vector<double> load, batched;  ///< of each point: its load from 1; when it was batched [s]
   Inlet inlet;
   std::vector<Phase> phases;
-  double placed = 0.0;              ///< volume that left the pipe [m^3]
-  double first_charge = 0.0;        ///< of it, what stands in the pile at the start
-  double short_for = 0.0;           ///< how long the head has not sufficed [s]
-  bool stopped = false;             ///< the head does not suffice
-  std::vector<double> wall_before;  ///< of the last step, likewise
-  std::vector<double> wall_max;     ///< largest pressure on the wall so far, by cell [Pa]
+  double placed = 0.0;                 ///< volume that left the pipe [m^3]
+  double first_charge = 0.0;           ///< of it, what stands in the pile at the start
+  double short_for = 0.0;              ///< how long the head has not sufficed [s]
+  bool stopped = false;                ///< the head does not suffice
+  std::vector<double> wall_mean = {};  ///< pressure on the wall of late, by cell [Pa]
+  std::vector<double> wall_max;        ///< the largest of it so far
+  double mouth_mean = 0.0;             ///< pressure at the mouth of late [Pa]
 };
+
+/// Points of a cage from the base up to `height` [m] on cells of this height [m].
+std::vector<BarPoint<2>> screen_of(const Cage& cage, double height, double cell);
 
 /// The pile filled to just above the pipe's mouth.
 Pour start_of(const Scene& scene);
@@ -64,6 +68,10 @@ double flocculation_at_mouth(const Scene& scene, const Pour& pour);
 double prepare(const Scene& scene, double cfl, Pour& pour);
 /// What came in over the last step.
 void let_in(const Scene& scene, Pour& pour);
+
+/// Pressures of a column of cells without what alternates from one to the next; a straight line stays as it is. With one
+/// pressure a cell, alternating pressures push quadratic splines nowhere (docs/theory/bored_pile.md).
+std::vector<double> without_stripes(const std::vector<double>& of_cells);
 
 /// Readings of the concrete as it stands.
 Sample read(const Scene& scene, const StepReport& step, Pour& pour);

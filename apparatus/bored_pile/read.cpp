@@ -39,17 +39,26 @@ double level_of(const std::vector<double>& fill, double h) {
 
 struct Levels {
   double pipe = 0.0, middle = 0.0, wall = 0.0, volume = 0.0;  ///< [m]; volume under the surface [m^3]
+  double inside = 0.0, outside = 0.0;                         ///< means about the cage [m]
 };
 
-Levels levels(const Pour& pour) {
+Levels levels(const Scene& scene, const Pour& pour) {
   const auto fill = fills(pour);
   const double h = pour.body.grid.axes[0].h, h_up = pour.body.grid.axes[1].h, r = pipe_radius(pour);
   const auto first = static_cast<std::size_t>(pour.inlet.cells);
   const auto at = [&](std::size_t c) { return level_of(fill[c], h_up); };
   Levels levels{at(first), at((first + fill.size()) / 2), at(fill.size() - 1),
                 std::numbers::pi * r * r * mouth_of(pour) - volume_waiting(pour.inlet)};
-  for (std::size_t c = first; c < fill.size(); ++c)
-    levels.volume += at(c) * h * Section::measure({(static_cast<double>(c) + 0.5) * h, 0.0});
+  double area_inside = 0.0, area_outside = 0.0;
+  for (std::size_t c = first; c < fill.size(); ++c) {
+    const double x = (static_cast<double>(c) + 0.5) * h, area = h * Section::measure({x, 0.0}),
+                 under = at(c) * area;
+    levels.volume += under;
+    if (!scene.cage) continue;
+    (x < scene.cage->radius ? levels.inside : levels.outside) += under;
+    (x < scene.cage->radius ? area_inside : area_outside) += area;
+  }
+  if (scene.cage) levels.inside /= area_inside, levels.outside /= area_outside;
   return levels;
 }
 
@@ -74,11 +83,13 @@ double own_pressure(const Pour& pour, std::size_t p) {
   return pressure(pour.body.points.ln_J[p], pour.body.mix.K);
 }
 
+/// Pressure at the pipe's mouth [Pa], by two layers of cells below it: without_stripes() says why.
 double pressure_at_mouth(const Scene& scene, const Pour& pour) {
   const double mouth = mouth_of(pour), h = pour.body.grid.axes[1].h,
                weight = pour.body.mix.density * pour.body.gravity[1];
   const auto own = mean_over(
-      pour, [&](const Vec<2>& x) { return x[0] < pipe_radius(pour) && x[1] < mouth && x[1] > mouth - h; },
+      pour,
+      [&](const Vec<2>& x) { return x[0] < pipe_radius(pour) && x[1] < mouth && x[1] > mouth - 2.0 * h; },
       [&](std::size_t p) { return own_pressure(pour, p) + weight * (mouth - pour.body.points.x[p][1]); });
   return std::max(0.0, own.value_or(0.0)) + fluid_pressure(scene, mouth);
 }
@@ -126,30 +137,56 @@ std::vector<AtWall> along_wall(const Scene& scene, const Pour& pour) {
     AtWall& at = wall[n];
     at.pressure_end /= volume[n], at.flocculation /= volume[n], at.age /= volume[n];
     at.height = (static_cast<double>(n) + 0.5) * axes[1].h;
-    at.pressure_max = std::max(pour.wall_max[n], at.pressure_end);
     at.hydrostatic = fluid_pressure(scene, at.height) -
                      scene.mix.density * pour.body.gravity[1] * std::max(0.0, level - at.height);
   }
   wall.resize(n);
+  std::vector<double> pressure;
+  for (const AtWall& at : wall) pressure.push_back(at.pressure_end);
+  pressure = without_stripes(pressure);
+  for (std::size_t k = 0; k < n; ++k) {
+    wall[k].pressure_end = pressure[k];
+    wall[k].pressure_max = pour.wall_max[k];
+  }
   return wall;
 }
 
 }  // namespace
 
+std::vector<double> without_stripes(const std::vector<double>& of_cells) {
+  const std::size_t n = of_cells.size();
+  if (n < 3) return of_cells;
+  const auto at_end = [&](std::size_t a, std::size_t b, std::size_t c) {
+    return 0.75 * of_cells[a] + 0.5 * of_cells[b] - 0.25 * of_cells[c];
+  };
+  std::vector<double> smooth(n);
+  smooth[0] = at_end(0, 1, 2), smooth[n - 1] = at_end(n - 1, n - 2, n - 3);
+  for (std::size_t k = 1; k + 1 < n; ++k)
+    smooth[k] = 0.25 * of_cells[k - 1] + 0.5 * of_cells[k] + 0.25 * of_cells[k + 1];
+  return smooth;
+}
+
 Sample read(const Scene& scene, const StepReport& step, Pour& pour) {
   const auto& body = pour.body;
-  const Levels level = levels(pour);
-  // A flow that begins or stops within a step is a blow, which no pump makes: what lasts for two steps counts.
+  const Levels level = levels(scene, pour);
+  // What moves to other cells brings velocities that change volume. The step takes that back by an impulse, a blow of pressure in
+  // a short step, so pressures are means over a response time, as a pressure cell reads them.
+  constexpr double response = 1.0;  // [s]
+  const auto follow = [share = -std::expm1(-step.dt / response)](double& mean, double now) {
+    mean = mean > 0.0 ? mean + share * (now - mean) : now;
+  };
   const std::vector<AtWall> wall = along_wall(scene, pour);
-  pour.wall_before.resize(pour.wall_max.size(), 0.0);
+  pour.wall_mean.resize(pour.wall_max.size(), 0.0);
   for (std::size_t k = 0; k < wall.size(); ++k) {
-    pour.wall_max[k] = std::max(pour.wall_max[k], std::min(pour.wall_before[k], wall[k].pressure_end));
-    pour.wall_before[k] = wall[k].pressure_end;
+    follow(pour.wall_mean[k], wall[k].pressure_end);
+    pour.wall_max[k] = std::max(pour.wall_max[k], pour.wall_mean[k]);
   }
+  follow(pour.mouth_mean, pressure_at_mouth(scene, pour));
   Sample now{.time = body.time, .time_step = step.dt, .volume = pour.placed};
   now.level = mean_level(scene, pour);
+  if (scene.cage) now.level_step = level.inside - level.outside;
   now.level_pipe = level.pipe, now.level_middle = level.middle, now.level_wall = level.wall;
-  now.mouth = mouth_of(pour), now.pressure_mouth = pressure_at_mouth(scene, pour);
+  now.mouth = mouth_of(pour), now.pressure_mouth = pour.mouth_mean;
   if (pour.inlet.flow > 0.0) now.head = head_needed(scene, pour, now.pressure_mouth);
   now.load = static_cast<double>(load_at(scene, pour.placed) + 1);
   now.surface_stress = stress_of_surface(scene, pour, surface_of(scene, pour, level));
@@ -157,7 +194,6 @@ Sample read(const Scene& scene, const StepReport& step, Pour& pour) {
   now.flocculation_mean = experiment::mean_flocculation(body.points);
   now.volume_change = experiment::volume_change(body.points);
   now.iterations = step.iterations;
-  // The pressure under the mouth swings for a step where points cross cells: what lasts counts.
   constexpr double lasts = 5.0;  // [s]
   const bool suffices = !now.head || *now.head <= scene.depth + scene.pipe.above - now.mouth;
   pour.short_for = suffices ? 0.0 : pour.short_for + step.dt;
@@ -169,14 +205,16 @@ void read_results(const Scene& scene, const Pour& pour, const std::vector<Sample
   const auto& points = pour.body.points;
   const double level = mean_level(scene, pour);
   r.level_end = level, r.placed = pour.placed;
-  const Levels under = levels(pour);
+  const Levels under = levels(scene, pour);
   const double surface = surface_of(scene, pour, under);
   r.volume_error = under.volume / (pour.placed - volume_waiting(pour.inlet)) - 1.0;
-  double head = 0.0;
+  double head = 0.0, step = 0.0, placing = 0.0;
   for (const Sample& s : series) {
     head = std::max(head, s.head.value_or(0.0));
+    if (s.level_step && s.head) step += s.time_step * *s.level_step, placing += s.time_step;
     r.washed = r.washed || s.level - s.mouth < 0.9 * pour.body.grid.axes[1].h;
   }
+  if (placing > 0.0) r.level_step = step / placing;
   if (std::isfinite(head)) r.head_needed = head;
   r.head_suffices = !pour.stopped;
   if (pour.stopped) r.stopped_at = level;
@@ -185,7 +223,7 @@ void read_results(const Scene& scene, const Pour& pour, const std::vector<Sample
   for (std::size_t p = 0; p < points.size(); ++p) {
     const double V = points.volume(p);
     if (points.x[p][1] > surface - 1.0) top += V, r.plug_share += pour.load[p] == 1.0 ? V : 0.0;
-    if (points.x[p][0] > scene.radius - cover_depth)
+    if (points.x[p][0] > scene.radius - cover_depth(scene))
       cover += V, r.cover[static_cast<std::size_t>(pour.load[p]) - 1] += V;
     if (points.x[p][1] > surface - pour.body.grid.axes[1].h)
       r.oldest_at_surface = std::max(r.oldest_at_surface, pour.body.time - pour.batched[p]);

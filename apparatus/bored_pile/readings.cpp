@@ -41,6 +41,13 @@ Rows<View> level_rows() {
       {"level_at_pipe_m", "level at the pipe", {}, [](V, S s) { return s.level_pipe; }},
       {"level_between_m", "level midway between pipe and wall", {}, [](V, S s) { return s.level_middle; }},
       {"level_at_wall_m", "level at the pile's wall", {}, [](V, S s) { return s.level_wall; }},
+      {.name = "level_step_mm",
+       .words = "level inside the cage less that outside it, mean while concrete is placed",
+       .value = [](V v) { return number(v.r.level_step, 1000.0); },
+       .at = [](V, S s) { return s.level_step ? 1000.0 * *s.level_step : or_nan(s.level_step); },
+       .label = "level step",
+       .remark = [](V) { return std::string("   inside the cage less outside"); },
+       .applies = [](V v) { return v.scene.cage.has_value(); }},
       {"mouth_m", "height of the pipe's mouth", {}, [](V, S s) { return s.mouth; }},
       {.name = "placed_m3",
        .words = "volume placed",
@@ -79,7 +86,7 @@ Rows<View> concrete_rows() {
            .answer = [](V) { return std::optional<std::string>("plug share"); },
            .headline = 1,
            .headline_digits = 2},
-          {"cover", "share of each load in the outer 75 mm", cover_of},
+          {"cover", "share of each load in the cover: outside the cage, or the outer 75 mm", cover_of},
           {.name = "static_yield_stress_surface_Pa",
            .words = "largest static yield stress at the surface at the end",
            .value = [](V v) { return number(v.series.back().surface_stress); },
@@ -171,8 +178,7 @@ std::vector<std::string> remarks_of(const View& v) {
   for (const Load& load : v.scene.loads) volume += load.volume;
   if (v.r.placed < 0.999 * volume && !v.r.stopped_at && !ended_early(v.status))
     remarks.push_back(fmt::format("The pile is full: {:.2f} of {:.2f} m³ were placed.", v.r.placed, volume));
-  remarks.push_back(
-      "No stones, no bleeding, no mixing with the fluid, no reinforcement; not validated by a pour.");
+  remarks.push_back("No stones, no bleeding, no mixing with the fluid; not validated by a pour.");
   return remarks;
 }
 
@@ -220,7 +226,9 @@ std::vector<std::string> uses(const Scene& scene) {
   lines.push_back(fmt::format("loads: {}, told apart point by point", scene.loads.size()));
   lines.push_back("fluid: by its buoyancy and its pressure; no mixing");
   lines.push_back("walls: " + word(scene.walls));
-  lines.push_back("reinforcement: left out (no [cage])");
+  lines.push_back(scene.cage
+                      ? "reinforcement: a screen with the drag of its bars and hoops, smeared around the pile"
+                      : "reinforcement: left out (no [cage])");
   add_model_uses(scene.model, lines);
   return lines;
 }

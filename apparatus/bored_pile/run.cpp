@@ -72,7 +72,7 @@ Record run(const Scene& scene, const scene::Observer& observer) {
       .state =
           [&](Archive& archive) {
             archive(body, pour.load, pour.batched, pour.inlet.face, pour.placed, pour.short_for,
-                    pour.wall_before, pour.wall_max, record.series);
+                    pour.wall_mean, pour.wall_max, pour.mouth_mean, record.series);
             for (Inlet::Column& column : pour.inlet.columns) archive(column.waiting);
           }};
   experiment::run_experiment(
@@ -96,7 +96,7 @@ scene::SizeEstimate estimate(const Scene& scene) {
   const auto& axes = pour.body.grid.axes;
   scene::SizeEstimate e;
   e.cells_active = experiment::whole_steps(axes[0].n_cells * scene.depth / axes[1].h);
-  const Inlet::Column& column = pour.inlet.columns.front();
+  const Inlet::Column& column = pour.inlet.columns.back();
   e.points = experiment::whole_steps(pile_volume(scene) / (column.area * pour.inlet.row));
   e.bytes_per_point = bytes_per_point<2>(scene.mix.thixotropy.has_value());
   const double step = StepSettings{}.cfl * axes[1].h / (scene.rate * pour.inlet.node_speed);

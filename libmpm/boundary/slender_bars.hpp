@@ -62,6 +62,13 @@ inline double bar_mobility(double cells, double s0, double s1) {
   return (mean + varies * (std::cos(round * s0) + std::cos(round * s1))) / (4.0 * std::numbers::pi);
 }
 
+/// m of one of a row of bars that the grid smears into a screen, by the row's drag at the mean speed through it in a Newtonian
+/// fluid: Tamada and Fujikawa (1957), from a spacing of three diameters on.
+inline double row_mobility(double diameter, double spacing) {
+  const double t = std::numbers::pi * diameter / spacing;
+  return (1.0 - 2.0 * std::log(t) + t * t / 6.0) / (8.0 * std::numbers::pi);
+}
+
 namespace detail {
 
 /// A ring of points around `centre`, in the plane of e and f, that stand for `length` of a bar along `axis`.

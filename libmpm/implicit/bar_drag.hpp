@@ -18,7 +18,7 @@ void add_bar_point(const ImplicitBody<Geometry>& body, const YieldLaw& law, int 
   PointTerm<D> term;
   term.cell = c, term.source = source;
   term.N = stencil<D>(grid.axes, cell, local_coordinates<D>(grid.axes, cell, bar.x)).N;
-  double tau_y = 0.0, full = 1.0;
+  double tau_y = 0.0, full = Geometry::measure(bar.x);
   for (double at_point : problem.quadrature.tau_y[c]) tau_y += at_point / power(2, D);
   for (const Axis& axis : grid.axes) full *= axis.h;
   term.scale += (bar_drag_along - 1.0) * bar.axis * bar.axis.transpose();

@@ -38,7 +38,8 @@ struct Inlet {
 inline double plug_speed(const Inlet& inlet) { return inlet.flow * inlet.node_speed; }
 
 /// The mouth on a grid: `cells` across, at the face `face`, with `columns` of points that cover as much of it each, and rows of
-/// height `row` [m]. A ring of points spreads as it moves outwards: equal widths would make small ones of those near the axis.
+/// height `row` [m]. A ring of points spreads as it moves outwards: equal widths would make small ones of those near the axis. The
+/// disk at the axis is three rings, or a void would open there where the concrete fans out.
 template <class Geometry>
 Inlet make_inlet(const std::array<Axis, 2>& axes, int cells, int face, int columns, double row) {
   Inlet inlet{.cells = cells, .face = face, .row = row};
@@ -46,9 +47,14 @@ Inlet make_inlet(const std::array<Axis, 2>& axes, int cells, int face, int colum
   constexpr double power = std::is_same_v<Geometry, Axisymmetric> ? 0.5 : 1.0;
   const double h = axes[0].h, edge = cells * h;
   double through = 0.0;  // at the speed 1 of the plug
-  for (int j = 0; j < columns; ++j) {
-    const double from = edge * std::pow(static_cast<double>(j) / columns, power),
-                 to = edge * std::pow((j + 1.0) / columns, power);
+  std::vector<double> faces{0.0};
+  if (power < 1.0)
+    for (const double part : {1.0 / 3.0, 2.0 / 3.0})
+      faces.push_back(part * edge * std::pow(1.0 / columns, power));
+  for (int j = 1; j <= columns; ++j)
+    faces.push_back(edge * std::pow(static_cast<double>(j) / columns, power));
+  for (std::size_t j = 0; j + 1 < faces.size(); ++j) {
+    const double from = faces[j], to = faces[j + 1];
     Inlet::Column column;
     double flow = 0.0, moment = 0.0;
     for (int k = 0; k < n; ++k) {
