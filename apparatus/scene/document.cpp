@@ -7,6 +7,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <charconv>
 #include <fstream>
 #include <iostream>
 #include <optional>
@@ -206,11 +207,37 @@ Override parse_override(const std::string& argument) {
   return result;
 }
 
+namespace {
+
+/// The table that "load[1]" names, the second of [[load]]; nullptr where the name has no index.
+Node* table_of_list(Node& node, const std::string& name, const Node& value) {
+  const auto bracket = name.find('[');
+  if (bracket == std::string::npos || bracket == 0 || name.back() != ']') return nullptr;
+  const std::string list = name.substr(0, bracket),
+                    digits = name.substr(bracket + 1, name.size() - bracket - 2);
+  std::size_t index = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
+  Node* const found = find(node, list);
+  auto* array = found ? std::get_if<Array>(&found->value) : nullptr;
+  const bool there =
+      error == std::errc{} && end == digits.data() + digits.size() && array && index < array->size();
+  if (!there)
+    complain(value, name,
+             array && !array->empty()
+                 ? fmt::format("allowed: {0}[0] to {0}[{1}], the tables [[{0}]] of the scene", list,
+                               array->size() - 1)
+                 : fmt::format("the scene has no table [[{}]] to change", list));
+  return &(*array)[index];
+}
+
+}  // namespace
+
 void put(Node& root, const std::vector<std::string>& path, Node value) {
   Node* node = &root;
   for (std::size_t i = 0; i < path.size(); ++i) {
     if (!std::holds_alternative<Table>(node->value)) *node = {value.origin, Table{}};
-    Node* next = find(*node, path[i]);
+    Node* next = table_of_list(*node, path[i], value);
+    if (!next) next = find(*node, path[i]);
     if (!next) {
       auto& table = std::get<Table>(node->value);
       table.push_back({path[i], {value.origin, Table{}}});

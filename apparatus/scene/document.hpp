@@ -63,7 +63,8 @@ struct Override {
 /// or KEY.
 Override parse_override(const std::string& argument);
 
-/// Writes a value into the tree, making tables on the way. A table lies under another table: they are merged.
+/// Writes a value into the tree, making tables on the way. A table lies under another table: they are merged. "load[1]" is
+/// the second table of [[load]], which must be there.
 void put(Node& root, const std::vector<std::string>& path, Node value);
 
 /// Lays the table `over` on the table `under`: what both have is taken from `over`, table by table.

@@ -25,8 +25,11 @@ std::vector<std::string> all_names(const scene::Schema& schema) {
 
 Key key_named(const std::string& key, const scene::Node& at, const scene::Schema& schema) {
   const auto dot = key.rfind('.');
-  const auto* section = dot == std::string::npos ? nullptr : scene::find_section(schema, key.substr(0, dot));
-  const auto* found = section ? scene::find_key(*section, key.substr(dot + 1)) : nullptr;
+  const std::string table = dot == std::string::npos ? "" : key.substr(0, dot);
+  const auto bracket = table.find('[');  // of "load[1]", a table of a list
+  const auto* section = table.empty() ? nullptr : scene::find_section(schema, table.substr(0, bracket));
+  const bool as_it_is = section && section->repeated == (bracket != std::string::npos);
+  const auto* found = as_it_is ? scene::find_key(*section, key.substr(dot + 1)) : nullptr;
   if (!found)
     complain(
         at, key,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <any>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -48,6 +49,10 @@ frames = false
 
 scene::Outcome run(const std::vector<std::string>& overrides = {}) {
   return scene::run(scene::read_text(pile, "pile.toml", overrides));
+}
+
+bored_pile::Scene bored_pile_scene(const std::vector<std::string>& overrides) {
+  return std::any_cast<const bored_pile::Scene&>(scene::read_text(pile, "pile.toml", overrides).test);
 }
 
 double result(const scene::Outcome& outcome, const char* name) {
@@ -112,6 +117,14 @@ TEST(BoredPile, SurfaceGainsStrengthInAPause) {
   EXPECT_GT(result(outcome, "static_yield_stress_surface_Pa"), 50.0 + 60.0);
 }
 
+// A table of a list is changed by its index: a longer pause before the second load, and nothing else.
+TEST(BoredPile, ALoadIsChangedByItsIndex) {
+  const auto before = bored_pile_scene({}), after = bored_pile_scene({"load[1].pause=2 min"});
+  EXPECT_EQ(after.loads[1].pause, 120.0);
+  EXPECT_EQ(after.loads[2].pause, before.loads[2].pause);
+  EXPECT_EQ(after.loads[1].volume, before.loads[1].volume);
+}
+
 // Concrete that is older than it is workable is told; so is a mouth that is pulled out of it.
 TEST(BoredPile, TellsOldConcreteAndAWashedMouth) {
   EXPECT_FALSE(run({"test.workable=1 min"}).checks.reasons.empty());
@@ -144,10 +157,11 @@ TEST(BoredPile, ReadsPressuresWithoutStripes) {
 }
 
 TEST(BoredPile, RefusesWhatCannotBePoured) {
-  for (const char* set : {"pipe.outer_radius=0.3 m", "pipe.inner_radius=90 mm", "pipe.pull=0.4 m",
-                          "pipe.embedment=[\"0.5 m\", \"0.2 m\"]", "pipe.start=1.1 m", "test.rate=0 m3/h",
-                          "fluid.density=2500 kg/m3", "cage.radius=0.28 m", "model.scheme=explicit",
-                          "model.cell=0.2 m", "cage.bars=60"})
+  for (const char* set :
+       {"pipe.outer_radius=0.3 m", "pipe.inner_radius=90 mm", "pipe.pull=0.4 m",
+        "pipe.embedment=[\"0.5 m\", \"0.2 m\"]", "pipe.start=1.1 m", "test.rate=0 m3/h",
+        "fluid.density=2500 kg/m3", "cage.radius=0.28 m", "model.scheme=explicit", "model.cell=0.2 m",
+        "cage.bars=60", "load[3].pause=1 s", "load[x].pause=1 s", "load[].pause=1 s", "pile[0].radius=1 m"})
     EXPECT_THROW(run({set}), scene::InputError) << set;
 }
 
