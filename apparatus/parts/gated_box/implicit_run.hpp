@@ -1,18 +1,16 @@
 #pragma once
 
-// The L-box test in one geometry: set up, step until rest, read.
+// The test in one geometry: set up, step until rest, read.
 
-#include <fmt/format.h>
-
-#include "apparatus/l_box/checks.hpp"
-#include "apparatus/l_box/l_box.hpp"
-#include "apparatus/l_box/reading.hpp"
-#include "apparatus/l_box/set_up.hpp"
+#include "apparatus/parts/gated_box/checks.hpp"
+#include "apparatus/parts/gated_box/gated_box.hpp"
+#include "apparatus/parts/gated_box/reading.hpp"
+#include "apparatus/parts/gated_box/set_up.hpp"
 #include "apparatus/run/experiment.hpp"
 #include "apparatus/run/passing.hpp"
 #include "libmpm/implicit/archived_state.hpp"
 
-namespace tremie::l_box {
+namespace tremie::gated_box {
 
 inline constexpr double detached_share = 0.005;  ///< share of the points that may fall off the column's walls
 inline constexpr double share_of_time = 0.01;    ///< largest step, in the time since the start of the lift
@@ -59,7 +57,7 @@ void read_results(const Body<Geometry>& body, const Scene& scene, std::optional<
 }
 
 template <class Geometry>
-Outcome run_in(const Scene& scene, const scene::Observer& observer) {
+Outcome run_in(const Scene& scene, const scene::Observer& observer, ProgressText text) {
   ImplicitBody<Geometry> body{filled_column<Geometry>(scene)};
   StepSettings settings = step_settings<Geometry>(scene);
   if constexpr (Geometry::dim == 3) add_bars(scene, body);
@@ -95,10 +93,7 @@ Outcome run_in(const Scene& scene, const scene::Observer& observer) {
       .stands_since = [&] { return Geometry::dim == 3 ? stands_since(outcome.series) : std::nullopt; },
       .state = [&](Archive& archive) { archive(body, outcome.series, through); }};
   experiment::run_experiment(
-      flow, body,
-      {scene.duration, scene.frame_interval,
-       [](const Sample& now) { return fmt::format("front {:.0f} mm", 1e3 * now.front); }},
-      observer,
+      flow, body, {scene.duration, scene.frame_interval, text}, observer,
       [&](const StepReport& step) {
         Sample line = read(body, scene, step);
         line.through_the_wall = through;
@@ -112,4 +107,4 @@ Outcome run_in(const Scene& scene, const scene::Observer& observer) {
   return outcome;
 }
 
-}  // namespace tremie::l_box
+}  // namespace tremie::gated_box

@@ -1,0 +1,9 @@
+#include "apparatus/parts/gated_box/implicit_run.hpp"
+
+namespace tremie::gated_box {
+
+Outcome run_3d(const Scene& scene, const scene::Observer& observer, ProgressText text) {
+  return run_in<ThreeD>(scene, observer, text);
+}
+
+}  // namespace tremie::gated_box
