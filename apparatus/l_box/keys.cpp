@@ -106,7 +106,7 @@ Scene read_scene(const Values& values) {
   scene.bars = static_cast<int>(values.integer("test.bars"));
   scene.model = read_model(values);
   scene.frame_interval = read_output(values).frame_interval;
-  gated_box::check_cells(values, scene);
+  boxes::check_cells(values, scene);
   return scene;
 }
 

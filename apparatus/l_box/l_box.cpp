@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "apparatus/parts/gated_box/checks.hpp"
-#include "apparatus/parts/gated_box/reading.hpp"
+#include "apparatus/parts/boxes/checks.hpp"
+#include "apparatus/parts/boxes/reading.hpp"
 
 namespace tremie::l_box {
 namespace {
@@ -13,12 +13,11 @@ namespace {
 /// In space a thin bed of a fluid mix may level beyond what its yield stress lets it, on cells with few points, or stop
 /// before cells that fast flow left half full have been mended (lbox_bars.md): at 50 Pa the drop is 1.16 times what the
 /// yield stress holds, with bars and without, at 20 Pa 1.37 and 1.63 times, and the ratio 0.07 and 0.15 too small.
-std::string wrong_level(const gated_box::View& j) {
+std::string wrong_level(const boxes::View& j) {
   constexpr double least = 0.6, most = 1.3;
   const Results& r = j.r;
   if (j.status != Status::completed || !r.h2 || !in_space(j.scene)) return {};
-  const gated_box::Stretch gate = gated_box::behind_the_gate(j.scene.box),
-                           end = gated_box::at_the_end(j.scene.box);
+  const boxes::Stretch gate = boxes::behind_the_gate(j.scene.box), end = boxes::at_the_end(j.scene.box);
   const double length = 0.5 * (end.low + end.high - gate.low - gate.high);
   const double right = drop_at_rest(j.scene, 0.5 * (r.h1 + *r.h2), length);
   const double drop = r.h1 - *r.h2;
@@ -41,8 +40,8 @@ double drop_at_rest(const Scene& scene, double h, double length) {
 }
 
 Outcome run(const Scene& scene, const scene::Observer& observer) {
-  Outcome outcome = gated_box::run(scene, observer);
-  scene::add_reasons<gated_box::View>({wrong_level}, {scene, outcome}, outcome.checks.reasons);
+  Outcome outcome = boxes::run(scene, observer);
+  scene::add_reasons<boxes::View>({wrong_level}, {scene, outcome}, outcome.checks.reasons);
   return outcome;
 }
 

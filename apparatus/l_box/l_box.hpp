@@ -1,21 +1,21 @@
 #pragma once
 
-// The L-box test of EN 12350-10: a box with a gate (parts/gated_box) whose channel the concrete runs along, without bars or, in
+// The L-box test of EN 12350-10: a box with a gate (parts/boxes) whose channel the concrete runs along, without bars or, in
 // space, with two or three in front of the gate.
 
 #include <string>
 
-#include "apparatus/parts/gated_box/gated_box.hpp"
+#include "apparatus/parts/boxes/boxes.hpp"
 
 namespace tremie::l_box {
 
-using gated_box::Box;
-using gated_box::estimate;
-using gated_box::in_space;
-using gated_box::Outcome;
-using gated_box::Results;
-using gated_box::Sample;
-using gated_box::Scene;
+using boxes::Box;
+using boxes::estimate;
+using boxes::in_space;
+using boxes::Outcome;
+using boxes::Results;
+using boxes::Sample;
+using boxes::Scene;
 
 /// Runs the test; as cone::run.
 Outcome run(const Scene& scene, const scene::Observer& observer = {});

@@ -6,7 +6,7 @@
 #include "apparatus/common/flow_readings.hpp"
 #include "apparatus/common/law_keys.hpp"
 #include "apparatus/common/shared_keys.hpp"
-#include "apparatus/parts/gated_box/gated_box.hpp"
+#include "apparatus/parts/boxes/boxes.hpp"
 
 namespace tremie::u_box {
 
@@ -14,7 +14,7 @@ using namespace scene;
 
 namespace {
 
-using View = RunView<gated_box::Scene, gated_box::Outcome>;
+using View = RunView<boxes::Scene, boxes::Outcome>;
 
 Section box_section() {
   return {
@@ -23,7 +23,7 @@ Section box_section() {
           "Inner dimensions; the defaults are those of reference_data/boxes/u_box.toml. Or box = "
           "\"u_box\", a name from that folder, or a path to a .toml file.",
       .keys = {{.name = "compartment",
-                .range = positive,
+                .range = {.low = 0.05},
                 .fallback = "140 mm",
                 .help = "length of each of the two, along the flow"},
                {.name = "height", .range = positive, .fallback = "680 mm", .help = "of the concrete too"},
@@ -67,8 +67,8 @@ ApparatusKeys keys() {
           .settle = settle};
 }
 
-gated_box::Scene read_scene(const Values& values) {
-  gated_box::Scene scene;
+boxes::Scene read_scene(const Values& values) {
+  boxes::Scene scene;
   const double compartment = values.number("box.compartment");
   scene.mix = read_mix(values);
   scene.box = {.column_length = compartment,
@@ -82,7 +82,7 @@ gated_box::Scene read_scene(const Values& values) {
   scene.walls = read_wall_law(values, "walls");
   scene.model = read_model(values);
   scene.frame_interval = read_output(values).frame_interval;
-  gated_box::check_cells(values, scene);
+  boxes::check_cells(values, scene);
   return scene;
 }
 
@@ -95,7 +95,7 @@ std::string far_wall_not_reached(const View& v) { return "none: the far wall was
 
 Rows<View> height_rows() {
   using V = const View&;
-  using S = const gated_box::Sample&;
+  using S = const boxes::Sample&;
   return {{.name = "rise_mm",
            .words = "filling height, of the concrete beyond the gate",
            .value = [](V v) { return number(v.r.h2, mm); },
@@ -127,8 +127,8 @@ const std::vector<Reading<View>>& readings() {
 }
 
 /// The box seen from the side: the two compartments, and the gate that rises.
-Stage stage_of(const gated_box::Scene& scene) {
-  const gated_box::Box& box = scene.box;
+Stage stage_of(const boxes::Scene& scene) {
+  const boxes::Box& box = scene.box;
   const double middle = box.column_length, end = middle + box.channel_length;
   Stage stage;
   stage.up = 1, stage.depth = 2;
@@ -161,8 +161,8 @@ std::string few_cells_across(const View& v) {
       cells, least);
 }
 
-Outcome run_and_read(const gated_box::Scene& scene, const RunOptions& options, const Observer& observer) {
-  const gated_box::Outcome raw = gated_box::run(scene, observer, [](const gated_box::Sample& now) {
+Outcome run_and_read(const boxes::Scene& scene, const RunOptions& options, const Observer& observer) {
+  const boxes::Outcome raw = boxes::run(scene, observer, [](const boxes::Sample& now) {
     return fmt::format("behind the gate {:.0f} mm, beyond it {:.0f} mm", mm * now.h1,
                        mm * now.h2.value_or(0.0));
   });
@@ -183,7 +183,7 @@ Outcome run_and_read(const gated_box::Scene& scene, const RunOptions& options, c
   return outcome;
 }
 
-std::vector<std::string> uses(const gated_box::Scene& scene) {
+std::vector<std::string> uses(const boxes::Scene& scene) {
   std::vector<std::string> lines{flocculation_use(scene.mix)};
   lines.push_back(scene.gate_speed ? "gate: a moving wall along which the concrete slips"
                                    : "gate: left out (test.gate_speed = \"instant\")");
@@ -198,8 +198,8 @@ std::vector<std::string> uses(const gated_box::Scene& scene) {
 }  // namespace
 
 Apparatus apparatus() {
-  return make_apparatus<gated_box::Scene>(apparatus_of(keys(), "U-box", readings()), read_scene, uses,
-                                          run_and_read, gated_box::estimate);
+  return make_apparatus<boxes::Scene>(apparatus_of(keys(), "U-box", readings()), read_scene, uses,
+                                      run_and_read, boxes::estimate);
 }
 
 }  // namespace tremie::u_box

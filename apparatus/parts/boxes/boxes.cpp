@@ -1,12 +1,12 @@
-#include "apparatus/parts/gated_box/gated_box.hpp"
+#include "apparatus/parts/boxes/boxes.hpp"
 
 #include <fmt/format.h>
 #include <omp.h>
 
 #include "apparatus/common/shared_keys.hpp"
-#include "apparatus/parts/gated_box/set_up.hpp"
+#include "apparatus/parts/boxes/set_up.hpp"
 
-namespace tremie::gated_box {
+namespace tremie::boxes {
 namespace {
 
 /// When the run is expected to end at rest [s]: as Mix A does with and without rest, and a plain Bingham concrete, to
@@ -30,6 +30,9 @@ void count(const Scene& scene, scene::SizeEstimate& e) {
   if (Geometry::dim == 3) cells *= computed_width(scene) / h, in_a_cell *= n_up;
   experiment::count_points(
       cells, in_a_cell, [&] { return filled_column<Geometry>(scene); }, e);
+  if (scene.pour)
+    e.cells_active = experiment::whole_steps(scene.pour->volume / scene.box.width / (h * h_up)),
+    e.points = experiment::whole_steps(static_cast<double>(e.cells_active) * n * n_up);
   e.bytes_per_point = bytes_per_point<Geometry::dim>(scene.mix.thixotropy.has_value());
 }
 
@@ -44,7 +47,7 @@ scene::SizeEstimate estimate_in(const Scene& scene) {
     return experiment::whole_steps(scene.model.time_step ? time / *scene.model.time_step
                                                          : share * collapse + time / dt);
   };
-  e.time_expected = expected_time(scene);
+  e.time_expected = std::min(scene.duration, expected_time(scene) + (scene.pour ? scene.pour->time : 0.0));
   e.point_step = in_space(scene) ? 1.6e-6 : 0.75e-6;
   e.steps = steps(1.0, scene.duration, settings.dt_max);
   e.steps_expected = std::min(e.steps, steps(0.8, e.time_expected, 2.3 * settings.dt_max));
@@ -87,4 +90,4 @@ scene::SizeEstimate estimate(const Scene& scene) {
   return in_space(scene) ? estimate_in<ThreeD>(scene) : estimate_in<PlaneStrain>(scene);
 }
 
-}  // namespace tremie::gated_box
+}  // namespace tremie::boxes

@@ -1,9 +1,9 @@
-#include "apparatus/parts/gated_box/implicit_run.hpp"
+#include "apparatus/parts/boxes/implicit_run.hpp"
 
-namespace tremie::gated_box {
+namespace tremie::boxes {
 
 Outcome run_3d(const Scene& scene, const scene::Observer& observer, ProgressText text) {
   return run_in<ThreeD>(scene, observer, text);
 }
 
-}  // namespace tremie::gated_box
+}  // namespace tremie::boxes

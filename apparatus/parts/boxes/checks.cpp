@@ -1,4 +1,4 @@
-#include "apparatus/parts/gated_box/checks.hpp"
+#include "apparatus/parts/boxes/checks.hpp"
 
 #include <fmt/format.h>
 
@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include "apparatus/common/readings.hpp"
-#include "apparatus/parts/gated_box/reading.hpp"
+#include "apparatus/parts/boxes/reading.hpp"
 #include "apparatus/run/run_checks.hpp"
 
-namespace tremie::gated_box {
+namespace tremie::boxes {
 namespace {
 
 /// The last line of the series that is at least standing_lasts old; the end of the series where there is none.
@@ -133,4 +133,4 @@ void add_reasons(const Scene& scene, Outcome& outcome) {
                            {scene, outcome}, outcome.checks.reasons);
 }
 
-}  // namespace tremie::gated_box
+}  // namespace tremie::boxes

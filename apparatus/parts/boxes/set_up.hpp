@@ -11,12 +11,12 @@
 #include <vector>
 
 #include "apparatus/parts/bars.hpp"
-#include "apparatus/parts/gated_box/gated_box.hpp"
+#include "apparatus/parts/boxes/boxes.hpp"
 #include "apparatus/run/body_readings.hpp"
 #include "apparatus/run/step_settings.hpp"
 #include "libmpm/particles/seeding.hpp"
 
-namespace tremie::gated_box {
+namespace tremie::boxes {
 
 /// Width that is computed [m]; 1 in the plane, whose volumes are per metre.
 inline double computed_width(const Scene& scene) {
@@ -141,4 +141,4 @@ std::vector<Sheet<Geometry::dim>> walls_inside(const Scene& scene, const Axis& a
 Outcome run_plane(const Scene& scene, const scene::Observer& observer, ProgressText text);
 Outcome run_3d(const Scene& scene, const scene::Observer& observer, ProgressText text);
 
-}  // namespace tremie::gated_box
+}  // namespace tremie::boxes

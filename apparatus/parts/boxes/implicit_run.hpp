@@ -2,15 +2,16 @@
 
 // The test in one geometry: set up, step until rest, read.
 
-#include "apparatus/parts/gated_box/checks.hpp"
-#include "apparatus/parts/gated_box/gated_box.hpp"
-#include "apparatus/parts/gated_box/reading.hpp"
-#include "apparatus/parts/gated_box/set_up.hpp"
+#include "apparatus/parts/boxes/boxes.hpp"
+#include "apparatus/parts/boxes/checks.hpp"
+#include "apparatus/parts/boxes/pour.hpp"
+#include "apparatus/parts/boxes/reading.hpp"
+#include "apparatus/parts/boxes/set_up.hpp"
 #include "apparatus/run/experiment.hpp"
 #include "apparatus/run/passing.hpp"
 #include "libmpm/implicit/archived_state.hpp"
 
-namespace tremie::gated_box {
+namespace tremie::boxes {
 
 inline constexpr double detached_share = 0.005;  ///< share of the points that may fall off the column's walls
 inline constexpr double share_of_time = 0.01;    ///< largest step, in the time since the start of the lift
@@ -56,6 +57,14 @@ void read_results(const Body<Geometry>& body, const Scene& scene, std::optional<
   read_profile(body, scene, r);
 }
 
+/// The mass is that which was poured, and what is poured does not fall.
+template <class Geometry>
+void judge_pour(const Body<Geometry>& body, const Poured& poured, Checks& checks) {
+  const double in_points = body.mix.density * (poured.section - poured.waiting);
+  checks.mass_error = experiment::total_mass(body.points) / in_points - 1.0;
+  checks.stood_still = false;
+}
+
 template <class Geometry>
 Outcome run_in(const Scene& scene, const scene::Observer& observer, ProgressText text) {
   ImplicitBody<Geometry> body{filled_column<Geometry>(scene)};
@@ -64,6 +73,7 @@ Outcome run_in(const Scene& scene, const scene::Observer& observer, ProgressText
 
   Outcome outcome;
   double through = 0.0;  // gate and front wall, share of the volume
+  Poured poured{scene.box.column_length * scene.box.column_height};
   const experiment::Flow flow{
       .time = [&] { return body.time; },
       .unfinished = [&] { return experiment::has_time_left(body.time, scene.duration); },
@@ -81,6 +91,8 @@ Outcome run_in(const Scene& scene, const scene::Observer& observer, ProgressText
             const double edge = gate_edge(scene, body.time);
             const StepReport step = implicit_step(body, scene.model.law, settings);
             through += share_through_the_wall(body, from, edge);
+            if constexpr (Geometry::dim == 2)
+              if (scene.pour && !step.failed) let_in(scene, poured, body);
             experiment::count_step(body, step, checks, cost);
             experiment::watch_fixed_step(body, scene.model, step, checks);
             return step;
@@ -89,9 +101,16 @@ Outcome run_in(const Scene& scene, const scene::Observer& observer, ProgressText
       // Drops from the films on the column's walls fall long after the concrete stands.
       .speed = [](const StepReport& step) { return step.bulk_speed; },
       .free_to_flow =
-          [&] { return !scene.gate_speed || *scene.gate_speed * body.time > scene.box.channel_height; },
+          [&] {
+            return (!scene.gate_speed || *scene.gate_speed * body.time > scene.box.channel_height) &&
+                   (!scene.pour || body.time > scene.pour->time);
+          },
       .stands_since = [&] { return Geometry::dim == 3 ? stands_since(outcome.series) : std::nullopt; },
-      .state = [&](Archive& archive) { archive(body, outcome.series, through); }};
+      .state =
+          [&](Archive& archive) {
+            archive(body, outcome.series, through);
+            if (scene.pour) archive(poured.section, poured.waiting);
+          }};
   experiment::run_experiment(
       flow, body, {scene.duration, scene.frame_interval, text}, observer,
       [&](const StepReport& step) {
@@ -101,10 +120,11 @@ Outcome run_in(const Scene& scene, const scene::Observer& observer, ProgressText
       },
       [&](std::optional<double> stopped_at) {
         read_results(body, scene, stopped_at, outcome);
+        if (scene.pour) judge_pour(body, poured, outcome.checks);
         add_reasons(scene, outcome);
       },
       outcome);
   return outcome;
 }
 
-}  // namespace tremie::gated_box
+}  // namespace tremie::boxes

@@ -2,7 +2,7 @@
 
 // A box with a gate, in the plane along it or in space: a column of concrete that flows under a wall into what lies beyond
 // when the gate is lifted. An L-box has a channel there, a U-box a second shaft. Without bars or, in space, with some in front
-// of the gate.
+// of the gate. In the plane the concrete may be poured where the column would stand, as into the LCPC box.
 
 #include <array>
 #include <optional>
@@ -14,7 +14,7 @@
 #include "apparatus/run/record.hpp"
 #include "libmpm/constitutive/mix.hpp"
 
-namespace tremie::gated_box {
+namespace tremie::boxes {
 
 /// Inner dimensions [m], by default EN 12350-10's. The channel begins at the gate.
 struct Box {
@@ -26,6 +26,12 @@ struct Box {
   double bar_diameter = 0.012;
 };
 
+/// A pour in place of a column that stands there.
+struct Pour {
+  double volume = 6e-3;  ///< [m^3]
+  double time = 30.0;    ///< that it takes [s]
+};
+
 /// So stiff that a column of 0.6 m compresses by less than 0.2 % under its own weight [Pa]: rho g H / 2 K.
 inline constexpr double default_bulk_modulus = 5e6;
 
@@ -35,6 +41,7 @@ struct Scene {
   Box box;
   double rest = 60.0;                       ///< in the column, before the gate is lifted [s]
   double duration = 180.0;                  ///< of the flow, at most [s]
+  std::optional<Pour> pour = {};            ///< in the plane alone; the column is what lies there at time 0
   std::optional<double> gate_speed = 0.30;  ///< [m/s]; empty: the gate is gone at once
   WallLaw walls = NoSlip{};                 ///< floor, ends, front wall, gate and side walls
   int bars = 0;                             ///< in space alone
@@ -93,4 +100,4 @@ bool in_space(const Scene& scene);
 /// Width of the gaps between the bars, and between them and the side walls [m].
 double gap_between_bars(const Scene& scene);
 
-}  // namespace tremie::gated_box
+}  // namespace tremie::boxes

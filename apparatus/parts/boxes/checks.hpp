@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "apparatus/common/readings.hpp"
-#include "apparatus/parts/gated_box/gated_box.hpp"
+#include "apparatus/parts/boxes/boxes.hpp"
 
-namespace tremie::gated_box {
+namespace tremie::boxes {
 
 /// A box stands where its depths and its front have moved by less than this for so long: what a person with a rule
 /// sees. Films on the walls in space drain for as long as one looks.
@@ -34,4 +34,4 @@ std::string went_through_the_wall(const View& run);
 /// Adds the reasons of all checks.
 void add_reasons(const Scene& scene, Outcome& outcome);
 
-}  // namespace tremie::gated_box
+}  // namespace tremie::boxes
