@@ -17,16 +17,19 @@ using namespace scene;
 namespace {
 
 Section ring_section() {
-  return {
-      .name = "ring",
-      .help =
-          "Bars on a circle about the cone; the defaults are EN 12350-12's narrow gaps (wide ones: 12 bars).",
-      .keys = {{.name = "bars", .kind = Kind::integer, .range = between(4, 64), .fallback = "16"},
-               {.name = "bar_diameter", .range = positive, .fallback = "18 mm"},
-               {.name = "diameter",
-                .range = positive,
-                .fallback = "300 mm",
-                .help = "of the circle through the bars' middles"}}};
+  return {.name = "ring",
+          .help =
+              "Bars on a circle about the cone; the defaults are EN 12350-12's narrow gaps. Or ring = "
+              "\"en_wide\" or "
+              "\"astm\" (ASTM C1621), names from reference_data/rings, or a path to a .toml file.",
+          .keys = {{.name = "bars", .kind = Kind::integer, .range = between(4, 64), .fallback = "16"},
+                   {.name = "bar_diameter", .range = positive, .fallback = "18 mm"},
+                   {.name = "diameter",
+                    .range = positive,
+                    .fallback = "300 mm",
+                    .help = "of the circle through the bars' middles"},
+                   {.name = "name", .kind = Kind::text, .help = "what people call it"},
+                   {.name = "standard", .kind = Kind::text, .help = "that describes it"}}};
 }
 
 void settle(Values& values) {
@@ -44,7 +47,7 @@ void settle(Values& values) {
 
 ApparatusKeys keys() {
   return {.name = "j_ring",
-          .help = "The J-ring test of EN 12350-12.",
+          .help = "The J-ring test of EN 12350-12 and ASTM C1621.",
           .schema = joined(
               {mix_sections(),
                cone::sections(),
@@ -85,6 +88,26 @@ std::optional<double> spread_lost(const View& v) {
   return v.plain.results.spread - v.r.spread;
 }
 
+/// ASTM C1621's ring, whose dimensions may be off by 1 mm.
+bool is_astm(const cone::Ring& ring) {
+  const auto is = [](double x, double y) { return std::abs(x - y) < 1.001e-3; };
+  return ring.bars == 16 && is(ring.bar_diameter, 0.016) && is(ring.diameter, 0.3);
+}
+
+/// The assessment of ASTM C1621 by the spread that is lost.
+std::string blocking_of(const View& v) {
+  const auto lost = spread_lost(v);
+  if (!lost || !is_astm(*v.scene.ring) || !cone::is_abrams(v.scene.cone, true)) return "";
+  return *lost <= 0.025   ? "no visible blocking"
+         : *lost <= 0.050 ? "minimal to noticeable blocking"
+                          : "noticeable to extreme blocking";
+}
+
+std::string no_blocking(const View& v) {
+  return spread_lost(v) ? "none: ring or cone are not those of ASTM C1621"
+                        : "not known: a run did not come to its end";
+}
+
 const std::vector<Reading<View>>& readings() {
   using V = const View&;
   using S = const cone::Sample&;
@@ -107,6 +130,11 @@ const std::vector<Reading<View>>& readings() {
                   .label = "spread lost",
                   .none = [](V) { return std::string("not known: a run did not come to its end"); },
                   .measurable = true},
+                 {.name = "blocking_astm_c1621",
+                  .words = "assessment of the spread that is lost (ASTM C1621)",
+                  .value = [](V v) { return word_or_null(blocking_of(v)); },
+                  .label = "assessment",
+                  .none = no_blocking},
                  {"height_mm", "height at the centre", [](V v) { return number(v.r.height, mm); },
                   [](V, S s) { return s.height * mm; }}},
       stopped_row<View>(), flocculation_rows<View>(), motion_columns<View>(), step_columns<View>());
@@ -144,6 +172,9 @@ Outcome run(const cone::Scene& scene, const RunOptions& options, const Observer&
   add_reasons<View>({inertia_at_the_bars, wide_cells_at_the_bars}, view, outcome.checks.reasons);
   for (const std::string& reason : plain.checks.reasons)
     outcome.checks.reasons.push_back("without the ring: " + reason);
+  if (const std::string blocking = blocking_of(view); !blocking.empty())
+    outcome.judged =
+        fmt::format("ASTM C1621 calls a loss of {:.0f} mm {}.", mm * *spread_lost(view), blocking);
   outcome.moving_at_end = !raw.results.stopped_at;
   if (raw.results.spread < scene.ring->diameter && !outcome.moving_at_end)
     outcome.remarks.push_back(

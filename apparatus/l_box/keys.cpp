@@ -77,22 +77,6 @@ void settle(Values& values) {
                             write_quantity(values.number("box.column_height"), Dimension::length)));
 }
 
-/// Cells must resolve the column and the gate, and the points must fit into a computer.
-void check_cells(const Values& values, const Scene& scene) {
-  const auto [across, up] = scene.model.cell;
-  const Box& box = scene.box;
-  if (across > box.column_length || up > box.channel_height) {
-    values.fail("model.cell",
-                fmt::format("is larger than the column or the gate; allowed: at most [\"{}\", \"{}\"]",
-                            write_quantity(box.column_length, Dimension::length),
-                            write_quantity(box.channel_height, Dimension::length)));
-  }
-  const auto [n_across, n_up] = scene.model.points_per_cell;
-  const double section = box.column_length / across * n_across * box.column_height / up * n_up;
-  const double points = in_the_plane(values) ? section : section * box.width / across * n_up;
-  check_points(values, points);
-}
-
 }  // namespace
 
 ApparatusKeys keys() {
@@ -122,7 +106,7 @@ Scene read_scene(const Values& values) {
   scene.bars = static_cast<int>(values.integer("test.bars"));
   scene.model = read_model(values);
   scene.frame_interval = read_output(values).frame_interval;
-  check_cells(values, scene);
+  boxes::check_cells(values, scene);
   return scene;
 }
 

@@ -1,85 +1,24 @@
 #pragma once
 
-// The L-box test of EN 12350-10, in the plane along its channel or in space: a column of concrete behind a
-// gate, and how high it stands at the end of the channel when the gate is lifted. Without bars or, in space,
-// with two or three in front of the gate.
+// The L-box test of EN 12350-10: a box with a gate (parts/boxes) whose channel the concrete runs along, without bars or, in
+// space, with two or three in front of the gate.
 
-#include <array>
-#include <optional>
 #include <string>
-#include <vector>
 
-#include "apparatus/common/apparatus.hpp"
-#include "apparatus/common/model.hpp"
-#include "apparatus/run/record.hpp"
-#include "libmpm/constitutive/mix.hpp"
+#include "apparatus/parts/boxes/boxes.hpp"
 
 namespace tremie::l_box {
 
-/// EN 12350-10's box, inner dimensions [m]. The channel begins at the gate.
-struct Box {
-  double column_length = 0.10;
-  double column_height = 0.60;
-  double channel_length = 0.70;
-  double channel_height = 0.15;
-  double width = 0.20;
-};
-
-inline constexpr double bar_diameter = 0.012;  ///< [m]
-
-/// So stiff that a column of 0.6 m compresses by less than 0.2 % under its own weight [Pa]: rho g H / 2 K.
-inline constexpr double default_bulk_modulus = 5e6;
-
-/// A checked scene, SI units.
-struct Scene {
-  Mix mix = {.K = default_bulk_modulus, .thixotropy = {}};
-  Box box;
-  double rest = 60.0;                       ///< in the column, before the gate is lifted [s]
-  double duration = 180.0;                  ///< of the flow, at most [s]
-  std::optional<double> gate_speed = 0.30;  ///< [m/s]; empty: the gate is gone at once
-  WallLaw walls = NoSlip{};                 ///< floor, ends, front wall, gate and side walls
-  int bars = 0;                             ///< 0; 2 or 3 in space alone
-  Model model;
-  double frame_interval = 0.0;  ///< simulated time between frames [s]; 0: chosen (run/run_loop.hpp)
-  int threads = 1;
-  /// Against velocities that alternate from node to node (libmpm/implicit/problem/yield_problem.hpp), in plastic
-  /// viscosities; no scene key, for studies.
-  double alternating_viscosity = 100.0;
-  bool side_walls_slip = false;  ///< in space; no scene key, for studies
-};
-
-/// One line of timeseries.csv.
-struct Sample {
-  double time = 0.0;              ///< since the start of the lift [s]
-  double front = 0.0;             ///< distance of the front from the gate [m], 0 behind it
-  double h1 = 0.0;                ///< depth behind the gate, as reading.hpp has it [m]
-  std::optional<double> h2;       ///< depth at the channel's end [m]; empty before the front is there
-  double through_the_wall = 0.0;  ///< share of the volume that has gone through gate or front wall so far
-  double max_speed = 0.0;         ///< [m/s]
-  double shear_rate_mean = 0.0;   ///< volume mean [1/s]
-  std::optional<double> flocculation_mean;
-  double volume_change = 0.0;  ///< sum V / V0 - 1
-  double time_step = 0.0;      ///< [s]
-  int iterations = 0;
-};
-
-struct Results {
-  double h1 = 0.0;                          ///< [m]
-  std::optional<double> h2, passing_ratio;  ///< empty where the concrete never reached the end
-  std::optional<double> ratio_change;       ///< of the passing ratio over the last standing_lasts [1/s]
-  std::optional<double> t200, t400;         ///< front 200 and 400 mm from the gate [s]
-  std::optional<double> stopped_at;         ///< [s]
-  std::optional<double> flocculation_mean_start, flocculation_mean_end;
-  std::vector<std::array<double, 2>> profile;  ///< distance from the gate and depth at the end [m]
-  double volume_in_channel = 0.0;              ///< at the end, over the whole width [m^3]
-};
-
-using Outcome = experiment::Record<Results, Sample>;
+using boxes::Box;
+using boxes::estimate;
+using boxes::in_space;
+using boxes::Outcome;
+using boxes::Results;
+using boxes::Sample;
+using boxes::Scene;
 
 /// Runs the test; as cone::run.
 Outcome run(const Scene& scene, const scene::Observer& observer = {});
-
-scene::SizeEstimate estimate(const Scene& scene);
 
 /// The keys of `apparatus = "l_box"`, and the checked values as a scene; throws InputError where they do not fit each other.
 scene::ApparatusKeys keys();
@@ -88,11 +27,9 @@ Scene read_scene(const scene::Values& values);
 /// The apparatus for the registry.
 scene::Apparatus apparatus();
 
-/// Whether the box is computed in three dimensions.
-bool in_space(const Scene& scene);
-
-/// Width of the gaps between the bars, and between them and the side walls [m].
-double gap_between_bars(const Scene& scene);
+/// What H1 exceeds H2 by in a bed of depth h at rest, `length` between the two, where it flowed as far as its yield
+/// stress lets it: floor and side walls hold tau_0 (1 + 2 h/W) of rho g h dh/dx, and the bars their own [m].
+double drop_at_rest(const Scene& scene, double h, double length);
 
 /// EN 12350-10 class of a passing ratio: "PL1" (two bars) or "PL2" (three) from 0.80 on; "" below it or
 /// without bars.

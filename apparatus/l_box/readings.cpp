@@ -184,7 +184,7 @@ std::string judged(const Scene& scene, const Results& r) {
 }
 
 scene::Outcome run_and_read(const Scene& scene, const RunOptions& options, const Observer& observer) {
-  const Outcome raw = run(scene, observer);
+  const Outcome raw = l_box::run(scene, observer);
   scene::Outcome outcome = outcome_of(readings(), View{scene, raw}, options.measured.name, "L-box");
   outcome.moving_at_end = !raw.results.stopped_at;
   outcome.judged = judged(scene, raw.results);

@@ -88,7 +88,7 @@ std::string slip(const UsualRange& range, double value, const std::string& text,
 }
 
 /// What stands in an apparatus at the start.
-constexpr const char* heights[] = {"cone.height", "box.column_height"};
+constexpr const char* heights[] = {"cone.height", "box.column_height", "box.height"};
 
 }  // namespace
 

@@ -4,9 +4,10 @@
 
 #include <atomic>
 
-#include "apparatus/l_box/checks.hpp"
-#include "apparatus/l_box/reading.hpp"
+#include "apparatus/l_box/l_box.hpp"
 #include "apparatus/parts/bars.hpp"
+#include "apparatus/parts/boxes/checks.hpp"
+#include "apparatus/parts/boxes/reading.hpp"
 #include "apparatus/registry/registry.hpp"
 
 namespace tremie {
@@ -53,10 +54,10 @@ TEST(LBoxChecks, NothingPassesAShutGate) {
 TEST(LBoxChecks, TheGateStandsOnAFaceOfTheGrid) {
   for (const auto& [column, channel] : {std::pair{0.1, 0.7}, {0.097, 0.713}, {0.12, 0.55}})
     for (double cell : {0.025, 0.015, 0.0125, 0.01, 0.00625, 0.005}) {
-      const Axis axis = l_box::along_the_channel({.column_length = column, .channel_length = channel}, cell);
+      const Axis axis = boxes::along_the_channel({.column_length = column, .channel_length = channel}, cell);
       EXPECT_NEAR(axis.length(), column + channel, 1e-12);
       EXPECT_NEAR(axis.h / cell, 1.0, 0.3) << cell;
-      EXPECT_NEAR(l_box::place_of_gate(axis) / column, 1.0, 0.01) << column << " " << cell;
+      EXPECT_NEAR(boxes::place_of_gate(axis) / column, 1.0, 0.01) << column << " " << cell;
     }
 }
 
@@ -64,12 +65,12 @@ TEST(LBoxChecks, TheGateStandsOnAFaceOfTheGrid) {
 // below it did not.
 TEST(LBoxChecks, WhatCrossesTheWallAboveTheOpeningIsCounted) {
   Body<PlaneStrain> body;
-  body.grid.axes[0] = l_box::along_the_channel({}, 0.01);
+  body.grid.axes[0] = boxes::along_the_channel({}, 0.01);
   body.grid.axes[1] = {.h = 0.01};
   for (double y : {0.5, 0.3, 0.1, 0.05}) add_point<2>(body.points, {0.099, y}, 1.0, 1e-4, 0.0);
   const auto from = body.points.x;
   body.points.x[0][0] = body.points.x[3][0] = 0.101;
-  EXPECT_NEAR(l_box::share_through_the_wall(body, from, 0.15), 0.25, 1e-12);
+  EXPECT_NEAR(boxes::share_through_the_wall(body, from, 0.15), 0.25, 1e-12);
 }
 
 // A thousandth through the wall is nothing, three thousandths are a leak.
@@ -78,7 +79,7 @@ TEST(LBoxChecks, ConcreteThatGoesThroughTheWallIsMarked) {
     l_box::Outcome outcome;
     outcome.series.resize(2);
     outcome.series.back().through_the_wall = through;
-    EXPECT_EQ(!l_box::went_through_the_wall({{}, outcome}).empty(), marked) << through;
+    EXPECT_EQ(!boxes::went_through_the_wall({{}, outcome}).empty(), marked) << through;
   }
 }
 
@@ -113,20 +114,20 @@ std::vector<l_box::Sample> sinking(int seconds, double fall) {
 
 // 0.9 mm in 30 s is less than the millimetre that a rule shows, 1.2 mm is more; and 30 s must have gone by.
 TEST(LBoxStands, WhereItsDepthsKeepForHalfAMinute) {
-  EXPECT_FALSE(l_box::stands_since(sinking(29, 0.0)));
-  EXPECT_EQ(l_box::stands_since(sinking(40, 3e-5)), 10.0);
-  EXPECT_FALSE(l_box::stands_since(sinking(40, 4e-5)));
+  EXPECT_FALSE(boxes::stands_since(sinking(29, 0.0)));
+  EXPECT_EQ(boxes::stands_since(sinking(40, 3e-5)), 10.0);
+  EXPECT_FALSE(boxes::stands_since(sinking(40, 4e-5)));
   auto arrives = sinking(40, 0.0);
   for (int t = 0; t < 20; ++t) arrives[t].h2.reset();
-  EXPECT_FALSE(l_box::stands_since(arrives));
+  EXPECT_FALSE(boxes::stands_since(arrives));
 }
 
 // H2/H1 from 0.5 at 10 s to 0.56 at 40 s: 0.12 a minute.
 TEST(LBoxStands, RatioChangesByTheMinute) {
   auto series = sinking(40, 0.0);
   series.back().h2 = 0.56 * series.back().h1;
-  EXPECT_NEAR(*l_box::ratio_change(series) * 60.0, 0.12, 1e-12);
-  EXPECT_FALSE(l_box::ratio_change(sinking(20, 0.0)));
+  EXPECT_NEAR(*boxes::ratio_change(series) * 60.0, 0.12, 1e-12);
+  EXPECT_FALSE(boxes::ratio_change(sinking(20, 0.0)));
 }
 
 // In a box without side walls F(h) = h^2/2 falls by tau_0 L/rho g: from 80 mm to 60 mm over 0.7 m at 47.1 Pa. The drop at
@@ -147,7 +148,7 @@ TEST(LBoxChecks, ReynoldsNumberOfTheBarsIsThatOfTheFastestFront) {
   auto series = sinking(2, 0.0);
   series[0].front = 0.0, series[1].front = 0.2;
   const auto reynolds = [&](const std::vector<l_box::Sample>& of) {
-    return parts::bar_reynolds(scene.mix, scene.model.law, l_box::fastest_front(of), l_box::bar_diameter);
+    return parts::bar_reynolds(scene.mix, scene.model.law, boxes::fastest_front(of), scene.box.bar_diameter);
   };
   EXPECT_NEAR(reynolds(series), 7.5, 1e-12);
   EXPECT_EQ(reynolds(sinking(2, 0.0)), 0.0);

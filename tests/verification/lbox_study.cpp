@@ -173,7 +173,7 @@ int main(int argc, char** argv) {
   md << "μ = 30 Pa·s, K = 5 MPa, gate at 30 cm/s, 16×4 points a cell, 180 s at most. H1 and H2 are the "
         "volume that "
         "stands on the floor over its area, 20 to 80 mm from the back of the column and from the end wall "
-        "(apparatus/l_box/reading.hpp says why). \"Closed form\" is the thin-layer profile at rest, F(h) − "
+        "(apparatus/parts/boxes/reading.hpp says why). \"Closed form\" is the thin-layer profile at rest, F(h) − "
         "F(h2) = "
         "(τ0/ρg)(L − x), at the volume of the run from 100 mm behind the gate on: its H2/H1 at the same "
         "places, the "

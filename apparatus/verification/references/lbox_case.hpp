@@ -50,7 +50,7 @@ inline Profile at_the_volume_of(const std::vector<std::array<double, 2>>& measur
   return {tau_0, width, end, 0.5 * (low + high)};
 }
 
-/// H2/H1 of a profile, over the stretches of apparatus/l_box/reading.hpp: 60 mm long, 20 mm off the walls.
+/// H2/H1 of a profile, over the stretches of apparatus/parts/boxes/reading.hpp: 60 mm long, 20 mm off the walls.
 inline double passing_ratio(const Profile& profile) {
   return profile.depth(profile.end - 0.05) / profile.depth(-0.05);
 }

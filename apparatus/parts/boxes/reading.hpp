@@ -13,9 +13,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apparatus/l_box/set_up.hpp"
+#include "apparatus/parts/boxes/set_up.hpp"
 
-namespace tremie::l_box {
+namespace tremie::boxes {
 
 inline constexpr double off_the_walls = 0.02;  ///< no depth is read nearer to a wall [m]
 
@@ -118,4 +118,4 @@ void read_profile(const Body<Geometry>& body, const Scene& scene, Results& r) {
   r.volume_in_channel = volume / width * box.width;
 }
 
-}  // namespace tremie::l_box
+}  // namespace tremie::boxes

@@ -1,4 +1,4 @@
-#include "apparatus/l_box/checks.hpp"
+#include "apparatus/parts/boxes/checks.hpp"
 
 #include <fmt/format.h>
 
@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include "apparatus/common/readings.hpp"
-#include "apparatus/l_box/reading.hpp"
+#include "apparatus/parts/boxes/reading.hpp"
 #include "apparatus/run/run_checks.hpp"
 
-namespace tremie::l_box {
+namespace tremie::boxes {
 namespace {
 
 /// The last line of the series that is at least standing_lasts old; the end of the series where there is none.
@@ -22,12 +22,14 @@ std::vector<Sample>::const_iterator line_before(const std::vector<Sample>& serie
 
 std::string inertia_at_the_bars(const View& j) {
   if (j.scene.bars == 0) return {};
-  return parts::bars_with_inertia(j.scene.mix, j.scene.model.law, fastest_front(j.series), bar_diameter);
+  return parts::bars_with_inertia(j.scene.mix, j.scene.model.law, fastest_front(j.series),
+                                  j.scene.box.bar_diameter);
 }
 
 /// The drag of a bar between cells that resolve it and those for which it was measured; and a gap wants two cells.
 std::string wide_cells_at_the_bars(const View& j) {
-  return j.scene.bars > 0 ? parts::cells_between_bars(j.scene.model.cell[0], bar_diameter) : std::string{};
+  return j.scene.bars > 0 ? parts::cells_between_bars(j.scene.model.cell[0], j.scene.box.bar_diameter)
+                          : std::string{};
 }
 
 /// Depths and how far they reach are the grid's where a few cells make them: below these the passing ratio is
@@ -48,26 +50,6 @@ std::string few_cells(const View& j) {
     return fmt::format("the column is {:.2g} cells long, less than {:.2g}{}",
                        j.scene.box.column_length / across, least_along, mend);
   return {};
-}
-
-/// In space a thin bed of a fluid mix may level beyond what its yield stress lets it, on cells with few points, or stop
-/// before cells that fast flow left half full have been mended (lbox_bars.md): at 50 Pa the drop is 1.16 times what the
-/// yield stress holds, with bars and without, at 20 Pa 1.37 and 1.63 times, and the ratio 0.07 and 0.15 too small.
-std::string wrong_level(const View& j) {
-  constexpr double least = 0.6, most = 1.3;
-  const Results& r = j.r;
-  if (j.status != Status::completed || !r.h2 || !in_space(j.scene)) return {};
-  const Stretch gate = behind_the_gate(j.scene.box), end = at_the_end(j.scene.box);
-  const double length = 0.5 * (end.low + end.high - gate.low - gate.high);
-  const double right = drop_at_rest(j.scene, 0.5 * (r.h1 + *r.h2), length);
-  const double drop = r.h1 - *r.h2;
-  const bool stopped_early = r.stopped_at && drop > most * right;
-  if (drop >= least * right && !stopped_early) return {};
-  return fmt::format(
-      "the bed {} H1 - H2 = {:.2g} mm, and its yield stress holds {:.2g} mm: {}use model.space "
-      "= \"plane_with_side_walls\" for such fluid mixes",
-      stopped_early ? "stopped at" : "has levelled to", 1e3 * drop, 1e3 * right,
-      stopped_early ? "cells at the channel's end are not full; " : "");
 }
 
 std::string inertia(const View& j) {
@@ -112,17 +94,10 @@ std::string went_through_the_wall(const View& j) {
   const double through = j.series.back().through_the_wall;
   if (through <= most_through_the_wall) return {};
   return fmt::format(
-      "{:.2g} % of the concrete went through the shut gate or the column's front wall: use a smaller "
+      "{:.2g} % of the concrete went through the shut gate or the wall above it: use a smaller "
       "model.cell, "
       "or a shorter model.time_step",
       100.0 * through);
-}
-
-double drop_at_rest(const Scene& scene, double h, double length) {
-  const double held = std::min(scene.mix.tau_0, bears(scene.walls, 0.0));
-  const double floor_and_walls = (1.0 / h + (scene.side_walls_slip ? 0.0 : 2.0 / scene.box.width)) * length;
-  const double bars = bar_yield_drag * scene.bars * bar_diameter / scene.box.width;
-  return (held * floor_and_walls + scene.mix.tau_0 * bars) / (scene.mix.density * experiment::gravity);
 }
 
 double fastest_front(const std::vector<Sample>& series) {
@@ -154,8 +129,8 @@ std::optional<double> ratio_change(const std::vector<Sample>& series) {
 
 void add_reasons(const Scene& scene, Outcome& outcome) {
   scene::add_reasons<View>({inertia_at_the_bars, wide_cells_at_the_bars, few_cells, went_through_the_wall,
-                            narrow_opening, gate_beside_its_place, wrong_level, inertia, no_number},
+                            narrow_opening, gate_beside_its_place, inertia, no_number},
                            {scene, outcome}, outcome.checks.reasons);
 }
 
-}  // namespace tremie::l_box
+}  // namespace tremie::boxes

@@ -10,13 +10,13 @@
 #include <limits>
 #include <vector>
 
-#include "apparatus/l_box/l_box.hpp"
 #include "apparatus/parts/bars.hpp"
+#include "apparatus/parts/boxes/boxes.hpp"
 #include "apparatus/run/body_readings.hpp"
 #include "apparatus/run/step_settings.hpp"
 #include "libmpm/particles/seeding.hpp"
 
-namespace tremie::l_box {
+namespace tremie::boxes {
 
 /// Width that is computed [m]; 1 in the plane, whose volumes are per metre.
 inline double computed_width(const Scene& scene) {
@@ -97,10 +97,10 @@ inline double middle_plane(const Scene& scene) {
 /// The bars right in front of the gate: all gaps, those at the side walls included, are as wide.
 inline std::vector<parts::Bar> bars_of(const Scene& scene) {
   std::vector<parts::Bar> bars;
-  const double step = gap_between_bars(scene) + bar_diameter;
+  const double step = gap_between_bars(scene) + scene.box.bar_diameter;
   for (int i = 0; i < scene.bars; ++i)
-    bars.push_back({scene.box.column_length + 0.5 * bar_diameter,
-                    middle_plane(scene) + step * (i - 0.5 * (scene.bars - 1)), bar_diameter,
+    bars.push_back({scene.box.column_length + 0.5 * scene.box.bar_diameter,
+                    middle_plane(scene) + step * (i - 0.5 * (scene.bars - 1)), scene.box.bar_diameter,
                     scene.box.channel_height});
   return bars;
 }
@@ -108,7 +108,7 @@ inline std::vector<parts::Bar> bars_of(const Scene& scene) {
 /// Puts the bars of the scene into a body in space.
 inline void add_bars(const Scene& scene, ImplicitBody<ThreeD>& body) {
   const auto& axes = body.grid.axes;
-  if (parts::resolves_bars(axes[1].h, bar_diameter))
+  if (parts::resolves_bars(axes[1].h, scene.box.bar_diameter))
     parts::add_resolved_bars(bars_of(scene), 0.5 * std::min(axes[1].h, axes[2].h), body.boundary);
   else
     body.bars = parts::slender_bars(bars_of(scene), axes);
@@ -138,7 +138,7 @@ std::vector<Sheet<Geometry::dim>> walls_inside(const Scene& scene, const Axis& a
 }
 
 /// The runs in the box's two geometries, compiled apart.
-Outcome run_plane(const Scene& scene, const scene::Observer& observer);
-Outcome run_3d(const Scene& scene, const scene::Observer& observer);
+Outcome run_plane(const Scene& scene, const scene::Observer& observer, ProgressText text);
+Outcome run_3d(const Scene& scene, const scene::Observer& observer, ProgressText text);
 
-}  // namespace tremie::l_box
+}  // namespace tremie::boxes

@@ -1,18 +1,17 @@
 #pragma once
 
-// The L-box test in one geometry: set up, step until rest, read.
+// The test in one geometry: set up, step until rest, read.
 
-#include <fmt/format.h>
-
-#include "apparatus/l_box/checks.hpp"
-#include "apparatus/l_box/l_box.hpp"
-#include "apparatus/l_box/reading.hpp"
-#include "apparatus/l_box/set_up.hpp"
+#include "apparatus/parts/boxes/boxes.hpp"
+#include "apparatus/parts/boxes/checks.hpp"
+#include "apparatus/parts/boxes/pour.hpp"
+#include "apparatus/parts/boxes/reading.hpp"
+#include "apparatus/parts/boxes/set_up.hpp"
 #include "apparatus/run/experiment.hpp"
 #include "apparatus/run/passing.hpp"
 #include "libmpm/implicit/archived_state.hpp"
 
-namespace tremie::l_box {
+namespace tremie::boxes {
 
 inline constexpr double detached_share = 0.005;  ///< share of the points that may fall off the column's walls
 inline constexpr double share_of_time = 0.01;    ///< largest step, in the time since the start of the lift
@@ -58,14 +57,23 @@ void read_results(const Body<Geometry>& body, const Scene& scene, std::optional<
   read_profile(body, scene, r);
 }
 
+/// The mass is that which was poured, and what is poured does not fall.
 template <class Geometry>
-Outcome run_in(const Scene& scene, const scene::Observer& observer) {
+void judge_pour(const Body<Geometry>& body, const Poured& poured, Checks& checks) {
+  const double in_points = body.mix.density * (poured.section - poured.waiting);
+  checks.mass_error = experiment::total_mass(body.points) / in_points - 1.0;
+  checks.stood_still = false;
+}
+
+template <class Geometry>
+Outcome run_in(const Scene& scene, const scene::Observer& observer, ProgressText text) {
   ImplicitBody<Geometry> body{filled_column<Geometry>(scene)};
   StepSettings settings = step_settings<Geometry>(scene);
   if constexpr (Geometry::dim == 3) add_bars(scene, body);
 
   Outcome outcome;
   double through = 0.0;  // gate and front wall, share of the volume
+  Poured poured{scene.box.column_length * scene.box.column_height};
   const experiment::Flow flow{
       .time = [&] { return body.time; },
       .unfinished = [&] { return experiment::has_time_left(body.time, scene.duration); },
@@ -83,6 +91,8 @@ Outcome run_in(const Scene& scene, const scene::Observer& observer) {
             const double edge = gate_edge(scene, body.time);
             const StepReport step = implicit_step(body, scene.model.law, settings);
             through += share_through_the_wall(body, from, edge);
+            if constexpr (Geometry::dim == 2)
+              if (scene.pour && !step.failed) let_in(scene, poured, body);
             experiment::count_step(body, step, checks, cost);
             experiment::watch_fixed_step(body, scene.model, step, checks);
             return step;
@@ -91,14 +101,18 @@ Outcome run_in(const Scene& scene, const scene::Observer& observer) {
       // Drops from the films on the column's walls fall long after the concrete stands.
       .speed = [](const StepReport& step) { return step.bulk_speed; },
       .free_to_flow =
-          [&] { return !scene.gate_speed || *scene.gate_speed * body.time > scene.box.channel_height; },
+          [&] {
+            return (!scene.gate_speed || *scene.gate_speed * body.time > scene.box.channel_height) &&
+                   (!scene.pour || body.time > scene.pour->time);
+          },
       .stands_since = [&] { return Geometry::dim == 3 ? stands_since(outcome.series) : std::nullopt; },
-      .state = [&](Archive& archive) { archive(body, outcome.series, through); }};
+      .state =
+          [&](Archive& archive) {
+            archive(body, outcome.series, through);
+            if (scene.pour) archive(poured.section, poured.waiting);
+          }};
   experiment::run_experiment(
-      flow, body,
-      {scene.duration, scene.frame_interval,
-       [](const Sample& now) { return fmt::format("front {:.0f} mm", 1e3 * now.front); }},
-      observer,
+      flow, body, {scene.duration, scene.frame_interval, text}, observer,
       [&](const StepReport& step) {
         Sample line = read(body, scene, step);
         line.through_the_wall = through;
@@ -106,10 +120,11 @@ Outcome run_in(const Scene& scene, const scene::Observer& observer) {
       },
       [&](std::optional<double> stopped_at) {
         read_results(body, scene, stopped_at, outcome);
+        if (scene.pour) judge_pour(body, poured, outcome.checks);
         add_reasons(scene, outcome);
       },
       outcome);
   return outcome;
 }
 
-}  // namespace tremie::l_box
+}  // namespace tremie::boxes

@@ -1,15 +1,15 @@
 #pragma once
 
-// When an L-box stands, how its ratio still changes, and why a result is not to be trusted.
+// When a box stands, how its ratio still changes, and why a result is not to be trusted.
 
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "apparatus/common/readings.hpp"
-#include "apparatus/l_box/l_box.hpp"
+#include "apparatus/parts/boxes/boxes.hpp"
 
-namespace tremie::l_box {
+namespace tremie::boxes {
 
 /// A box stands where its depths and its front have moved by less than this for so long: what a person with a rule
 /// sees. Films on the walls in space drain for as long as one looks.
@@ -20,10 +20,6 @@ std::optional<double> stands_since(const std::vector<Sample>& series);
 
 /// Change of H2/H1 over the last standing_lasts [1/s]; empty where there was none that long ago.
 std::optional<double> ratio_change(const std::vector<Sample>& series);
-
-/// What H1 exceeds H2 by in a bed of depth h at rest, `length` between the two, where it flowed as far as its yield
-/// stress lets it: floor and side walls hold tau_0 (1 + 2 h/W) of rho g h dh/dx, and the bars their own [m].
-double drop_at_rest(const Scene& scene, double h, double length);
 
 /// The fastest that the front was [m/s].
 double fastest_front(const std::vector<Sample>& series);
@@ -38,4 +34,4 @@ std::string went_through_the_wall(const View& run);
 /// Adds the reasons of all checks.
 void add_reasons(const Scene& scene, Outcome& outcome);
 
-}  // namespace tremie::l_box
+}  // namespace tremie::boxes

@@ -1,9 +1,0 @@
-#include "apparatus/l_box/implicit_run.hpp"
-
-namespace tremie::l_box {
-
-Outcome run_plane(const Scene& scene, const scene::Observer& observer) {
-  return run_in<PlaneStrain>(scene, observer);
-}
-
-}  // namespace tremie::l_box
