@@ -136,7 +136,7 @@ int run_fit(const Given& o) {
   watch.stop(outcome.cost);
   nlohmann::ordered_json summary = summary_of(outcome);
   summary["results"] = report::fit_results(fits, o.data);
-  summary["input"] = report::fit_input(options, o.data);
+  summary["input"] = report::fit_input(fits.options, o.data);
   io::write_text(folder.staging() / "summary.json", summary.dump(2) + "\n");
   const std::string note = o.crate ? write_crate(o, fits, folder.staging()) : "";
   folder.publish();
