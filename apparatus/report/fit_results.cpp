@@ -141,7 +141,7 @@ Json fit_results(const RecordFits& fits, const std::vector<std::string>& records
   json["geometry"] = {{"words", fits.geometry}, {"default", fits.default_geometry}};
   json["ends"] = {{"correction", fits.options.ends}, {"factor", fits.end_factor}};
   if (fits.fits.size() == 1) json["ends"]["moves"] = moves_json(fits.moves);
-  if (!fits.protocol) json["blades"] = {{"correction", fits.options.blades}};
+  json["blades"] = {{"correction", fits.options.blades}};
   return json;
 }
 

@@ -94,6 +94,7 @@ struct GapTest {
   double decay_rest = 240.0;                                ///< before the decay at 0.25 rev/s; 0: no decay
   bool flow_curve = true;
   TorqueFactor factor = [](double, double) { return 1.0; };
+  double elastic_factor = 1.0;  ///< the same while the material is strained elastically
 };
 
 inline ProtocolRecord record_of(const GapTest& test) {
@@ -105,14 +106,14 @@ inline ProtocolRecord record_of(const GapTest& test) {
   const auto row = [&](double dt, double omega, double torque) {
     r.time.push_back(now += dt);
     r.omega.push_back(omega);
-    r.torque.push_back(
-        omega > 0.0 ? torque * test.factor(omega, torque) * (1.0 + test.noise * normal(generator)) : 0.0);
+    r.torque.push_back(omega > 0.0 ? torque * (1.0 + test.noise * normal(generator)) : 0.0);
     r.line.push_back(static_cast<long>(r.line.size()) + 2);
   };
+  const auto of_vane = [&](double omega, double torque) { return torque * test.factor(omega, torque); };
   if (test.flow_curve)
     for (int i = 0; i <= 120; ++i) {
       const double omega = angular_speed(0.5 - 0.48 * i / 120.0);
-      row(0.5, omega, gap.torque(omega));
+      row(0.5, omega, of_vane(omega, gap.torque(omega)));
     }
   const auto shear = [&](double rest, double omega, double duration, bool elastic) {
     for (int i = 0; i < 20; ++i) row(rest / 20.0, 0.0, 0.0);
@@ -126,10 +127,10 @@ inline ProtocolRecord record_of(const GapTest& test) {
     for (double t = 0.0; t < duration; t += every) {
       const double flowing = gap.torque(omega);
       if (elastic && stiffness * (angle += omega * every) < flowing) {
-        row(every, omega, stiffness * angle);
+        row(every, omega, test.elastic_factor * stiffness * angle);
         continue;
       }
-      row(every, omega, flowing);
+      row(every, omega, of_vane(omega, flowing));
       for (int j = 0; j < 2; ++j) gap.advance(omega, every / 2.0);
     }
   };
