@@ -146,11 +146,9 @@ bool has_default_lengths(const FitOptions& o) {
          o.container_radius == usual.container_radius;
 }
 
-void check(const FitOptions& o, std::size_t records) {
+void check(const FitOptions& o) {
   if (!o.geometry.empty() && !has_default_lengths(o))
     throw std::invalid_argument("--geometry stands for the vane's lengths; give it or them, not both");
-  if (o.protocol && records > 1)
-    throw std::invalid_argument("--protocol reads one record; " + std::to_string(records) + " are given");
   if (o.tribometer && (o.protocol || o.ends != "none" || o.blades != "none" || !o.geometry.empty()))
     throw std::invalid_argument(
         "--tribometer is a smooth cylinder's, by --vane-radius and --container-radius; not with --protocol, "

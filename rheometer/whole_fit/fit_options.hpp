@@ -73,7 +73,7 @@ void set_option(FitOptions& options, const FitOption& option, const std::string&
 void set_option(FitOptions& options, const FitOption& option, bool flag);
 
 /// Throws std::invalid_argument for options that do not go together.
-void check(const FitOptions& options, std::size_t records);
+void check(const FitOptions& options);
 
 /// What the least squares take of the options.
 FitInput input_of(const FitOptions& options);

@@ -8,6 +8,7 @@
 #include "rheometer/tables/text.hpp"
 #include "rheometer/vane/fit_with_blades.hpp"
 #include "rheometer/vane/vane_ends.hpp"
+#include "rheometer/whole_fit/protocol_replicates.hpp"
 #include "rheometer/whole_fit/record_reading.hpp"
 #include "rheometer/whole_fit/tribometer.hpp"
 
@@ -249,6 +250,40 @@ ProtocolFit fit_protocol(const Fitting& f, const std::string& file, const FitInp
   });
 }
 
+/// Protocols of one material by one law, which most of them have, and their means.
+void fit_protocols(const Fitting& f, const std::vector<RecordSource>& sources, const FitInput& in,
+                   RecordFits& all) {
+  std::vector<ProtocolReading> readings;
+  for (const RecordSource& source : sources) {
+    all.protocols.push_back(fit_protocol(f, source.name, in));
+    readings.push_back(all.protocols.back().reading);
+    if (readings.back().sheared_evenly != readings.front().sheared_evenly)
+      throw RecordError(source.name +
+                        ": replicates are of one instrument: all have torques, or all shear stresses");
+  }
+  set_geometry(f, all.protocols.front().record.sheared_evenly, all);
+  const bool several = sources.size() > 1;
+  const std::string law = several ? common_law(readings) : "";
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    const std::string own = law_read(readings[i]);
+    if (!law.empty() && !own.empty() && own != law) {
+      FitInput by_law = in;
+      by_law.law = law, by_law.law_given = true;
+      all.protocols[i] = fit_protocol(f, sources[i].name, by_law);
+      readings[i] = all.protocols[i].reading;
+      all.notes.push_back(
+          sources[i].name + ": alone its flow curve has the law " + own + "; " +
+          (law_read(readings[i]) == law
+               ? "it is read by " + law + " as most of the records are: one material has one law"
+               : law + ", which most of the records have, does not describe it: it is left out of the "
+                       "flow curves' means"));
+    }
+    for (const auto& why : readings[i].reasons)
+      all.reasons.push_back(several ? sources[i].name + ": " + why : why);
+  }
+  if (several) all.means = replicate_means(readings);
+}
+
 /// The records of a tribometer, each at its fill height, as one fit.
 FitResult fit_tribometer_records(const Fitting& f, const std::vector<RecordSource>& sources,
                                  const FitInput& in) {
@@ -270,7 +305,7 @@ FitResult fit_tribometer_records(const Fitting& f, const std::vector<RecordSourc
 
 RecordFits fit_records(const std::vector<RecordSource>& sources, const FitOptions& options,
                        const std::vector<std::filesystem::path>& data_folders) {
-  check(options, sources.size());
+  check(options);
   const Fitting f{options, data_folders, reading_of(options, data_folders)};
   FitInput in = input_of(options);
   if (f.geometry().cylinders) in.instrument = *f.geometry().cylinders;
@@ -289,9 +324,7 @@ RecordFits fit_records(const std::vector<RecordSource>& sources, const FitOption
   in.instrument.vane_height *= all.end_factor;  // torque and height enter all formulas as their quotient
   all.instrument = in.instrument;
   if (options.protocol) {
-    all.protocol = fit_protocol(f, sources.front().name, in);
-    all.reasons = all.protocol->reading.reasons;
-    set_geometry(f, all.protocol->record.sheared_evenly, all);
+    fit_protocols(f, sources, in, all);
     return all;
   }
   for (const RecordSource& source : sources) {

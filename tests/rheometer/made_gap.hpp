@@ -94,11 +94,12 @@ struct GapTest {
   double decay_rest = 240.0;                                ///< before the decay at 0.25 rev/s; 0: no decay
   bool flow_curve = true;
   TorqueFactor factor = [](double, double) { return 1.0; };
+  std::size_t nodes = 240;
   double elastic_factor = 1.0;  ///< the same while the material is strained elastically
 };
 
 inline ProtocolRecord record_of(const GapTest& test) {
-  Gap gap(test.material, test.instrument, 240);
+  Gap gap(test.material, test.instrument, test.nodes);
   std::mt19937_64 generator(test.seed);
   std::normal_distribution<double> normal;
   ProtocolRecord r;

@@ -158,7 +158,7 @@ TEST(ProtocolBlades, ThroughTheFitOfRecords) {
   const std::vector<std::filesystem::path> data{TREMIE_REFERENCE_DATA};
   const RecordFits fits = fit_records({{.name = file.string()}}, options, data);
   EXPECT_EQ(fits.options.law, "bingham");
-  EXPECT_NEAR(section_of(fits.protocol->reading, SectionKind::flow_curve_down).fit->mu->value,
+  EXPECT_NEAR(section_of(fits.protocols.front().reading, SectionKind::flow_curve_down).fit->mu->value,
               test.material.k, 0.01 * test.material.k);
   options.protocol = false;  // the decay alone, by the flow curve of the same file
   const RecordFits alone = fit_records({{.name = file.string()}}, options, data);

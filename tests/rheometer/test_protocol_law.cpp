@@ -133,9 +133,9 @@ TEST(Protocol, ALawByNameIsTakenOrRefused) {
 TEST(FitOptions, AViscosityIsNotGivenToALawWithoutOne) {
   FitOptions options;
   options.protocol = true, options.plastic_viscosity = 20.0;
-  EXPECT_NO_THROW(check(options, 1));
+  EXPECT_NO_THROW(check(options));
   options.law = "herschel_bulkley";
-  EXPECT_THROW(check(options, 1), std::invalid_argument);
+  EXPECT_THROW(check(options), std::invalid_argument);
   EXPECT_EQ(law_of(options), "herschel_bulkley");
   options.law.clear();
   EXPECT_EQ(law_of(options), "auto");
