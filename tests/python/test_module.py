@@ -191,7 +191,8 @@ class Rheometer(Folder):
             ([first], dict(ends="textbook", max_aggregate=0.016), ["--ends", "textbook", "--max-aggregate", "16 mm"]),
             ([first, second], dict(vane_height=0.1), ["--vane-height", "10 cm"]),
             ([whole], dict(protocol=True, instrument_compliance=0.02), ["--protocol", "--instrument-compliance", "0.02 rad/(N.m)"]),
-            ([whole, again], dict(protocol=True, law="bingham"), ["--protocol", "--law", "bingham"]),
+            ([whole, again], dict(protocol=True, kinetics="roussel", yield_stress=20.0, plastic_viscosity="5 Pa.s"),
+             ["--protocol", "--kinetics", "roussel", "--yield-stress", "20 Pa", "--plastic-viscosity", "5 Pa.s"]),
         ):
             with self.subTest(text), warnings.catch_warnings():
                 warnings.simplefilter("ignore", tremie.UntrustedWarning)
