@@ -111,37 +111,53 @@ Json moves_json(const std::vector<MoveByEnds>& moves) {
   return json;
 }
 
+Json mean_json(const ReplicateMean& m) {
+  Json row = json_of(std::optional(m.mean));
+  row.update({{"unit", m.parameter.unit},
+              {"records", m.records},
+              {"scatter_between", json_of(m.between)},
+              {"scatter_within", json_of(m.within)},
+              {"scatter_between_laboratories", json_of(m.parameter.laboratories)}});
+  return row;
+}
+
 Json replicates_json(const RecordFits& fits, const std::vector<std::string>& records) {
-  Json json{{"kind", "replicates"}, {"records", Json::array()}};
+  const bool protocols = !fits.protocols.empty();
+  Json json{{"kind", protocols ? "protocol_replicates" : "replicates"}, {"records", Json::array()}};
   for (std::size_t i = 0; i < records.size(); ++i) {
     Json one{{"record", records[i]}};
-    one.update(fit_results(fits.fits[i]));
+    one.update(protocols ? protocol_results(fits.protocols[i].reading) : fit_results(fits.fits[i]));
+    if (protocols) one["understood"] = fits.protocols[i].record.understood;
     json["records"].push_back(one);
   }
   Json& mean = json["mean"] = Json::object();
+  for (const ReplicateMean& m : fits.means)
+    if (m.where.empty()) mean[m.parameter.name] = mean_json(m);
+  if (!protocols) return json;
+  Json& sections = json["mean_of_sections"] = Json::array();
   for (const ReplicateMean& m : fits.means) {
-    Json& row = mean[m.parameter.name] = json_of(std::optional(m.mean));
-    row.update({{"unit", m.parameter.unit},
-                {"records", m.records},
-                {"scatter_between", json_of(m.between)},
-                {"scatter_within", json_of(m.within)},
-                {"scatter_between_laboratories", json_of(m.parameter.laboratories)}});
+    if (m.where.empty()) continue;
+    Json row{{"parameter", m.parameter.name}, {"where", m.where}};
+    row.update(mean_json(m));
+    sections.push_back(row);
   }
+  json["notes"] = fits.notes;
   return json;
 }
 
 }  // namespace
 
 Json fit_results(const RecordFits& fits, const std::vector<std::string>& records) {
-  Json json = fits.protocol          ? protocol_results(fits.protocol->reading)
-              : fits.fits.size() > 1 ? replicates_json(fits, records)
-                                     : fit_results(fits.fits.front());
+  const bool protocol = !fits.protocols.empty(), one = fits.protocols.size() == 1;
+  Json json = one                                ? protocol_results(fits.protocols.front().reading)
+              : protocol || fits.fits.size() > 1 ? replicates_json(fits, records)
+                                                 : fit_results(fits.fits.front());
   if (fits.options.tribometer) json["walls"] = json_of_walls(fits.fits.front());
-  if (fits.protocol) json["understood"] = fits.protocol->record.understood;
+  if (one) json["understood"] = fits.protocols.front().record.understood;
   json["geometry"] = {{"words", fits.geometry}, {"default", fits.default_geometry}};
   json["ends"] = {{"correction", fits.options.ends}, {"factor", fits.end_factor}};
   if (fits.fits.size() == 1) json["ends"]["moves"] = moves_json(fits.moves);
-  if (!fits.protocol) json["blades"] = {{"correction", fits.options.blades}};
+  json["blades"] = {{"correction", fits.options.blades}};
   return json;
 }
 

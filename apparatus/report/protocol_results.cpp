@@ -16,6 +16,7 @@ Json start_up_json(const StartUpReading& s, bool stress) {
           {"peak_inside", s.peak_inside},
           {stress ? "end_shear_stress_Pa" : "end_torque_N_m", s.end_torque},
           {"static_yield_stress_Pa", json_of(s.static_yield_stress)},
+          {"static_yield_stress_by_flow_curve_Pa", json_of(s.static_by_law)},
           {"shear_modulus_Pa", json_of(s.shear_modulus)}};
 }
 
@@ -94,6 +95,7 @@ Json forecasts_json(const std::vector<PeakForecast>& forecasts) {
 
 Json protocol_results(const ProtocolReading& r) {
   Json j{{"kind", "protocol"}, {"sections", Json::array()}};
+  j["flow_curve_section"] = r.flow_curve > 0 ? Json(r.flow_curve) : Json(nullptr);
   for (std::size_t i = 0; i < r.sections.size(); ++i)
     j["sections"].push_back(section_json(r.sections[i], i + 1, r.sheared_evenly));
   const Structuration& a = r.structuration;
@@ -101,6 +103,8 @@ Json protocol_results(const ProtocolReading& r) {
   j["static_yield_stress_without_rest_Pa"] = json_of(a.at_no_rest);
   j["structuration"] = {{"rest_s", a.rest},
                         {"static_yield_stress_Pa", a.stress},
+                        {"rate_by_flow_curve_Pa_per_s", json_of(a.A_thix_by_law)},
+                        {"without_rest_by_flow_curve_Pa", json_of(a.at_no_rest_by_law)},
                         {"relative_scatter", json_of(a.scatter)},
                         {"saturation", saturation_json(a.saturation)},
                         {"forecasts", forecasts_json(a.forecasts)},

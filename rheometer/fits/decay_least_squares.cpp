@@ -37,8 +37,8 @@ Layout first_guess(const Readings& r, const FitInput& in) {
     }
     layout.free.push_back(i_mu);
   }
-  const double tau_end = yield_stress_from_torque(end, mu, *in.omega, in.instrument);
-  const double tau_start = yield_stress_from_torque(start, mu, *in.omega, in.instrument);
+  const double tau_end = yield_stress_from_torque(end, mu, in);
+  const double tau_start = yield_stress_from_torque(start, mu, in);
   const double smallest = 1e-3 * shear_stress_at(in.instrument.vane_radius, end, in.instrument);
   const double tau_0 = in.tau_0.value_or(std::max(0.6 * tau_end, smallest));
   if (!in.tau_0) layout.free.insert(layout.free.begin(), i_tau_0);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rheometer/fits/flow_law.hpp"
+#include "rheometer/reference/couette_flow.hpp"
 #include "rheometer/reference/thixotropic_couette.hpp"
 
 namespace tremie::fitting {
@@ -29,6 +31,8 @@ double alpha_of(const DecayParameters& p) {
   return p[4] == 1.0 || !(p[2] > 0.0) ? p[3] : p[3] * std::pow(p[2], 1.0 - p[4]);
 }
 
+double flow_index_of(const FitInput& in) { return in.curve ? viscous_stress(*in.curve).n : 1.0; }
+
 Thixotropy thixotropy_of(const DecayParameters& p, const FitInput& in) {
   // at rest before the test lambda grew from 0 to lambda_0, equation (8)
   const double A_thix = in.rest ? p[2] * p[0] / *in.rest : 0.0;
@@ -52,6 +56,7 @@ void DecayModel::torque(const DecayParameters& p, std::span<double> result) cons
   CouetteFlow flow;
   flow.bingham = {p[0], p[1]};
   flow.omega = *input_.omega;
+  flow.flow_index = flow_index_of(input_);
   flow.thixotropy = thixotropy_of(p, input_);
   CouetteOptions options;
   options.intervals = intervals_;
@@ -68,12 +73,15 @@ void DecayModel::torque(const DecayParameters& p, std::span<double> result) cons
   }
 }
 
-double yield_stress_from_torque(double torque, double mu, double omega, const Instrument& in) {
-  if (reiner_riwlin({0.0, mu}, omega, in).torque >= torque) return 0.0;
+double yield_stress_from_torque(double torque, double mu, const FitInput& input) {
+  const Instrument& in = input.instrument;
+  const double n = flow_index_of(input);
+  const auto with = [&](double tau_y) { return steady_torque({tau_y, mu, n}, *input.omega, in).torque; };
+  if (with(0.0) >= torque) return 0.0;
   double low = 0.0, high = shear_stress_at(in.vane_radius, torque, in);  // nothing yields above this
   for (int i = 0; i < 100; ++i) {
     const double middle = 0.5 * (low + high);
-    (reiner_riwlin({middle, mu}, omega, in).torque < torque ? low : high) = middle;
+    (with(middle) < torque ? low : high) = middle;
   }
   return 0.5 * (low + high);
 }

@@ -19,6 +19,9 @@ using DecayParameters = std::array<double, 5>;
 /// alpha of the law from the fourth parameter.
 double alpha_of(const DecayParameters& p);
 
+/// n of mu gamma_dot^n, by the flow curve that the input knows; 1 without one.
+double flow_index_of(const FitInput& in);
+
 /// The kinetics of in.kinetics with these parameters; A_thix from the rest, 0 where it is not known.
 Thixotropy thixotropy_of(const DecayParameters& p, const FitInput& in);
 
@@ -44,8 +47,8 @@ class DecayModel {
   std::vector<Place> places_;
 };
 
-/// The yield stress [Pa] with which a Bingham material of viscosity mu gives this torque at this speed; 0
-/// where the viscosity alone gives more.
-double yield_stress_from_torque(double torque, double mu, double omega, const Instrument& instrument);
+/// The yield stress [Pa] with which a material of the viscous stress mu gamma_dot^n gives this torque at the input's
+/// speed; 0 where the viscous stress alone gives more.
+double yield_stress_from_torque(double torque, double mu, const FitInput& in);
 
 }  // namespace tremie::fitting

@@ -23,6 +23,12 @@
 
 namespace tremie {
 
+/// A law of a flow curve (flow_law.hpp) with all of its parameters.
+struct KnownLaw {
+  std::string name;
+  std::vector<double> parameters;
+};
+
 /// What is known besides the record.
 struct FitInput {
   Instrument instrument;
@@ -34,8 +40,10 @@ struct FitInput {
   double max_aggregate = 0.0;    ///< largest grain [m]; 0: not known
   bool choose_kinetics = false;  ///< fit each kinetics and take the one that the record supports best
   std::string law =
-      "bingham";         ///< of a flow curve (flow_law.hpp); "auto": the one that the record supports best
-  double gamma_c = 0.1;  ///< critical shear rate of the gate [1/s]
+      "bingham";           ///< of a flow curve (flow_law.hpp); "auto": the one that the record supports best
+  bool law_given = false;  ///< the user's: a section of a record takes it as well
+  std::optional<KnownLaw> curve;  ///< of a decay: its material's flow curve, in place of tau_0 and mu
+  double gamma_c = 0.1;           ///< critical shear rate of the gate [1/s]
 };
 
 struct Interval {

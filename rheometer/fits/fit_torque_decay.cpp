@@ -7,7 +7,9 @@
 #include "rheometer/fits/decay_least_squares.hpp"
 #include "rheometer/fits/decay_stability.hpp"
 #include "rheometer/fits/fit_common.hpp"
+#include "rheometer/fits/flow_law.hpp"
 #include "rheometer/fits/parameters.hpp"
+#include "rheometer/reference/couette_flow.hpp"
 #include "rheometer/reference/thixotropic_couette.hpp"
 #include "rheometer/regression/lack_of_fit.hpp"
 #include "rheometer/regression/statistics.hpp"
@@ -147,6 +149,15 @@ struct Identified {
   }
 };
 
+/// The parameters of the flow curve that is known, none of which the decay tells.
+void report_known_law(const KnownLaw& known, FitResult& result) {
+  const FlowLaw& law = flow_law(known.name);
+  for (std::size_t k = 0; k < law.parameters.size(); ++k)
+    set_value(result, law.parameters[k].row, given(known.parameters[k]));
+  if (!law.in_place_of_viscosity.empty())
+    result.notes.push_back("plastic_viscosity: " + law.in_place_of_viscosity);
+}
+
 void report_parameters(const Readings& r, const Identified& identified, const FitInput& in,
                        FitResult& result) {
   const auto& [tau_0, mu, lambda_0, breakdown, n] = identified.p;
@@ -154,8 +165,12 @@ void report_parameters(const Readings& r, const Identified& identified, const Fi
   const double stress =
       shear_stress_at(in.instrument.vane_radius, identified.fit.fitted.front(), in.instrument);
   const double rate = newtonian_shear_rate(*in.omega, in.instrument);
-  result.tau_0 = in.tau_0 ? given(tau_0) : identified(tau_0, {1, 0, 0, 0, 0}, tau_0);
-  result.mu = in.mu ? given(mu) : identified(mu, {0, 1, 0, 0, 0}, mu);
+  if (in.curve) {
+    report_known_law(*in.curve, result);
+  } else {
+    result.tau_0 = in.tau_0 ? given(tau_0) : identified(tau_0, {1, 0, 0, 0, 0}, tau_0);
+    result.mu = in.mu ? given(mu) : identified(mu, {0, 1, 0, 0, 0}, mu);
+  }
   result.lambda_0 = identified(lambda_0, {0, 0, 1, 0, 0}, std::max(lambda_0, 0.5));
   result.static_yield_stress = identified((1 + lambda_0) * tau_0, {1 + lambda_0, 0, tau_0, 0, 0}, stress);
   const bool power = decay_fit(in.kinetics).free_exponent;
@@ -174,8 +189,9 @@ void report_parameters(const Readings& r, const Identified& identified, const Fi
     if (!e) result.notes.push_back(std::string(name) + ": the record cannot tell it" + why);
   };
   note(result.tau_0, "yield_stress", " at one speed together with the others; --yield-stress gives it");
-  note(result.mu, "plastic_viscosity",
-       " at one speed together with the others; --plastic-viscosity gives it");
+  if (!in.curve)
+    note(result.mu, "plastic_viscosity",
+         " at one speed together with the others; --plastic-viscosity gives it");
   note(result.lambda_0, "flocculation_start", "");
   if (by_time)
     note(result.breakdown_rate, "breakdown_rate", "");
@@ -197,6 +213,7 @@ void report_flow(const Readings& r, const DecayParameters& p, const FitInput& in
   CouetteFlow flow;
   flow.bingham = {p[i_tau_0], p[i_mu]};
   flow.omega = *in.omega;
+  flow.flow_index = flow_index_of(in);
   flow.thixotropy = thixotropy_of(p, in);
   const CouetteDecay d =
       thixotropic_couette(flow, std::vector{0.0, 0.5 * r.x.back(), r.x.back()}, in.instrument);
@@ -209,17 +226,22 @@ void report_flow(const Readings& r, const DecayParameters& p, const FitInput& in
 void report_apparent(const Readings& r, const FitInput& in, const Identified& identified, FitResult& result) {
   ApparentReading a;
   const double tau_0 = identified.p[i_tau_0], mu = identified.p[i_mu];
-  const bool dynamic = result.tau_0 && result.mu;
+  const double n = flow_index_of(in);
+  const bool dynamic = in.curve || (result.tau_0 && result.mu);
   a.offset_torque =
-      dynamic ? reiner_riwlin({tau_0, mu}, *in.omega, in.instrument).torque : mean_torque(r, 0.9, 1.0);
-  a.offset = dynamic ? "Reiner-Riwlin torque of the dynamic yield stress and plastic viscosity"
-                     : "median of the last tenth of the record";
+      dynamic ? steady_torque({tau_0, mu, n}, *in.omega, in.instrument).torque : mean_torque(r, 0.9, 1.0);
+  a.offset = !dynamic   ? "median of the last tenth of the record"
+             : n == 1.0 ? "Reiner-Riwlin torque of the dynamic yield stress and plastic viscosity"
+                        : "steady torque by the law of the flow curve";
   a.newtonian_rate = newtonian_shear_rate(*in.omega, in.instrument);
-  if (dynamic && result.lambda_0)
-    a.rate_at_vane =
+  if (dynamic && result.lambda_0) {
+    const double excess =
         (shear_stress_at(in.instrument.vane_radius, identified.fit.fitted.front(), in.instrument) -
          static_yield_stress(identified.p[i_lambda], tau_0)) /
         mu;
+    a.rate_at_vane = n == 1.0 ? excess : std::pow(std::max(0.0, excess), 1.0 / n);
+    if (!(*a.rate_at_vane > 0.0) && n != 1.0) a.rate_at_vane.reset();
+  }
   for (const double torque : result.curve.observed)
     result.lambda_apparent.push_back(apparent_lambda(torque, a.offset_torque, tau_0, in.instrument));
   const double end = r.x.back();
@@ -352,7 +374,8 @@ void withdraw(FitResult& result) {
     e.reset();
     result.notes.push_back(name + ": a model that does not fit does not tell it");
   };
-  for (const FitParameter& p : parameters_of(result)) forget(result.*p.member, p.name);
+  for (const FitParameter& p : parameters_of(result))
+    if (p.member) forget(result.*p.member, p.name);
   forget(result.exponent, "exponent");
 }
 
@@ -360,6 +383,7 @@ void withdraw(FitResult& result) {
 
 FitResult fit_torque_decay(const TorqueRecord& record, const FitInput& input, Stability stability) {
   FitInput in = input;
+  if (in.curve) in.tau_0 = in.curve->parameters.front(), in.mu = viscous_stress(*in.curve).k;
   if (!in.omega)
     throw std::invalid_argument("a torque decay needs the speed of the vane: --speed \"0.25 rev/s\"");
   FitResult result;
@@ -393,7 +417,7 @@ FitResult fit_torque_decay(const TorqueRecord& record, const FitInput& input, St
   report_apparent(r, in, identified, result);
   if (!result.reasons.empty())
     withdraw(result);
-  else if (stability == Stability::judged && !input.tau_0 && !input.mu)
+  else if (stability == Stability::judged && !in.tau_0 && !in.mu)
     judge_stability(record, input, result);
   return result;
 }

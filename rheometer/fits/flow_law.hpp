@@ -13,6 +13,11 @@
 
 namespace tremie {
 
+/// Stress beyond the yield stress: k gamma_dot^n [Pa]. Of Bingham k is the plastic viscosity and n = 1.
+struct ViscousStress {
+  double k = 0.0, n = 1.0;
+};
+
 /// Torque at a speed, and its derivatives by the law's parameters in their order.
 struct FlowTorque {
   double torque = 0.0;          ///< [N m]
@@ -42,6 +47,8 @@ struct FlowLaw {
   FlowTorque (*torque)(std::span<const double> parameters, double omega, const Instrument& instrument);
   /// Shear rate [1/s] at which the material carries `above` [Pa] more than its yield stress; empty where it has none.
   std::optional<double> (*rate)(std::span<const double> parameters, double above);
+  /// What a decay of the same material takes of the law; null for one of another form, whose decays are refused.
+  ViscousStress (*viscous)(std::span<const double> parameters);
   /// Speed below which part of the gap is at rest [rad/s]; null where there is no formula.
   std::optional<double> (*plug_below)(std::span<const double> parameters, const Instrument& instrument);
 };
@@ -54,5 +61,12 @@ const FlowLaw& flow_law(const std::string& name);
 
 /// The law of a fitted flow curve; null for a decay and for an interface.
 const FlowLaw* law_of(const FitResult& fit);
+
+/// The law of a fitted flow curve with its parameters, a yield stress of at least 0; empty where the fit is not to be
+/// trusted or a parameter is not identifiable.
+std::optional<KnownLaw> known_law(const FitResult& fit);
+
+/// Its viscous part. Throws std::invalid_argument for a law of another form.
+ViscousStress viscous_stress(const KnownLaw& law);
 
 }  // namespace tremie

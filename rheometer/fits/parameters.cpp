@@ -69,7 +69,10 @@ std::vector<FitParameter> parameters_of(const FitResult& fit) {
                  [&](const auto& p) {
                    const auto other =
                        fit.model == RatePowerKinetics::word ? &FitResult::alpha : &FitResult::breakdown_rate;
-                   return p.member && p.member != &FitResult::exponent && p.member != other;
+                   if (!p.member) return value_of(fit, p).has_value();  // of the flow curve's law
+                   const bool has_law = !fit.of_law.empty();
+                   return p.member != &FitResult::exponent && p.member != other &&
+                          !(has_law && p.member == &FitResult::mu);
                  });
   return rows;
 }

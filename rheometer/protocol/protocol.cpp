@@ -2,213 +2,214 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
-#include "rheometer/reference/reiner_riwlin.hpp"
-#include "rheometer/regression/least_squares.hpp"
-#include "rheometer/regression/statistics.hpp"
+#include "rheometer/fits/flow_law.hpp"
+#include "rheometer/reference/couette_flow.hpp"
 #include "rheometer/tables/text.hpp"
+#include "rheometer/vane/fit_with_blades.hpp"
 
 namespace tremie {
 
 namespace {
 
-void read_fit(const TorqueRecord& record, const FitInput& input, SectionReading& reading) {
-  try {
-    reading.fit = fit(record, input);
-    reading.fit->sheared_evenly = record.sheared_evenly;
-    reading.reasons.insert(reading.reasons.end(), reading.fit->reasons.begin(), reading.fit->reasons.end());
-  } catch (const std::exception& error) {  // too few rows, a torque of 0: the section has no reading
-    reading.notes.push_back(std::string("no fit: ") + error.what());
-  }
+bool is_flow_curve(const SectionReading& s) {
+  return s.section.kind == SectionKind::flow_curve_up || s.section.kind == SectionKind::flow_curve_down;
 }
 
-/// The relative scatter of T_end + C shape(t) with two parameters of the shape at most.
-template <class Shape>
-std::optional<LeastSquaresFit> shape_fit(const std::vector<double>& t, const std::vector<double>& torque,
-                                         std::vector<double> start, Shape shape) {
-  LeastSquaresProblem p;
-  p.observed = torque;
-  p.count.assign(torque.size(), 1.0);
-  p.start = {0.5 * torque.back(), torque.front() - 0.5 * torque.back()};
-  p.start.insert(p.start.end(), start.begin(), start.end());
-  p.lower = {0.0, 0.0, 1e-6 * t.back(), 0.01};
-  p.upper = {10.0 * torque.front(), 100.0 * torque.front(), 100.0 * t.back(), 20.0};
-  p.lower.resize(p.start.size());
-  p.upper.resize(p.start.size());
-  p.model = [&](std::span<const double> q, std::span<double> fitted, std::span<double> jacobian) {
-    const auto value = [&](const std::vector<double>& v, std::size_t i) {
-      return v[0] + v[1] * shape(v, t[i]);
-    };
-    const std::vector<double> at(q.begin(), q.end());
-    for (std::size_t i = 0; i < t.size(); ++i) fitted[i] = value(at, i);
-    for (std::size_t k = 0; !jacobian.empty() && k < at.size(); ++k) {
-      std::vector<double> moved = at;
-      const double step = 1e-6 * std::max(std::abs(at[k]), 1e-6 * torque.front());
-      moved[k] += step;
-      for (std::size_t i = 0; i < t.size(); ++i)
-        jacobian[i * at.size() + k] = (value(moved, i) - fitted[i]) / step;
+/// What the sections of a record share, and what they have told so far.
+class Reader {
+ public:
+  Reader(const ProtocolRecord& record, const FitInput& input, const ProtocolOptions& options)
+      : record_(record), input_(input), options_(options) {}
+
+  ProtocolReading read() {
+    check(input_.instrument);
+    result_.sheared_evenly = record_.sheared_evenly;
+    for (const Section& s : find_sections(record_)) add(s);
+    for (SectionReading& s : result_.sections)
+      if (is_flow_curve(s)) read_flow_curve(s);
+    find_law();
+    for (std::size_t i = 0; i < result_.sections.size(); ++i) {
+      SectionReading& s = result_.sections[i];
+      if (s.section.kind == SectionKind::start_up) read_growth(s);
+      if (s.section.kind == SectionKind::constant_rate) read_decay(s);
+      if (i > 0) read_loop(record_, result_.sections[i - 1], s);
+      for (const std::string& why : s.reasons)
+        result_.reasons.push_back("section " + std::to_string(i + 1) + " (" +
+                                  std::string(name_of(s.section.kind)) + "): " + why);
     }
-    return std::all_of(fitted.begin(), fitted.end(), [](double f) { return f > 0.0 && std::isfinite(f); });
-  };
-  try {
-    return fit_least_squares(
-        p, {.readings_in_time_order = true, .parameter_tolerance = 1e-8, .max_iterations = 200});
-  } catch (const std::runtime_error&) {
-    return std::nullopt;
+    result_.structuration = structuration_of(result_.sections);
+    read_breakdown();
+    return std::move(result_);
   }
-}
 
-/// The shape of the torque from its peak on; time counts from the peak.
-DecayShape read_decay_shape(const std::vector<double>& time, const std::vector<double>& torque) {
-  DecayShape d;
-  d.peak_torque = torque.front();
-  d.end_torque = torque.back();
-  for (std::size_t i = 1; i < torque.size() && !d.half_time; ++i) {
-    const double half = 0.5 * torque.front();
-    if (torque[i] > half) continue;
-    const double share = (torque[i - 1] - half) / (torque[i - 1] - torque[i]);
-    d.half_time = time[i - 1] + share * (time[i] - time[i - 1]);
+ private:
+  void add(const Section& s) {
+    SectionReading reading;
+    reading.section = s;
+    reading.first_line = record_.line[s.begin];
+    reading.last_line = record_.line[s.end - 1];
+    reading.start = record_.time[s.begin];
+    reading.duration = record_.time[s.end - 1] - record_.time[s.begin];
+    if (s.kind == SectionKind::other)
+      reading.notes.push_back("neither a constant speed nor a ramp: not read");
+    result_.sections.push_back(std::move(reading));
   }
-  if (torque.size() < 8 || !(torque.back() > 0.0) || !(torque.back() < 0.95 * torque.front())) return d;
-  std::vector<double> t, T;  // some hundred readings tell a shape
-  const std::size_t every = 1 + torque.size() / 400;
-  for (std::size_t i = 0; i < torque.size(); i += every)
-    if (torque[i] > 0.0) t.push_back(time[i]), T.push_back(torque[i]);
-  const double guess = d.half_time.value_or(0.2 * time.back());
-  if (const auto e = shape_fit(t, T, {guess}, [](const auto& v, double x) { return std::exp(-x / v[2]); }))
-    d.exponential_scatter = e->scatter;
-  if (const auto p = shape_fit(t, T, {0.5 * guess, 0.7},
-                               [](const auto& v, double x) { return std::pow(1.0 + x / v[2], -v[3]); })) {
-    d.power_scatter = p->scatter;
-    d.power_m = p->parameters[3];
-    d.power_t0 = p->parameters[2];
+
+  FitInput input_for(const Section& s) const {
+    FitInput in = input_;
+    in.omega = s.omega > 0.0 ? std::optional(s.omega) : std::nullopt;
+    if (s.rest_before > 0.0) in.rest = s.rest_before;
+    return in;
   }
-  return d;
-}
 
-/// The integral of the torque over the speed between the two branches, over the speeds that both have.
-std::optional<double> area_between(const ProtocolRecord& r, const Section& up, const Section& down) {
-  const auto branch = [&](const Section& s) {
-    std::vector<std::pair<double, double>> points;
-    for (std::size_t i = s.begin; i < s.end; ++i) points.emplace_back(r.omega[i], r.torque[i]);
-    std::sort(points.begin(), points.end());
-    return points;
-  };
-  const auto rising = branch(up), falling = branch(down);
-  const double low = std::max(rising.front().first, falling.front().first),
-               high = std::min(rising.back().first, falling.back().first);
-  if (!(high > low)) return std::nullopt;
-  const auto torque_at = [](const std::vector<std::pair<double, double>>& points, double omega) {
-    const auto behind = std::lower_bound(points.begin(), points.end(), std::pair(omega, -HUGE_VAL));
-    if (behind == points.begin()) return behind->second;
-    if (behind == points.end()) return points.back().second;
-    const auto& [x, y] = *std::prev(behind);
-    return behind->first > x ? y + (behind->second - y) * (omega - x) / (behind->first - x) : y;
-  };
-  constexpr int pieces = 1000;
-  double sum = 0.0;
-  for (int i = 0; i <= pieces; ++i) {
-    const double omega = low + (high - low) * i / pieces, weight = i == 0 || i == pieces ? 0.5 : 1.0;
-    sum += weight * (torque_at(rising, omega) - torque_at(falling, omega));
+  void read_fit(const TorqueRecord& record, const FitInput& input, SectionReading& reading) const {
+    try {
+      reading.fit =
+          options_.blades ? noted_fit_with_blades(record, input, *options_.blades) : fit(record, input);
+      reading.fit->sheared_evenly = record.sheared_evenly;
+      reading.reasons.insert(reading.reasons.end(), reading.fit->reasons.begin(), reading.fit->reasons.end());
+    } catch (const BladesRefused& refused) {
+      reading.reasons.push_back(std::string("--blades computed: ") + refused.what());
+    } catch (const std::exception& error) {  // too few rows, a torque of 0: the section has no reading
+      reading.notes.push_back(std::string("no fit: ") + error.what());
+    }
   }
-  const double area = sum * (high - low) / pieces;
-  return r.sheared_evenly ? area / evenly_sheared_speed : area;
-}
 
-/// The loop of a flow curve down behind one up.
-void read_loop(const ProtocolRecord& record, SectionReading& before, SectionReading& reading) {
-  if (before.section.kind != SectionKind::flow_curve_up ||
-      reading.section.kind != SectionKind::flow_curve_down)
-    return;
-  reading.loop_area = area_between(record, before.section, reading.section);
-  if (reading.loop_area)
-    reading.notes.push_back(text_of("loop: %.4g %s between the branch up and this one", *reading.loop_area,
-                                    record.sheared_evenly ? "Pa/s" : "W"));
-}
+  void read_flow_curve(SectionReading& reading) const {
+    FitInput in = input_for(reading.section);
+    in.law = options_.blades ? flow_laws().front().name : law_of_section(in);
+    read_fit(flow_curve_of(record_, reading.section), in, reading);
+  }
 
-/// The last Bingham flow curve that tells both parameters; null where the record has none.
-const SectionReading* own_flow_curve(const std::vector<SectionReading>& sections) {
-  const SectionReading* found = nullptr;
-  for (const SectionReading& s : sections)
-    if (s.fit && s.fit->kind == RecordKind::flow_curve && s.reasons.empty() && s.fit->tau_0 && s.fit->mu)
-      found = &s;
-  return found;
-}
+  /// Of the last flow curve that tells all parameters of its law, or as it is given.
+  void find_law() {
+    if (input_.tau_0 && input_.mu) {
+      law_ = KnownLaw{flow_laws().front().name, {*input_.tau_0, *input_.mu}};
+      return;
+    }
+    for (const SectionReading& s : result_.sections) {
+      if (!is_flow_curve(s)) continue;
+      has_curve_ = true;
+      if (!s.fit || !s.reasons.empty()) continue;
+      if (auto law = known_law(*s.fit)) law_ = std::move(law), curve_ = &s;
+    }
+    result_.flow_curve = curve_ ? static_cast<std::size_t>(curve_ - result_.sections.data()) + 1 : 0;
+  }
 
-/// The decay by the yield stress and viscosity of the flow curve; told where its own end differs from what those ask for.
-void read_decay(const ProtocolRecord& record, FitInput in, const SectionReading* curve,
-                SectionReading& reading) {
-  const TorqueRecord decay = decay_of(record, reading.section);
-  reading.fit_origin = record.time[peak_of(record, reading.section)] - reading.start;
-  reading.decay = read_decay_shape(decay.time, decay.torque);
-  if (curve && !in.tau_0 && !in.mu) {
-    in.tau_0 = std::max(0.0, curve->fit->tau_0->value), in.mu = curve->fit->mu->value;
-    const double steady = reiner_riwlin({*in.tau_0, *in.mu}, *in.omega, in.instrument).torque;
+  void read_growth(SectionReading& reading) const {
+    reading.start_up = read_start_up(record_, reading.section, input_.instrument, options_, reading.notes);
+    StartUpReading& s = *reading.start_up;
+    if (!s.static_yield_stress) return;
+    const double omega = reading.section.omega;
+    try {
+      double peak = s.peak_torque;
+      if (options_.blades) {
+        if (!law_ && !input_.mu)
+          throw BladesRefused(
+              "the blades' part of the peak hangs on the plastic viscosity: it needs a flow curve in the "
+              "record, or "
+              "--plastic-viscosity");
+        const double mu = law_ ? viscosity_for_blades(*law_) : *input_.mu;
+        peak = torque_of_cylinder(*options_.blades, input_.instrument, mu, omega, s.peak_torque);
+        s.static_yield_stress = shear_stress_at(input_.instrument.vane_radius, peak, input_.instrument);
+        reading.notes.push_back(text_of(
+            "static_yield_stress: of the cylinder's torque, the peak divided by %.3f", s.peak_torque / peak));
+      }
+      if (law_ && omega > 0.0)
+        s.static_by_law = static_yield_stress_of(*law_, peak, omega, input_.instrument);
+    } catch (const BladesRefused& refused) {
+      s.static_yield_stress.reset();
+      reading.reasons.push_back(std::string("--blades computed: ") + refused.what());
+    }
+  }
+
+  /// The decay by the law of the flow curve; told where its own end differs from what that asks for.
+  void read_decay(SectionReading& reading) const {
+    FitInput in = input_for(reading.section);
+    const TorqueRecord decay = decay_of(record_, reading.section);
+    reading.fit_origin = record_.time[peak_of(record_, reading.section)] - reading.start;
+    reading.decay = read_decay_shape(decay.time, decay.torque);
+    if (curve_) {
+      in.curve = law_;
+      note_curve(reading);
+    } else if (in.law_given && in.law != "auto" && in.law != flow_laws().front().name) {
+      reading.reasons.push_back(
+          "--law " + in.law +
+          ": no flow curve of the record tells all parameters of a law, and a decay at one speed "
+          "tells but a yield stress and a plastic viscosity; --law bingham reads it so");
+      return;
+    } else if (has_curve_ && !(in.tau_0 && in.mu)) {
+      reading.notes.push_back(
+          "law: Bingham, by this section alone: no flow curve of the record tells all parameters of its law");
+    }
+    read_fit(decay, in, reading);
+  }
+
+  void note_curve(SectionReading& reading) const {
+    reading.notes.push_back(
+        text_of("%s: of the flow curve on lines %ld to %ld; the decay's intervals hold for these "
+                "values as they stand",
+                names_of(*law_).c_str(), curve_->first_line, curve_->last_line));
+    if (options_.blades) return;  // its torques are not the record's
     const double end = reading.decay->end_torque;
-    reading.notes.push_back(text_of("yield_stress, plastic_viscosity: of the flow curve on lines %ld to %ld",
-                                    curve->first_line, curve->last_line));
+    double steady = 0.0;
+    try {
+      const ViscousStress v = viscous_stress(*law_);
+      steady = steady_torque({law_->parameters.front(), v.k, v.n}, reading.section.omega, input_.instrument)
+                   .torque;
+    } catch (const std::invalid_argument&) {  // the fit refuses the law and says why
+      return;
+    }
     if (std::abs(end / steady - 1.0) > 0.1)
       reading.notes.push_back(
           text_of("the decay ends at %.4g, where that flow curve has %.4g %s: the two sections "
                   "contradict each other by %.0f %%",
-                  record.sheared_evenly ? end : 1e3 * end, record.sheared_evenly ? steady : 1e3 * steady,
-                  record.sheared_evenly ? "Pa" : "mN.m", 100.0 * std::abs(end / steady - 1.0)));
+                  record_.sheared_evenly ? end : 1e3 * end, record_.sheared_evenly ? steady : 1e3 * steady,
+                  record_.sheared_evenly ? "Pa" : "mN.m", 100.0 * std::abs(end / steady - 1.0)));
   }
-  read_fit(decay, in, reading);
-}
+
+  /// Rates of breakdown are those of the torque as it stands: what blades take of it hardly changes while it falls.
+  void read_breakdown() {
+    std::vector<Section> sections;
+    for (const SectionReading& s : result_.sections) sections.push_back(s.section);
+    Breakdown& b = result_.breakdown;
+    b = breakdown_of(falls_of(record_, sections), input_.instrument, input_.choose_kinetics);
+    if (options_.blades && !b.times.empty())
+      b.notes.push_back(
+          "breakdown_rate: by the vane's torques as they stand; with four blades it reads some 10 % less "
+          "than with a "
+          "cylinder, the exponent the same");
+  }
+
+  const ProtocolRecord& record_;
+  const FitInput& input_;
+  const ProtocolOptions& options_;
+  ProtocolReading result_;
+  std::optional<KnownLaw> law_;
+  const SectionReading* curve_ = nullptr;
+  bool has_curve_ = false;
+};
 
 }  // namespace
 
 std::string law_of_section(const FitInput& input) {
-  return input.mu ? "bingham" : input.law == FitInput{}.law ? "auto" : input.law;
+  const bool chosen = input.law_given || input.law != FitInput{}.law;
+  if (chosen && input.law != "auto") return input.law;
+  return input.mu ? FitInput{}.law : "auto";
+}
+
+std::string names_of(const KnownLaw& law) {
+  std::string names;
+  for (const LawParameter& p : flow_law(law.name).parameters)
+    names += (names.empty() ? "" : ", ") + p.row.name;
+  return names;
 }
 
 ProtocolReading read_protocol(const ProtocolRecord& record, const FitInput& input,
                               const ProtocolOptions& options) {
-  check(input.instrument);
-  ProtocolReading result;
-  result.sheared_evenly = record.sheared_evenly;
-  const auto input_for = [&](const Section& s) {
-    FitInput in = input;
-    in.omega = s.omega > 0.0 ? std::optional(s.omega) : std::nullopt;
-    if (s.rest_before > 0.0) in.rest = s.rest_before;
-    return in;
-  };
-  for (const Section& s : find_sections(record)) {
-    SectionReading reading;
-    reading.section = s;
-    reading.first_line = record.line[s.begin];
-    reading.last_line = record.line[s.end - 1];
-    reading.start = record.time[s.begin];
-    reading.duration = record.time[s.end - 1] - record.time[s.begin];
-    if (s.kind == SectionKind::start_up) {
-      reading.start_up = read_start_up(record, s, input.instrument, options, reading.notes);
-    } else if (s.kind == SectionKind::flow_curve_up || s.kind == SectionKind::flow_curve_down) {
-      FitInput in = input_for(s);
-      in.law = law_of_section(in);
-      read_fit(flow_curve_of(record, s), in, reading);
-      if (!result.sections.empty()) read_loop(record, result.sections.back(), reading);
-    } else if (s.kind == SectionKind::other) {
-      reading.notes.push_back("neither a constant speed nor a ramp: not read");
-    }
-    result.sections.push_back(std::move(reading));
-  }
-  const SectionReading* curve = own_flow_curve(result.sections);
-  for (std::size_t i = 0; i < result.sections.size(); ++i) {
-    SectionReading& reading = result.sections[i];
-    const Section& s = reading.section;
-    if (s.kind == SectionKind::constant_rate) read_decay(record, input_for(s), curve, reading);
-    for (const std::string& why : reading.reasons)
-      result.reasons.push_back("section " + std::to_string(i + 1) + " (" + std::string(name_of(s.kind)) +
-                               "): " + why);
-  }
-  result.structuration = structuration_of(result.sections);
-  std::vector<Section> sections;
-  for (const SectionReading& s : result.sections) sections.push_back(s.section);
-  result.breakdown = breakdown_of(falls_of(record, sections), input.instrument, input.choose_kinetics);
-  return result;
+  return Reader(record, input, options).read();
 }
 
 }  // namespace tremie

@@ -11,6 +11,7 @@
 #include "rheometer/protocol/breakdown.hpp"
 #include "rheometer/protocol/saturation.hpp"
 #include "rheometer/records/sections.hpp"
+#include "rheometer/vane/vane_blades.hpp"
 
 namespace tremie {
 
@@ -21,7 +22,9 @@ struct StartUpReading {
   double end_torque = 0.0;   ///< at the end of the section [N m]
   bool peak_inside = false;  ///< false: the torque still rises at the end, so the peak is a lower bound
   std::optional<double> static_yield_stress;  ///< of the peak [Pa]
-  std::optional<double> shear_modulus;        ///< of the rise to half the peak [Pa]
+  /// The same without the viscous stress at this speed, by the record's flow curve [Pa].
+  std::optional<double> static_by_law;
+  std::optional<double> shear_modulus;  ///< of the rise to half the peak [Pa]
 };
 
 /// The shape of a decay behind its peak, without a material: T_end + C e^(-t/t_0) against T_end + C (1 + t/t_0)^(-m).
@@ -48,6 +51,8 @@ struct SectionReading {
 /// Peaks over rests: static yield stress = intercept + A_thix rest.
 struct Structuration {
   std::optional<ParameterEstimate> A_thix, at_no_rest;  ///< [Pa/s], [Pa]
+  /// The same line through the stresses without their viscous part, where a flow curve tells it.
+  std::optional<ParameterEstimate> A_thix_by_law, at_no_rest_by_law;
   std::optional<double> scatter;      ///< of the peaks about the line, relative to their mean
   std::optional<double> early, late;  ///< slope between the two shortest and the two longest rests [Pa/s]
   std::optional<Saturation> saturation;
@@ -59,26 +64,44 @@ struct Structuration {
 struct ProtocolReading {
   bool sheared_evenly = false;  ///< of the record
   std::vector<SectionReading> sections;
+  std::size_t flow_curve = 0;  ///< number of the section whose law decays and start-ups take; 0: none
   Structuration structuration;
   Breakdown breakdown;
   std::vector<std::string> reasons;  ///< why a section is not to be trusted, with its number
 };
 
 struct ProtocolOptions {
-  double compliance = 0.0;  ///< of the instrument: its own turn by torque [rad/(N m)]
+  double compliance = 0.0;           ///< of the instrument: its own turn by torque [rad/(N m)]
+  std::optional<BladeTable> blades;  ///< corrects the torques of a vane with four thin blades
 };
 
-/// The law of a flow curve in a record of sections, alone or among the others: the input's, and all compared where that is
-/// the default one.
+/// The law of a flow curve in a record of sections, alone or among the others: the input's, and all compared where none is
+/// given; Bingham's where a plastic viscosity is.
 std::string law_of_section(const FitInput& input);
 
-/// Reads every section; decays by the yield stress and viscosity of the record's own flow curve, where it has a Bingham
-/// one and the input gives neither. `input` holds instrument, kinetics, law and what is known besides; its speed and rest are the
-/// sections'. Throws std::invalid_argument for an instrument that cannot be.
+/// "yield_stress, consistency, flow_index".
+std::string names_of(const KnownLaw& law);
+
+/// Reads every section; decays and start-ups by the law of the record's last flow curve that tells all of its parameters,
+/// unless yield stress and viscosity are given. `input` holds instrument, kinetics, law and what is known besides; its
+/// speed and rest are the sections'. With blades every section is read by the torques of the cylinder that they span, by
+/// Bingham's law; one that cannot be has a reason. Throws std::invalid_argument for an instrument that cannot be, and as
+/// blade_factor() does.
 ProtocolReading read_protocol(const ProtocolRecord& record, const FitInput& input,
                               const ProtocolOptions& options = {});
 
-/// A start-up: rows of the section.
+/// The yield stress [Pa] with which a material of this law otherwise gives the torque at the speed; empty for a law
+/// without a viscous part.
+std::optional<double> static_yield_stress_of(const KnownLaw& law, double torque, double omega,
+                                             const Instrument& instrument);
+
+/// The shape of a torque from its peak on; time counts from the peak.
+DecayShape read_decay_shape(const std::vector<double>& time, const std::vector<double>& torque);
+
+/// The loop of a flow curve down behind one up.
+void read_loop(const ProtocolRecord& record, const SectionReading& before, SectionReading& reading);
+
+/// A start-up: rows of the section; the static yield stress is that of the torque as it stands.
 StartUpReading read_start_up(const ProtocolRecord& record, const Section& section,
                              const Instrument& instrument, const ProtocolOptions& options,
                              std::vector<std::string>& notes);

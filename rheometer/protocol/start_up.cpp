@@ -3,8 +3,10 @@
 #include <numbers>
 #include <vector>
 
+#include "rheometer/fits/flow_law.hpp"
 #include "rheometer/protocol/protocol.hpp"
 #include "rheometer/records/torque_limit.hpp"
+#include "rheometer/reference/couette_flow.hpp"
 #include "rheometer/regression/statistics.hpp"
 #include "rheometer/tables/text.hpp"
 
@@ -38,21 +40,23 @@ bool times_are_rounded(const ProtocolRecord& r, std::size_t begin, std::size_t p
   return shared >= 2;
 }
 
-/// G of an elastic material between the vane and the container: T = 4 pi h G angle/(R_i^-2 - R_o^-2).
-std::optional<double> modulus(std::optional<double> slope, const Instrument& in, double compliance,
-                              std::vector<std::string>& notes) {
+/// G of an elastic material between the vane and the container: T = 4 pi h G angle/(R_i^-2 - R_o^-2). Blades take of it
+/// what they take of a Newtonian fluid, whose equations have strains in place of rates.
+std::optional<double> modulus(std::optional<double> slope, const Instrument& in,
+                              const ProtocolOptions& options, std::vector<std::string>& notes) {
   if (!slope) {
     notes.push_back("shear_modulus: fewer than 3 rows between the start of the shear and half its peak");
     return std::nullopt;
   }
-  const double material = 1.0 / *slope - compliance;
+  const double of_blades = options.blades ? blade_factor(*options.blades, in, 0.0) : 1.0;
+  const double material = 1.0 / *slope - options.compliance;
   if (!(material > 0.05 / *slope)) {
     notes.push_back("shear_modulus: the instrument's own compliance explains the rise");
     return std::nullopt;
   }
   const double share =
       1.0 / (in.vane_radius * in.vane_radius) - 1.0 / (in.container_radius * in.container_radius);
-  return share / (4.0 * std::numbers::pi * in.vane_height * material);
+  return share / (4.0 * std::numbers::pi * in.vane_height * material) / of_blades;
 }
 
 }  // namespace
@@ -84,7 +88,7 @@ StartUpReading read_start_up(const ProtocolRecord& r, const Section& s, const In
       notes.push_back(
           "shear_modulus: several rows share one time, so that the rise over the angle is not told");
     else
-      reading.shear_modulus = modulus(rise(r, s.begin, peak), in, options.compliance, notes);
+      reading.shear_modulus = modulus(rise(r, s.begin, peak), in, options, notes);
   } else {
     notes.push_back(peak <= s.begin + 1
                         ? "static_yield_stress: the torque does not rise, so no start-up was recorded"
@@ -92,6 +96,42 @@ StartUpReading read_start_up(const ProtocolRecord& r, const Section& s, const In
                           "section or stays level");
   }
   return reading;
+}
+
+namespace {
+
+/// The line by the stresses without their viscous part, where each peak has one.
+void add_line_by_law(const std::vector<SectionReading>& sections, Structuration& result) {
+  std::vector<double> rest, stress;
+  for (const SectionReading& s : sections) {
+    if (!s.start_up || !s.start_up->static_by_law || !(s.section.rest_before > 0.0)) continue;
+    rest.push_back(s.section.rest_before);
+    stress.push_back(*s.start_up->static_by_law);
+  }
+  if (rest.size() != result.rest.size()) return;
+  const StraightLine line = straight_line(rest, stress);
+  result.A_thix_by_law = ParameterEstimate{line.slope, std::nullopt, false};
+  result.at_no_rest_by_law = ParameterEstimate{line.at(0.0), std::nullopt, false};
+  if (line.n < 3.0) return;
+  const double half = line.half_width_of_slope(), half_0 = line.half_width(0.0);
+  result.A_thix_by_law->ci95 = Interval{line.slope - half, line.slope + half};
+  result.at_no_rest_by_law->ci95 = Interval{line.at(0.0) - half_0, line.at(0.0) + half_0};
+}
+
+}  // namespace
+
+std::optional<double> static_yield_stress_of(const KnownLaw& law, double torque, double omega,
+                                             const Instrument& in) {
+  if (!flow_law(law.name).viscous) return std::nullopt;
+  const ViscousStress v = viscous_stress(law);
+  const auto with = [&](double tau_y) { return steady_torque({tau_y, v.k, v.n}, omega, in).torque; };
+  if (!(v.k > 0.0) || with(0.0) >= torque) return std::nullopt;
+  double low = 0.0, high = shear_stress_at(in.vane_radius, torque, in);
+  for (int i = 0; i < 100; ++i) {
+    const double middle = 0.5 * (low + high);
+    (with(middle) < torque ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
 }
 
 Structuration structuration_of(const std::vector<SectionReading>& sections) {
@@ -106,6 +146,7 @@ Structuration structuration_of(const std::vector<SectionReading>& sections) {
     result.notes.push_back("structuration_rate: needs the peaks after two rests of different length");
     return result;
   }
+  add_line_by_law(sections, result);
   result.A_thix = ParameterEstimate{line.slope, std::nullopt, false};
   result.at_no_rest = ParameterEstimate{line.at(0.0), std::nullopt, false};
   if (line.n < 3.0) {

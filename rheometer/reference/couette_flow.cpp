@@ -5,6 +5,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "rheometer/reference/reiner_riwlin.hpp"
+
 namespace tremie {
 namespace {
 
@@ -115,6 +117,15 @@ HerschelBulkleyTorque herschel_bulkley_torque(const HerschelBulkleyFluid& f, dou
                          ? std::min(in.container_radius, in.vane_radius * std::sqrt(stress / f.tau_0))
                          : in.container_radius;
   return t;
+}
+
+SteadyTorque steady_torque(const HerschelBulkleyFluid& f, double omega, const Instrument& in) {
+  if (f.n == 1.0) {
+    const CouetteState s = reiner_riwlin({f.tau_0, f.k}, omega, in);
+    return {s.torque, s.sheared_radius};
+  }
+  const HerschelBulkleyTorque t = herschel_bulkley_torque(f, omega, in);
+  return {t.torque, t.sheared_radius};
 }
 
 }  // namespace tremie

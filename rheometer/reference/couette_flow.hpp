@@ -37,4 +37,10 @@ struct HerschelBulkleyTorque {
 HerschelBulkleyTorque herschel_bulkley_torque(const HerschelBulkleyFluid& fluid, double omega,
                                               const Instrument& instrument);
 
+/// Torque [N m] and sheared radius [m]; of n = 1 by Reiner and Riwlin's closed form. Throws as they do.
+struct SteadyTorque {
+  double torque = 0.0, sheared_radius = 0.0;
+};
+SteadyTorque steady_torque(const HerschelBulkleyFluid& fluid, double omega, const Instrument& instrument);
+
 }  // namespace tremie

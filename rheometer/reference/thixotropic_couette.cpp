@@ -9,6 +9,7 @@
 #include <span>
 #include <utility>
 
+#include "rheometer/reference/couette_flow.hpp"
 #include "rheometer/reference/kinetics_equations.hpp"
 #include "rheometer/reference/sundials_support.hpp"
 
@@ -26,6 +27,7 @@ struct Part {
 /// at the vane [Pa].
 struct Gap {
   double tau_0 = 0.0, mu = 0.0, build_rate = 0.0, gamma_c = 0.0, dx = 0.0;
+  double power = 1.0;       ///< 1/n: the shear rate is excess^(1/n)
   std::vector<Part> parts;  ///< one where kinetics have no modes
   bool gated = true, find_gate = true;
   std::vector<double> x, stress_share;  ///< ln(r/R_i) and (R_i/r)^2 of the nodes
@@ -42,21 +44,32 @@ struct Gap {
     return sum;
   }
 
-  /// Shear rate if the material yields; negative: it does not.
+  /// Excess stress over mu [(1/s)^n]; negative: the material does not yield.
   double excess(std::size_t i, std::span<const double> y) const {
     return (y[unknowns()] * stress_share[i] - (1.0 + lambda(i, y)) * tau_0) / mu;
   }
 
-  bool flows(std::size_t i, double e) const {
+  /// Shear rate of an excess, which stands for itself where it is negative.
+  double rate(double e) const { return power == 1.0 || !(e > 0.0) ? e : std::pow(e, power); }
+
+  /// Its derivative; at the plug's edge, where it is infinite for n > 1, that of a small excess.
+  double slope(double e) const {
+    return power == 1.0 ? 1.0 : power * std::pow(std::max(e, 1e-9), power - 1.0);
+  }
+
+  /// The shear rate at node i, or a negative number.
+  double gamma_dot(std::size_t i, std::span<const double> y) const { return rate(excess(i, y)); }
+
+  bool flows(std::size_t i, double gamma_dot) const {
     if (!gated) return true;
-    return find_gate ? flowing[i] != 0 : e >= gamma_c;
+    return find_gate ? flowing[i] != 0 : gamma_dot >= gamma_c;
   }
 
   /// Of part j, whose value is `value`.
-  double rate_of_part(std::size_t i, std::size_t j, double value, double e) const {
+  double rate_of_part(std::size_t i, std::size_t j, double value, double gamma_dot) const {
     const Part& p = parts[j];
     return p.share * kinetics_equations::rate_of_lambda(p.kinetics, build_rate, value / p.share,
-                                                        std::max(0.0, e), flows(i, e));
+                                                        std::max(0.0, gamma_dot), flows(i, gamma_dot));
   }
 };
 
@@ -76,6 +89,28 @@ PositivePart positive_part(double a, double b, double dx) {
   return {0.5 * dx * top * q, falling ? by_top : by_bottom, falling ? by_bottom : by_top};
 }
 
+/// int over one interval of the power p of a linear function's positive part, as above for p = 1.
+PositivePart positive_power(double a, double b, double p, double dx) {
+  if (a <= 0.0 && b <= 0.0) return {};
+  const bool falling = a > b;
+  const double top = falling ? a : b, bottom = falling ? b : a;
+  if (bottom > 0.5 * top) {  // Gauss' rule of three points: the closed form cancels
+    static constexpr double at[] = {0.1127016653792583, 0.5, 0.8872983346207417};
+    static constexpr double weight[] = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
+    PositivePart part;
+    for (int k = 0; k < 3; ++k) {
+      const double e = a + (b - a) * at[k], value = dx * weight[k] * std::pow(e, p), slope = p * value / e;
+      part.integral += value, part.d_a += slope * (1.0 - at[k]), part.d_b += slope * at[k];
+    }
+    return part;
+  }
+  const double low = std::max(0.0, bottom), width = top - bottom, of_top = std::pow(top, p),
+               of_low = low > 0.0 ? std::pow(low, p) : 0.0;
+  const double mean = (of_top * top - of_low * low) / ((p + 1.0) * width);
+  const double by_top = dx * (of_top - mean) / width, by_bottom = dx * (mean - of_low) / width;
+  return {dx * mean, falling ? by_top : by_bottom, falling ? by_bottom : by_top};
+}
+
 /// The speed that the state turns the vane at; d_excess[i] (if given) receives its derivative by the excess
 /// at node i.
 double speed_of(const Gap& gap, std::span<const double> y, std::vector<double>* d_excess) {
@@ -83,7 +118,8 @@ double speed_of(const Gap& gap, std::span<const double> y, std::vector<double>* 
   double sum = 0.0, left = gap.excess(0, y);
   for (std::size_t i = 1; i < gap.nodes(); ++i) {
     const double right = gap.excess(i, y);
-    const PositivePart part = positive_part(left, right, gap.dx);
+    const PositivePart part = gap.power == 1.0 ? positive_part(left, right, gap.dx)
+                                               : positive_power(left, right, gap.power, gap.dx);
     sum += part.integral;
     if (d_excess) {
       (*d_excess)[i - 1] += part.d_a;
@@ -101,16 +137,22 @@ double speed_by_stress(const Gap& gap, const std::vector<double>& d_excess) {
   return sum / gap.mu;
 }
 
-/// Puts the s into y that turns the vane at omega. The speed is convex in s, so Newton from above stays
-/// above.
+/// Puts the s into y that turns the vane at omega. A Bingham material's speed is convex in s, so Newton from above stays
+/// above; that of another power is kept between its bounds.
 void solve_stress(const Gap& gap, std::span<double> y, double omega) {
   double& s = y[gap.unknowns()];
+  double low = 0.0;
   s = (1.0 + gap.lambda(0, y)) * gap.tau_0 + gap.mu * omega;
-  while (speed_of(gap, y, nullptr) < omega) s *= 2.0;
+  while (speed_of(gap, y, nullptr) < omega) low = s, s *= 2.0;
+  double high = s;
   std::vector<double> d_excess;
   for (int i = 0; i < 100; ++i) {
     const double error = speed_of(gap, y, &d_excess) - omega;
-    const double step = error / speed_by_stress(gap, d_excess);
+    double step = error / speed_by_stress(gap, d_excess);
+    if (gap.power != 1.0) {
+      (error < 0.0 ? low : high) = s;
+      if (!(s - step > low && s - step < high)) step = s - 0.5 * (low + high);
+    }
     s -= step;
     if (std::abs(step) <= 1e-14 * s) break;
   }
@@ -122,9 +164,9 @@ void consistent_rates(const Gap& gap, double t, std::span<const double> y, std::
   speed_of(gap, y, &d_excess);
   double by_lambda = 0.0;
   for (std::size_t i = 0, at = 0; i < gap.nodes(); ++i) {
-    const double e = gap.excess(i, y);
+    const double gamma_dot = gap.gamma_dot(i, y);
     for (std::size_t j = 0; j < gap.parts.size(); ++j, ++at) {
-      rates[at] = gap.rate_of_part(i, j, y[at], e);
+      rates[at] = gap.rate_of_part(i, j, y[at], gamma_dot);
       by_lambda -= d_excess[i] * gap.tau_0 / gap.mu * rates[at];
     }
   }
@@ -136,9 +178,9 @@ int residual(sunrealtype t, N_Vector y_vector, N_Vector rates_vector, N_Vector r
   const Gap& gap = *static_cast<const Gap*>(user);
   const std::span<double> y = values(y_vector), rates = values(rates_vector), f = values(result);
   for (std::size_t i = 0, at = 0; i < gap.nodes(); ++i) {
-    const double e = gap.excess(i, y);
+    const double gamma_dot = gap.gamma_dot(i, y);
     for (std::size_t j = 0; j < gap.parts.size(); ++j, ++at)
-      f[at] = rates[at] - gap.rate_of_part(i, j, y[at], e);
+      f[at] = rates[at] - gap.rate_of_part(i, j, y[at], gamma_dot);
   }
   f[gap.unknowns()] = speed_of(gap, y, nullptr) - gap.omega(t);
   return std::isfinite(f[gap.unknowns()]) ? 0 : 1;  // 1: IDA tries a smaller step
@@ -147,7 +189,7 @@ int residual(sunrealtype t, N_Vector y_vector, N_Vector rates_vector, N_Vector r
 int distance_to_gate(sunrealtype, N_Vector y_vector, N_Vector, sunrealtype* g, void* user) {
   const Gap& gap = *static_cast<const Gap*>(user);
   const std::span<double> y = values(y_vector);
-  for (std::size_t i = 0; i < gap.nodes(); ++i) g[i] = gap.excess(i, y) - gap.gamma_c;
+  for (std::size_t i = 0; i < gap.nodes(); ++i) g[i] = gap.gamma_dot(i, y) - gap.gamma_c;
   return 0;
 }
 
@@ -158,12 +200,13 @@ struct NodeBlock {
 };
 
 void fill_block(const Gap& gap, std::size_t i, std::span<const double> y, double cj, const NodeBlock& block) {
-  const double e = gap.excess(i, y);
+  const double e = gap.excess(i, y), gamma_dot = gap.rate(e);
   for (std::size_t j = 0; j < gap.parts.size(); ++j) {
     const Part& p = gap.parts[j];
-    const auto d = kinetics_equations::derivatives_of(
-        p.kinetics, gap.build_rate, y[i * gap.parts.size() + j] / p.share, std::max(0.0, e), gap.flows(i, e));
-    const double by_rate = p.share * d.broken_by_rate;
+    const auto d =
+        kinetics_equations::derivatives_of(p.kinetics, gap.build_rate, y[i * gap.parts.size() + j] / p.share,
+                                           std::max(0.0, gamma_dot), gap.flows(i, gamma_dot));
+    const double by_rate = p.share * d.broken_by_rate * gap.slope(e);
     block.diagonal[j] = cj - d.build_by_lambda;
     block.by_sum[j] = block.column[j] = 0.0;
     if (!(e > 0.0)) continue;
@@ -256,6 +299,8 @@ void check(const CouetteFlow& flow) {
   const auto positive = [](double v) { return std::isfinite(v) && v > 0.0; };
   if (!positive(flow.bingham.tau_0) || !positive(flow.bingham.mu))
     throw std::invalid_argument("the yield stress and the plastic viscosity must be greater than 0");
+  if (!(flow.flow_index >= 0.2 && flow.flow_index <= 2.0))
+    throw std::invalid_argument("the flow index must lie between 0.2 and 2");
   if (!flow.omega_of_time && !positive(flow.omega))
     throw std::invalid_argument("the speed must be greater than 0");
   kinetics_equations::check(flow.thixotropy, flow.thixotropy.initial_flocculation);
@@ -266,6 +311,7 @@ Gap make_gap(const CouetteFlow& flow, double width, const CouetteOptions& option
   Gap gap;
   gap.tau_0 = flow.bingham.tau_0;
   gap.mu = flow.bingham.mu;
+  gap.power = 1.0 / flow.flow_index;
   gap.build_rate = t.A_thix / flow.bingham.tau_0;
   for (const BreakdownMode& mode : kinetics_equations::modes_of(t.kinetics))
     if (mode.share > 0.0) gap.parts.push_back({mode.share, kinetics_equations::of_part(t.kinetics, mode)});
@@ -294,7 +340,8 @@ class Integrator {
     for (std::size_t i = 0; i < gap_.unknowns(); ++i) y[i] = gap_.parts[i % gap_.parts.size()].share * lambda;
     solve_stress(gap_, y, gap_.omega(0.0));
     if (!std::isfinite(y[gap_.unknowns()])) throw std::runtime_error("the Couette flow has no finite torque");
-    for (std::size_t i = 0; i < gap_.nodes(); ++i) gap_.flowing.push_back(gap_.excess(i, y) >= gap_.gamma_c);
+    for (std::size_t i = 0; i < gap_.nodes(); ++i)
+      gap_.flowing.push_back(gap_.gamma_dot(i, y) >= gap_.gamma_c);
     consistent_rates(gap_, 0.0, y, values(rates_.get));
     void* m = memory_.get();
     sundials_ok(IDAInit(m, residual, 0.0, y_.get, rates_.get), "IDAInit");
@@ -332,7 +379,7 @@ class Integrator {
     CouetteProfile& profile = result.profile.emplace_back();
     for (std::size_t i = 0; i < gap_.nodes(); ++i) {
       profile.lambda.push_back(gap_.lambda(i, y));
-      profile.gamma_dot.push_back(std::max(0.0, gap_.excess(i, y)));
+      profile.gamma_dot.push_back(std::max(0.0, gap_.gamma_dot(i, y)));
     }
   }
 
@@ -389,7 +436,8 @@ namespace {
 double sheared_width(const CouetteFlow& flow, const Instrument& in) {
   const double tau_y = static_yield_stress(flow.thixotropy.initial_flocculation, flow.bingham.tau_0);
   const double omega = flow.omega_of_time ? flow.omega_of_time(0.0) : flow.omega;
-  return 1.1 * std::log(reiner_riwlin({tau_y, flow.bingham.mu}, omega, in).sheared_radius / in.vane_radius);
+  const double radius = steady_torque({tau_y, flow.bingham.mu, flow.flow_index}, omega, in).sheared_radius;
+  return 1.1 * std::log(radius / in.vane_radius);
 }
 
 /// Empty where the shear reached the outer end of the resolved width.

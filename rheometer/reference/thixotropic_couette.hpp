@@ -1,9 +1,9 @@
 #pragma once
 
-// A thixotropic Bingham material between a rotating cylinder R_i and a container R_o, without inertia: a
+// A thixotropic Bingham or Herschel-Bulkley material between a rotating cylinder R_i and a container R_o, without inertia: a
 // differential-algebraic system in r and t, integrated by SUNDIALS IDA.
 //
-//   mu gamma_dot + (1 + lambda) tau_0 = T/(2 pi r^2 h) where this yields, gamma_dot = 0 in the plug   equations (2), (6)
+//   mu gamma_dot^n + (1 + lambda) tau_0 = T/(2 pi r^2 h) where this yields, gamma_dot = 0 in the plug   equations (2), (6)
 //   int gamma_dot/r dr = Omega(t)                                                                     no slip
 //   d lambda/dt = A_thix/tau_0 - alpha lambda gamma_dot                                               equation (3),
 //
@@ -11,8 +11,8 @@
 // Material moves in circles, so every radius keeps its own lambda.
 //
 // Discretised on equal intervals of x = ln(r/R_i), where the constraint is int gamma_dot dx: lambda at the
-// nodes, the excess stress linear between them, its positive part integrated exactly (the plug's edge lies
-// inside an interval). Second order in x while lambda(r) is smooth. Under the gate, a node that passes
+// nodes, the excess stress linear between them, the shear rate of its positive part integrated exactly (the plug's edge
+// lies inside an interval). Second order in x while lambda(r) is smooth. Under the gate, a node that passes
 // gamma_c is found as a root. Units: SI; Omega [rad/s].
 
 #include <functional>
@@ -29,6 +29,7 @@ struct CouetteFlow {
   Thixotropy thixotropy;                        ///< initial_flocculation is lambda everywhere at time 0
   double omega = 0.0;                           ///< constant speed of the vane [rad/s], > 0
   std::function<double(double)> omega_of_time;  ///< if set, takes the place of omega; smooth, > 0
+  double flow_index = 1.0;                      ///< n, 0.2 to 2; bingham.mu is then the consistency [Pa s^n]
 };
 
 struct CouetteOptions {
@@ -63,7 +64,7 @@ struct CouetteDecay {
 CouetteDecay thixotropic_couette(const CouetteFlow& flow, std::span<const double> times,
                                  const Instrument& instrument = {}, const CouetteOptions& options = {});
 
-/// int [mu gamma_dot^2 + (1 + lambda) tau_0 gamma_dot] dV of a profile [W], which equals T Omega.
+/// int [mu gamma_dot^2 + (1 + lambda) tau_0 gamma_dot] dV of a Bingham material's profile [W], which equals T Omega.
 double dissipated_power(const CouetteProfile& profile, std::span<const double> radius, const Bingham& bingham,
                         const Instrument& instrument = {});
 

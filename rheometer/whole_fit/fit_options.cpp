@@ -65,7 +65,9 @@ const std::vector<FitOption>& fit_options() {
              {7, "plastic_viscosity_Pa_s"}),
       word("kinetics", &O::kinetics, words_of_kinetics(), "Kinetics of the flocculation state",
            {8, "kinetics"}),
-      word("law", &O::law, words_of_laws(), "Law of a flow curve; auto: both are compared", {9, "law"}),
+      word("law", &O::law, words_of_laws(),
+           "Law of a flow curve (default: bingham; with --protocol auto); auto: both are compared",
+           {9, "law"}),
       number("critical_shear_rate", &O::critical_shear_rate, "1/s",
              "Critical shear rate of the gated kinetics (default: \"0.1 1/s\")",
              {13, "critical_shear_rate_per_s"}),
@@ -133,17 +135,20 @@ void set_option(FitOptions& options, const FitOption& option, bool flag) {
   options.*std::get<bool FitOptions::*>(option.member) = flag;
 }
 
+std::string law_of(const FitOptions& o) {
+  if (!o.law.empty()) return o.law;
+  return o.protocol && o.blades == "none" ? "auto" : flow_laws().front().name;
+}
+
 bool has_default_lengths(const FitOptions& o) {
   const Instrument usual;
   return o.vane_radius == usual.vane_radius && o.vane_height == usual.vane_height &&
          o.container_radius == usual.container_radius;
 }
 
-void check(const FitOptions& o, std::size_t records) {
+void check(const FitOptions& o) {
   if (!o.geometry.empty() && !has_default_lengths(o))
     throw std::invalid_argument("--geometry stands for the vane's lengths; give it or them, not both");
-  if (o.protocol && records > 1)
-    throw std::invalid_argument("--protocol reads one record; " + std::to_string(records) + " are given");
   if (o.tribometer && (o.protocol || o.ends != "none" || o.blades != "none" || !o.geometry.empty()))
     throw std::invalid_argument(
         "--tribometer is a smooth cylinder's, by --vane-radius and --container-radius; not with --protocol, "
@@ -151,10 +156,13 @@ void check(const FitOptions& o, std::size_t records) {
         "--blades or --geometry");
   if (!o.fill_height.empty() && !o.tribometer)
     throw std::invalid_argument("--fill-height is a tribometer's: --tribometer");
-  if (o.blades != "none" && (o.protocol || o.law != flow_laws().front().name))
+  if (o.blades != "none" && law_of(o) != flow_laws().front().name)
     throw std::invalid_argument(
-        "--blades computed is for a flow curve by Bingham's law, or a decay; not with " +
-        (o.protocol ? "--protocol" : "--law " + o.law));
+        "--blades computed is for Bingham's law, of which its table is; not with --law " + o.law);
+  if (o.protocol && o.plastic_viscosity && law_of(o) != "auto" &&
+      !flow_law(law_of(o)).in_place_of_viscosity.empty())
+    throw std::invalid_argument("--plastic-viscosity: " + flow_law(o.law).in_place_of_viscosity +
+                                "; not with --law " + o.law);
 }
 
 FitInput input_of(const FitOptions& o) {
@@ -167,7 +175,8 @@ FitInput input_of(const FitOptions& o) {
   in.choose_kinetics = o.kinetics == "auto";
   in.kinetics = kinetics_named(o.kinetics).value_or(Kinetics{});
   in.max_aggregate = o.max_aggregate.value_or(0.0);
-  in.law = o.law;
+  in.law = law_of(o);
+  in.law_given = !o.law.empty();
   in.gamma_c = o.critical_shear_rate;
   return in;
 }

@@ -18,7 +18,8 @@ struct FitOptions {
          container_radius = Instrument{}.container_radius;
   std::optional<double> speed, rest;  ///< of a decay [rad/s]; before it [s]
   std::optional<double> yield_stress, plastic_viscosity;
-  std::string kinetics = "auto", law = "bingham";
+  std::string kinetics = "auto";
+  std::string law;  ///< empty: law_of()
   double critical_shear_rate = FitInput{}.gamma_c;
   bool protocol = false;
   double instrument_compliance = 0.0;  ///< [rad/(N m)]
@@ -32,6 +33,9 @@ struct FitOptions {
   bool tribometer = false;  ///< the records are a smooth cylinder's (tribometer.hpp)
   std::string fill_height;  ///< of each record of a tribometer; empty: the vane's height
 };
+
+/// The law of flow curves: the one that is given, else Bingham's; in a protocol without blades all are compared.
+std::string law_of(const FitOptions& options);
 
 /// Whether the three lengths are those of the default instrument.
 bool has_default_lengths(const FitOptions& options);
@@ -69,7 +73,7 @@ void set_option(FitOptions& options, const FitOption& option, const std::string&
 void set_option(FitOptions& options, const FitOption& option, bool flag);
 
 /// Throws std::invalid_argument for options that do not go together.
-void check(const FitOptions& options, std::size_t records);
+void check(const FitOptions& options);
 
 /// What the least squares take of the options.
 FitInput input_of(const FitOptions& options);

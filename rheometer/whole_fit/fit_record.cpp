@@ -4,9 +4,11 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "rheometer/fits/flow_law.hpp"
 #include "rheometer/tables/text.hpp"
+#include "rheometer/vane/fit_with_blades.hpp"
 #include "rheometer/vane/vane_ends.hpp"
-#include "rheometer/whole_fit/fit_with_blades.hpp"
+#include "rheometer/whole_fit/protocol_replicates.hpp"
 #include "rheometer/whole_fit/record_reading.hpp"
 #include "rheometer/whole_fit/tribometer.hpp"
 
@@ -23,7 +25,10 @@ struct Fitting {
   bool computed_ends() const { return options.ends == "computed"; }
 
   DataTable ends() const { return data_table(data_folders, "vane_ends", "--ends computed"); }
-  DataTable blades() const { return data_table(data_folders, "vane_blades", "--blades computed"); }
+  BladeTable blades() const {
+    const auto [text, name] = data_table(data_folders, "vane_blades", "--blades computed");
+    return blade_table(text, name);
+  }
 };
 
 /// Faults of a fit with the name of what it is of, if it has one.
@@ -95,22 +100,6 @@ void note_beyond_ends(const Fitting& f, const FitInput& in, FitResult& result) {
         "ends: the Bingham number, %.3g, lies beyond the table's %.3g, whose factor is taken", Bi, last));
 }
 
-/// A note where a reading's Bingham number lies beyond the blades' table: the slowest reading's, with the largest yield stress.
-void note_beyond_blades(const TorqueRecord& record, const FitInput& in, const BladeTable& table,
-                        FitResult& result) {
-  const auto& yield = result.static_yield_stress ? result.static_yield_stress : result.tau_0;
-  double slowest = in.omega.value_or(0.0);
-  for (const double omega : record.omega)
-    if (omega > 0.0 && (slowest <= 0.0 || omega < slowest)) slowest = omega;
-  if (!yield || !result.mu || !(slowest > 0.0)) return;
-  const double last = largest_bingham_number(table, in.instrument);
-  const double Bi = yield->value / (result.mu->value * slowest);
-  if (Bi > 1.001 * last)
-    result.notes.push_back(
-        text_of("blades: the Bingham number, up to %.3g, lies beyond the table's %.3g, whose factor is taken",
-                Bi, last));
-}
-
 /// The fit of a vane: of the torques that its cylinder would have taken, where the blades are corrected for.
 FitResult fit_vane(const Fitting& f, const TorqueRecord& record, const FitInput& in) {
   if (f.options.blades == "none") {
@@ -123,18 +112,7 @@ FitResult fit_vane(const Fitting& f, const TorqueRecord& record, const FitInput&
               "cylinder of this fit, which --blades computed corrects");
     return result;
   }
-  const auto [text, name] = f.blades();
-  const BladeTable table = blade_table(text, name);
-  VaneFit vane = fit_with_blades(record, in, table);
-  vane.fit.notes.push_back(text_of(
-      "torques are the cylinder's: the record's divided by %.3f to %.3f, what four thin blades take of it",
-      vane.least_factor, vane.most_factor));
-  note_beyond_blades(record, in, table, vane.fit);
-  if (vane.fit.alpha && !vane.fit.alpha->given)
-    vane.fit.notes.push_back(
-        "alpha: with blades it reads some 30 % too small, more than its interval: what stands between the "
-        "blades is not broken down; without --blades the two errors nearly cancel");
-  return vane.fit;
+  return noted_fit_with_blades(record, in, f.blades());
 }
 
 /// A flow curve as it would be if the ends carried at every speed what they carry at the middle one, for which `factor`
@@ -153,16 +131,18 @@ TorqueRecord with_even_ends(const Fitting& f, const TorqueRecord& record, const 
   return even;
 }
 
-/// Yield stress and viscosity of a decay by the last Bingham flow curve of the same file, as --protocol takes them.
-void take_own_flow_curve(const TorqueRecord& record, FitInput& in, std::vector<std::string>& notes) {
-  if (in.tau_0 || in.mu) return;
+/// The law of a decay's material by the last flow curve of the same file that tells it, as --protocol takes it.
+void take_own_flow_curve(const Fitting& f, const TorqueRecord& record, FitInput& in,
+                         std::vector<std::string>& notes) {
+  if (in.tau_0 && in.mu) return;
+  const bool blades = f.options.blades != "none" && !record.sheared_evenly;
   for (auto curve = record.flow_curves.rbegin(); curve != record.flow_curves.rend(); ++curve) try {
       FitInput of_curve = in;
-      of_curve.law = law_of_section(in);
-      const FitResult result = fit(*curve, of_curve);
-      if (!result.reasons.empty() || !result.tau_0 || !result.mu) continue;
-      in.tau_0 = std::max(0.0, result.tau_0->value), in.mu = result.mu->value;
-      notes.push_back(text_of("yield_stress, plastic_viscosity: of the flow curve on lines %ld to %ld",
+      of_curve.law = blades ? flow_laws().front().name : law_of_section(in);
+      in.curve =
+          known_law(blades ? fit_with_blades(*curve, of_curve, f.blades()).fit : fit(*curve, of_curve));
+      if (!in.curve) continue;
+      notes.push_back(text_of("%s: of the flow curve on lines %ld to %ld", names_of(*in.curve).c_str(),
                               curve->line.front(), curve->line.back()));
       return;
     } catch (const std::invalid_argument&) {  // too few rows: no flow curve
@@ -177,14 +157,15 @@ FitResult read_and_fit(const Fitting& f, const RecordSource& source, FitInput in
     if (in.omega && !(*in.omega > 0.0)) in.omega.reset();  // a record of shear rates has no speed
     if (!in.omega && record.speed > 0.0) in.omega = record.speed;
     if (!in.rest && record.rest > 0.0) in.rest = record.rest;
-    if (record.is_section && record.kind == RecordKind::flow_curve) in.law = law_of_section(in);
+    if (record.is_section && record.kind == RecordKind::flow_curve && f.options.blades == "none")
+      in.law = law_of_section(in);
     std::vector<std::string> notes{"geometry: " +
                                    geometry_words(f.reading, f.options, record.sheared_evenly)};
     notes.insert(notes.end(), record.understood.begin(), record.understood.end());
     FitInput of_curve = in;
     if (record.sheared_evenly) of_curve.instrument = evenly_sheared();
-    take_own_flow_curve(record, of_curve, notes);
-    in.tau_0 = of_curve.tau_0, in.mu = of_curve.mu;
+    take_own_flow_curve(f, record, of_curve, notes);
+    in.curve = of_curve.curve;
     FitResult result = record.sheared_evenly ? fit_evenly_sheared(f, record, in) : fit_vane(f, record, in);
     if (f.computed_ends() && factor != 1.0 && record.kind == RecordKind::flow_curve && result.tau_0 &&
         result.mu && result.mu->value > 0.0)
@@ -253,17 +234,54 @@ ProtocolFit fit_protocol(const Fitting& f, const std::string& file, const FitInp
   return named(file, [&] {
     ProtocolFit p{
         parse_protocol_record(read_text_file(file), file, f.options.torque_offset, f.reading.options), {}};
-    if (p.record.sheared_evenly && (f.options.ends != "none" || f.geometry().plates))
-      throw std::invalid_argument(f.geometry().plates
-                                      ? "--protocol does not read parallel plates"
-                                      : "--ends is a vane's; this record has shear rates and stresses");
+    const bool corrected = f.options.ends != "none" || f.options.blades != "none";
+    if (p.record.sheared_evenly && (corrected || f.geometry().plates))
+      throw std::invalid_argument(
+          f.geometry().plates ? "--protocol does not read parallel plates"
+                              : "--ends and --blades are a vane's; this record has shear rates and stresses");
     p.record.understood.insert(p.record.understood.begin(),
                                "geometry: " + geometry_words(f.reading, f.options, p.record.sheared_evenly));
     FitInput of_record = in;
     if (p.record.sheared_evenly) of_record.instrument = evenly_sheared();
-    p.reading = read_protocol(p.record, of_record, {.compliance = f.options.instrument_compliance});
+    ProtocolOptions options{.compliance = f.options.instrument_compliance, .blades = {}};
+    if (f.options.blades != "none") options.blades = f.blades();
+    p.reading = read_protocol(p.record, of_record, options);
     return p;
   });
+}
+
+/// Protocols of one material by one law, which most of them have, and their means.
+void fit_protocols(const Fitting& f, const std::vector<RecordSource>& sources, const FitInput& in,
+                   RecordFits& all) {
+  std::vector<ProtocolReading> readings;
+  for (const RecordSource& source : sources) {
+    all.protocols.push_back(fit_protocol(f, source.name, in));
+    readings.push_back(all.protocols.back().reading);
+    if (readings.back().sheared_evenly != readings.front().sheared_evenly)
+      throw RecordError(source.name +
+                        ": replicates are of one instrument: all have torques, or all shear stresses");
+  }
+  set_geometry(f, all.protocols.front().record.sheared_evenly, all);
+  const bool several = sources.size() > 1;
+  const std::string law = several ? common_law(readings) : "";
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    const std::string own = law_read(readings[i]);
+    if (!law.empty() && !own.empty() && own != law) {
+      FitInput by_law = in;
+      by_law.law = law, by_law.law_given = true;
+      all.protocols[i] = fit_protocol(f, sources[i].name, by_law);
+      readings[i] = all.protocols[i].reading;
+      all.notes.push_back(
+          sources[i].name + ": alone its flow curve has the law " + own + "; " +
+          (law_read(readings[i]) == law
+               ? "it is read by " + law + " as most of the records are: one material has one law"
+               : law + ", which most of the records have, does not describe it: it is left out of the "
+                       "flow curves' means"));
+    }
+    for (const auto& why : readings[i].reasons)
+      all.reasons.push_back(several ? sources[i].name + ": " + why : why);
+  }
+  if (several) all.means = replicate_means(readings);
 }
 
 /// The records of a tribometer, each at its fill height, as one fit.
@@ -287,13 +305,14 @@ FitResult fit_tribometer_records(const Fitting& f, const std::vector<RecordSourc
 
 RecordFits fit_records(const std::vector<RecordSource>& sources, const FitOptions& options,
                        const std::vector<std::filesystem::path>& data_folders) {
-  check(options, sources.size());
+  check(options);
   const Fitting f{options, data_folders, reading_of(options, data_folders)};
   FitInput in = input_of(options);
   if (f.geometry().cylinders) in.instrument = *f.geometry().cylinders;
   named("the instrument", [&] { check(in.instrument); });
   RecordFits all;
   all.options = options;
+  all.options.law = law_of(options);
   if (options.tribometer) {
     all.instrument = in.instrument;
     all.fits = {fit_tribometer_records(f, sources, in)};
@@ -305,9 +324,7 @@ RecordFits fit_records(const std::vector<RecordSource>& sources, const FitOption
   in.instrument.vane_height *= all.end_factor;  // torque and height enter all formulas as their quotient
   all.instrument = in.instrument;
   if (options.protocol) {
-    all.protocol = fit_protocol(f, sources.front().name, in);
-    all.reasons = all.protocol->reading.reasons;
-    set_geometry(f, all.protocol->record.sheared_evenly, all);
+    fit_protocols(f, sources, in, all);
     return all;
   }
   for (const RecordSource& source : sources) {

@@ -18,7 +18,16 @@ struct ReplicateMean {
   std::optional<double> between;  ///< standard deviation between the records, relative to the mean
   std::optional<double>
       within;  ///< what the single fits' intervals promise, as a relative standard deviation
+  std::vector<std::optional<ParameterEstimate>> of_record;  ///< empty: it does not tell it, or it was given
+  std::string where;  ///< of a protocol: the sections, "0.25 rev/s after 240 s"; empty: of the whole records
 };
+
+enum class Sign { not_negative, any };
+
+/// The mean of one parameter; empty where no record tells it. The interval of one that is not negative starts at 0 at least.
+std::optional<ReplicateMean> replicate_mean(const FitParameter& parameter,
+                                            std::vector<std::optional<ParameterEstimate>> of_record,
+                                            Sign sign = Sign::not_negative);
 
 /// The parameters that at least one of the fits tells and was not given.
 std::vector<ReplicateMean> replicate_means(const std::vector<FitResult>& fits);

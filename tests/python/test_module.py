@@ -180,16 +180,19 @@ class Rheometer(Folder):
     def test_fit_has_the_program_s_digits_with_each_option(self):
         first = self.file("first.csv", self.rows([3.0, 2.55, 2.2, 1.7, 1.2]))
         second = self.file("second.csv", self.rows([3.1, 2.5, 2.25, 1.68, 1.25]))
-        whole = self.file("whole.csv", "time_s,speed_rpm,torque_N_m\n" + "".join(
-            f"{0.5 * i},{speed},{torque}\n" for i, (speed, torque) in enumerate(
+        whole, again = (self.file(name, "time_s,speed_rpm,torque_N_m\n" + "".join(
+            f"{0.5 * i},{speed},{factor * torque}\n" for i, (speed, torque) in enumerate(
                 [(15, 2.0 + 1.5 * np.exp(-0.05 * k)) for k in range(120)] + [(0, 0.0)] * 120
                 + [(0.3, min(k / 6, 0.7 + 0.3 * np.exp(-0.1 * (k - 6)))) for k in range(40)])))
+            for name, factor in (("whole.csv", 1.0), ("again.csv", 1.05)))
         for records, options, text in (
             ([first], dict(ends="computed", blades="computed"), ["--ends", "computed", "--blades", "computed"]),
             ([first], dict(law="auto", torque_offset="-50 mN.m"), ["--law", "auto", "--torque-offset", "-50 mN.m"]),
             ([first], dict(ends="textbook", max_aggregate=0.016), ["--ends", "textbook", "--max-aggregate", "16 mm"]),
             ([first, second], dict(vane_height=0.1), ["--vane-height", "10 cm"]),
             ([whole], dict(protocol=True, instrument_compliance=0.02), ["--protocol", "--instrument-compliance", "0.02 rad/(N.m)"]),
+            ([whole, again], dict(protocol=True, kinetics="roussel", yield_stress=20.0, plastic_viscosity="5 Pa.s"),
+             ["--protocol", "--kinetics", "roussel", "--yield-stress", "20 Pa", "--plastic-viscosity", "5 Pa.s"]),
         ):
             with self.subTest(text), warnings.catch_warnings():
                 warnings.simplefilter("ignore", tremie.UntrustedWarning)

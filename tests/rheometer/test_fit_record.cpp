@@ -201,7 +201,7 @@ TEST(FitRecords, ASectionIsReadAloneAsAmongTheOthers) {
   std::ofstream(file) << text;
   const RecordFits alone = fit_records({{.name = file.string()}}, {}, data);
   const RecordFits all = fit_records({{.name = file.string()}}, with("protocol", true), data);
-  const SectionReading& decay = all.protocol->reading.sections.front();
+  const SectionReading& decay = all.protocols.front().reading.sections.front();
   ASSERT_EQ(decay.section.kind, SectionKind::constant_rate);
   ASSERT_TRUE(decay.fit);
   EXPECT_TRUE(alone.fits.front().tau_0->given);
@@ -214,8 +214,8 @@ TEST(FitRecords, ASectionIsReadAloneAsAmongTheOthers) {
     area += 0.05 * reiner_riwlin(material, angular_speed(rpm / 60.0)).torque * angular_speed(25.0 / 60.0) /
             1000.0;
   }
-  ASSERT_TRUE(all.protocol->reading.sections.back().loop_area);
-  EXPECT_NEAR(*all.protocol->reading.sections.back().loop_area, area, 0.03 * area);
+  ASSERT_TRUE(all.protocols.front().reading.sections.back().loop_area);
+  EXPECT_NEAR(*all.protocols.front().reading.sections.back().loop_area, area, 0.03 * area);
 }
 
 }  // namespace

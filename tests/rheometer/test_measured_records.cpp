@@ -11,8 +11,8 @@
 #include "rheometer/reference/reiner_riwlin.hpp"
 #include "rheometer/regression/lack_of_fit.hpp"
 #include "rheometer/regression/statistics.hpp"
+#include "rheometer/vane/fit_with_blades.hpp"
 #include "rheometer/vane/vane_ends.hpp"
-#include "rheometer/whole_fit/fit_with_blades.hpp"
 #include "rheometer/whole_fit/replicates.hpp"
 #include "tests/rheometer/synthetic_record.hpp"
 

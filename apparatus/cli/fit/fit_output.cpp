@@ -69,14 +69,22 @@ void print_result(const FitResult& r) {
 std::string percent(const std::optional<double>& v) { return v ? fmt::format("{:.2g} %", 100.0 * *v) : "-"; }
 
 void print_means(const RecordFits& fits) {
-  say("--- mean of {} records\n{:<22} {:>10} {:>24} {:>9} {:>9} {:>13}\n", fits.fits.size(), "", "mean",
-      "95 %", "between", "within", "laboratories");
-  for (const ReplicateMean& m : fits.means)
-    say("{:<22} {:>10} {:>24} {:>9} {:>9} {:>13}\n", m.parameter.name, rounded(m.mean.value, 4),
+  std::size_t width = 22;
+  for (const ReplicateMean& m : fits.means) width = std::max(width, m.parameter.name.size());
+  say("--- mean of {} records\n{:<{}} {:>10} {:>24} {:>9} {:>9} {:>13}\n",
+      std::max(fits.fits.size(), fits.protocols.size()), "", width, "mean", "95 %", "between", "within",
+      "laboratories");
+  std::string where;
+  for (const ReplicateMean& m : fits.means) {
+    if (m.where != where) say("{}\n", m.where);
+    where = m.where;
+    say("{:<{}} {:>10} {:>24} {:>9} {:>9} {:>13}\n", m.parameter.name, width, rounded(m.mean.value, 4),
         m.mean.ci95 ? fmt::format("[{}, {}] {}", rounded(m.mean.ci95->low, 4), rounded(m.mean.ci95->high, 4),
                                   m.parameter.unit)
                     : "-",
         percent(m.between), percent(m.within), percent(m.parameter.laboratories));
+  }
+  for (const auto& note : fits.notes) say("{:<22} {}\n", "note", note);
   say("between laboratories one cement paste scattered by 27 % in yield stress and 24 % in viscosity "
       "(Haist et al. 2020)\n");
 }
@@ -91,10 +99,15 @@ void print_ends(const RecordFits& fits) {
 }  // namespace
 
 void print_fits(const RecordFits& fits, const std::vector<std::string>& records) {
-  if (fits.protocol) {
-    print_protocol(fits.protocol->reading);
-    print_ends(fits);
-    for (const auto& note : fits.protocol->record.understood) say("{:<22} {}\n", "read", note);
+  if (!fits.protocols.empty()) {
+    const bool several = fits.protocols.size() > 1;
+    for (std::size_t i = 0; i < fits.protocols.size(); ++i) {
+      if (several) say("--- {}\n", records[i]);
+      print_protocol(fits.protocols[i].reading);
+      if (!several) print_ends(fits);
+      for (const auto& note : fits.protocols[i].record.understood) say("{:<22} {}\n", "read", note);
+    }
+    if (several) print_means(fits), print_ends(fits);
   } else if (fits.fits.size() > 1) {
     for (std::size_t i = 0; i < fits.fits.size(); ++i) {
       say("--- {}\n", records[i]);

@@ -37,6 +37,8 @@ std::string summary_line(const SectionReading& s, bool stress) {
                 ? fmt::format(", static yield stress {}, G {}", number(s.start_up->static_yield_stress, "Pa"),
                               number(s.start_up->shear_modulus, "Pa"))
                 : ", no peak within the section";
+    if (s.start_up->static_by_law)
+      text += fmt::format(", {} without its viscous part", number(s.start_up->static_by_law, "Pa"));
   }
   if (s.decay) {
     text =
@@ -91,6 +93,10 @@ void print_protocol(const ProtocolReading& r) {
   say("{:<22} the pre-shear, read as a decay too\n", "*");
   print_estimate("A_thix of the peaks", r.structuration.A_thix, "Pa/s");
   print_estimate("static, without rest", r.structuration.at_no_rest, "Pa");
+  if (r.structuration.A_thix_by_law) {
+    print_estimate("A_thix by flow curve", r.structuration.A_thix_by_law, "Pa/s");
+    print_estimate("static, without rest", r.structuration.at_no_rest_by_law, "Pa");
+  }
   if (const auto& s = r.structuration.saturation)
     say("{:<22} {:.4g} Pa less what is left of it after {:.3g} s ({:.2g} % scatter; the line has {:.2g} %)\n",
         "static, saturating", s->end_stress, s->time, 100.0 * s->scatter,

@@ -86,17 +86,27 @@ std::string command_of(const Given& o, const std::vector<std::string>& files) {
   return report::fit_command(files, texts);
 }
 
+/// The files of protocols; charts of one alone.
+Files protocol_files(const RecordFits& fits, const Given& o) {
+  const bool several = fits.protocols.size() > 1;
+  Files files;
+  for (std::size_t i = 0; i < fits.protocols.size(); ++i) {
+    const auto& [record, reading] = fits.protocols[i];
+    if (!several) files = report::protocol_chart_files(record, reading);
+    const std::string number = several ? fmt::format("_{}", i + 1) : "", &file = o.data[i];
+    files.emplace_back("sections" + number + ".csv", report::protocol_csv(reading));
+    files.emplace_back("report" + number + ".html",
+                       report::protocol_html(record, reading, file, command_of(o, {file})));
+  }
+  if (several)
+    files.emplace_back("report.html", report::replicates_html(fits, o.data, command_of(o, o.data)));
+  return files;
+}
+
 /// The files of a result, each a name and a text.
 Files files_of(const RecordFits& fits, const Given& o) {
   const auto command = [&](const std::vector<std::string>& files) { return command_of(o, files); };
-  if (fits.protocol) {
-    const auto& [record, reading] = *fits.protocol;
-    Files files = report::protocol_chart_files(record, reading);
-    files.emplace_back("sections.csv", report::protocol_csv(reading));
-    files.emplace_back("report.html",
-                       report::protocol_html(record, reading, o.data.front(), command(o.data)));
-    return files;
-  }
+  if (!fits.protocols.empty()) return protocol_files(fits, o);
   const bool several = fits.fits.size() > 1;
   Files files = several ? Files{} : report::fit_chart_files(fits.fits.front(), fits.instrument);
   for (std::size_t i = 0; i < fits.fits.size(); ++i) {
@@ -136,7 +146,7 @@ int run_fit(const Given& o) {
   watch.stop(outcome.cost);
   nlohmann::ordered_json summary = summary_of(outcome);
   summary["results"] = report::fit_results(fits, o.data);
-  summary["input"] = report::fit_input(options, o.data);
+  summary["input"] = report::fit_input(fits.options, o.data);
   io::write_text(folder.staging() / "summary.json", summary.dump(2) + "\n");
   const std::string note = o.crate ? write_crate(o, fits, folder.staging()) : "";
   folder.publish();

@@ -42,7 +42,7 @@ ReadRecord read(const Reading& o) {
     if (!o.texts[i].empty())
       report::read_option(options, *o.options[i], report::command_name(*o.options[i]), o.texts[i]);
   try {
-    check(options, 1);
+    check(options);
     return read_record(o.file, options, scene::data_folders());
   } catch (const RecordError& error) {
     throw scene::InputError(error.what());

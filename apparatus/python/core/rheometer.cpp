@@ -140,7 +140,9 @@ py::dict fit_sources(const std::vector<RecordSource>& sources, const py::dict& v
   py::list curves;
   d["results"] = report::fit_results(fits, names).dump();
   d["reasons"] = fits.reasons;
-  if (fits.protocol) d["sections"] = report::protocol_csv(fits.protocol->reading);
+  py::list sections;
+  for (const ProtocolFit& protocol : fits.protocols) sections.append(report::protocol_csv(protocol.reading));
+  d["sections"] = sections;
   for (FitResult& fit : fits.fits) curves.append(curve_of(fit));
   d["curves"] = curves;
   return d;

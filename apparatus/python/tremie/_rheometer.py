@@ -71,7 +71,7 @@ def fit(
 {options}
     `.results` has the keys of the program's summary.json (yield_stress_Pa: value and ci95, or None where it is not
     identifiable), `.tables["fit.csv"]` the readings beside the fitted torques ("fit_1.csv", … of replicates, "sections.csv"
-    of a protocol)."""
+    of a protocol, "sections_1.csv", … of several)."""
     unknown = [name for name in options if name not in _OPTIONS]
     if unknown:
         raise TypeError(f"fit() got an unexpected keyword argument {unknown[0]!r}; it takes {', '.join(_OPTIONS)}")
@@ -89,8 +89,9 @@ def fit(
         answer = _tremie.fit(False, *_readings("speeds", speeds, torque), given)
     results, curves = json.loads(answer["results"]), answer["curves"]
     tables = {f"fit_{i}.csv" if len(curves) > 1 else "fit.csv": curve for i, curve in enumerate(curves, 1)}
-    if "sections" in answer:
-        tables["sections.csv"] = columns(answer["sections"].splitlines())
+    sections = answer["sections"]
+    for i, text in enumerate(sections, 1):
+        tables[f"sections_{i}.csv" if len(sections) > 1 else "sections.csv"] = columns(text.splitlines())
     summary = {"apparatus": "fit", "status": "completed", "results": results, "checks": {"reasons": answer["reasons"]}}
     return checked(Result(summary, tables=tables, notes=results.get("notes", [])))
 

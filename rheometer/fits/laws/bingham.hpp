@@ -28,6 +28,10 @@ inline FlowLaw bingham_law() {
             if (!(p[1] > 0.0)) return std::nullopt;
             return above / p[1];
           },
+          .viscous =
+              [](Parameters p) {
+                return ViscousStress{p[1], 1.0};
+              },
           .plug_below = [](Parameters p, const Instrument& in) -> std::optional<double> {
             if (!(p[0] > 0.0 && p[1] > 0.0)) return std::nullopt;
             const double ratio = in.container_radius / in.vane_radius;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <stdexcept>
 
 #include "rheometer/fits/flow_law.hpp"
@@ -23,6 +24,27 @@ const FlowLaw& flow_law(const std::string& name) {
 
 const FlowLaw* law_of(const FitResult& fit) {
   return fit.kind == RecordKind::flow_curve && fit.model != interface_model ? &flow_law(fit.model) : nullptr;
+}
+
+std::optional<KnownLaw> known_law(const FitResult& fit) {
+  const FlowLaw* law = law_of(fit);
+  if (!law || !fit.reasons.empty()) return std::nullopt;
+  KnownLaw known{law->name, {}};
+  for (const LawParameter& p : law->parameters) {
+    const auto value = value_of(fit, p.row);
+    if (!value) return std::nullopt;
+    known.parameters.push_back(value->value);
+  }
+  known.parameters.front() = std::max(0.0, known.parameters.front());
+  return known;
+}
+
+ViscousStress viscous_stress(const KnownLaw& known) {
+  const FlowLaw& law = flow_law(known.name);
+  if (!law.viscous)
+    throw std::invalid_argument("a decay is not read by the flow curve's law, " + law.words +
+                                ": allowed are those with a stress k gamma_dot^n beyond the yield stress");
+  return law.viscous(known.parameters);
 }
 
 }  // namespace tremie

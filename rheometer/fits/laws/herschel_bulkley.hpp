@@ -36,6 +36,10 @@ inline FlowLaw herschel_bulkley_law() {
             if (!(p[1] > 0.0)) return std::nullopt;
             return std::pow(above / p[1], 1.0 / p[2]);
           },
+          .viscous =
+              [](Parameters p) {
+                return ViscousStress{p[1], p[2]};
+              },
           .plug_below = nullptr};
 }
 
