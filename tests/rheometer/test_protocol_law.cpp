@@ -36,7 +36,7 @@ bool mentions(const std::vector<std::string>& texts, const std::string& words) {
 
 // The reference by IDA against Heun's method on radii of its own. 4e-3 of the torque: with n < 1 the edge of the thin layer
 // lies between two radii of the trapezoidal rule, by whose number (240, 480, 960) the torque scatters by 2e-3. The reference
-// itself stays within 1e-3 on four times its intervals. Without breakdown the torque stays the steady one.
+// itself moves by 1.5e-3 at most on four times its intervals. Without breakdown the torque stays the steady one.
 TEST(ThixotropicCouette, HerschelBulkleyIsTheOneOfAnotherIntegration) {
   const Instrument in;
   for (const double n : {0.5, 1.0, 1.5}) {
@@ -51,7 +51,7 @@ TEST(ThixotropicCouette, HerschelBulkleyIsTheOneOfAnotherIntegration) {
     double now = 0.0;
     for (std::size_t i = 0; i < times.size(); ++i) {
       for (; now < times[i] - 1e-9; now += 0.05) gap.advance(omega, 0.05);
-      EXPECT_NEAR(decay.torque[i] / fine.torque[i], 1.0, 1e-3) << n << " after " << times[i];
+      EXPECT_NEAR(decay.torque[i] / fine.torque[i], 1.0, 2e-3) << n << " after " << times[i];
       EXPECT_NEAR(decay.torque[i] / gap.torque(omega), 1.0, 4e-3) << n << " after " << times[i];
     }
     flow.thixotropy = {0.0, RousselKinetics{0.0}, lambda};
