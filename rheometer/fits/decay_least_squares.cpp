@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
+#include "rheometer/fits/flow_law.hpp"
 #include "rheometer/regression/statistics.hpp"
 
 namespace tremie::fitting {
@@ -168,12 +170,14 @@ LeastSquaresFit least_squares(const DecayModel& model, const Readings& r, const 
 
 }  // namespace
 
+int intervals_of(const FitInput& in) { return flow_index_of(in) == 1.0 ? 100 : 400; }
+
 DecayFit fit_decay(const Readings& r, const FitInput& in) {
   DecayFit result;
   result.kinetics = in.kinetics;
   result.layout = first_guess(r, in);
   search_valley(DecayModel(in, r.x, 40), r, in, result.layout);  // it only has to tell the valley
-  result.fit = least_squares(DecayModel(in, r.x, 100), r, result.layout);
+  result.fit = least_squares(DecayModel(in, r.x, intervals_of(in)), r, result.layout);
   return result;
 }
 
@@ -181,6 +185,60 @@ DecayFit refined(const Readings& r, const FitInput& in, DecayFit fit, int interv
   fit.layout.all = fit.parameters();
   fit.fit = least_squares(DecayModel(in, r.x, intervals), r, fit.layout);
   return fit;
+}
+
+namespace {
+
+/// Columns of the lower factor of a covariance; a parameter without a variance of its own has none.
+std::vector<std::vector<double>> cholesky_columns(const std::vector<double>& covariance, std::size_t n) {
+  std::vector<double> left = covariance;
+  std::vector<std::vector<double>> columns;
+  for (std::size_t k = 0; k < n; ++k) {
+    const double pivot = left[k * n + k];
+    if (!(pivot > 1e-9 * covariance[k * n + k])) continue;
+    std::vector<double> column(n, 0.0);
+    for (std::size_t i = k; i < n; ++i) column[i] = left[i * n + k] / std::sqrt(pivot);
+    for (std::size_t i = k; i < n; ++i)
+      for (std::size_t j = k; j < n; ++j) left[i * n + j] -= column[i] * column[j];
+    columns.push_back(std::move(column));
+  }
+  return columns;
+}
+
+/// The law moved by a column, or against it where that would leave the range of its parameters.
+KnownLaw moved_law(const KnownLaw& law, const std::vector<double>& column) {
+  const auto& parameters = flow_law(law.name).parameters;
+  for (const double sign : {1.0, -1.0}) {
+    KnownLaw moved = law;
+    bool inside = true;
+    for (std::size_t k = 0; k < column.size(); ++k) {
+      moved.parameters[k] += sign * column[k];
+      inside =
+          inside && moved.parameters[k] > parameters[k].lower && moved.parameters[k] < parameters[k].upper;
+    }
+    if (inside) return moved;
+  }
+  return law;
+}
+
+}  // namespace
+
+std::vector<DecayParameters> moves_by_curve(const Readings& r, const FitInput& in, const DecayFit& fit) {
+  std::vector<DecayParameters> moves;
+  if (!in.curve || in.curve->covariance.empty()) return moves;
+  const DecayParameters at = fit.parameters();
+  for (const auto& column : cholesky_columns(in.curve->covariance, in.curve->parameters.size())) {
+    FitInput moved = in;
+    moved.curve = moved_law(*in.curve, column);
+    moved.tau_0 = moved.curve->parameters.front(), moved.mu = viscous_stress(*moved.curve).k;
+    DecayFit start = fit;
+    start.layout.all = at;
+    start.layout.all[i_tau_0] = *moved.tau_0, start.layout.all[i_mu] = *moved.mu;
+    DecayParameters move = refined(r, moved, std::move(start), intervals_of(in)).parameters();
+    for (std::size_t i = 0; i < move.size(); ++i) move[i] -= at[i];
+    moves.push_back(move);
+  }
+  return moves;
 }
 
 }  // namespace tremie::fitting

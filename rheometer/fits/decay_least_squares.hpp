@@ -36,10 +36,17 @@ struct DecayFit {
   DecayParameters parameters() const { return layout.with(fit.parameters); }
 };
 
-/// Fits with in.kinetics on 100 intervals of the gap. Throws std::runtime_error where the model has no solution.
+/// Intervals of the gap: 100, and 400 for another flow index than 1, by which the edge of a thinner layer counts for more.
+int intervals_of(const FitInput& in);
+
+/// Fits with in.kinetics on intervals_of(in). Throws std::runtime_error where the model has no solution.
 DecayFit fit_decay(const Readings& r, const FitInput& in);
 
 /// The same fit, continued on another number of intervals.
 DecayFit refined(const Readings& r, const FitInput& in, DecayFit fit, int intervals);
+
+/// What the flow curve's covariance adds to that of all parameters: their moves as the law moves along the columns of its
+/// Cholesky factor, one standard deviation each. Empty without a flow curve that knows it.
+std::vector<DecayParameters> moves_by_curve(const Readings& r, const FitInput& in, const DecayFit& fit);
 
 }  // namespace tremie::fitting

@@ -27,6 +27,7 @@ namespace tremie {
 struct KnownLaw {
   std::string name;
   std::vector<double> parameters;
+  std::vector<double> covariance;  ///< row by row; empty: not known
 };
 
 /// What is known besides the record.
@@ -102,6 +103,8 @@ struct FitResult {
   std::optional<ParameterEstimate> breakdown_rate;
   /// Parameters that the law of a flow curve alone has, by their names: "consistency".
   std::map<std::string, std::optional<ParameterEstimate>> of_law;
+  /// Of all parameters of a flow curve's law, row by row, so large that 1.96 standard deviations are their 95 %.
+  std::vector<double> law_covariance;
   std::vector<Candidate> candidates;
   std::string choice;               ///< which model and why
   double effective_readings = 0.0;  ///< independent readings that carry as much as those used

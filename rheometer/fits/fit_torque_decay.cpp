@@ -128,8 +128,9 @@ struct Identified {
   const Layout& layout;
   const LeastSquaresFit& fit;
   DecayParameters p;
+  std::vector<DecayParameters> by_curve;  ///< moves_by_curve()
 
-  /// A gradient over the four parameters as a variance; empty where it leans on a parameter that is not identifiable.
+  /// A gradient over the parameters as a variance; empty where it leans on a parameter that is not identifiable.
   std::optional<double> variance(const DecayParameters& gradient) const {
     const std::size_t n = layout.free.size();
     double sum = 0.0;
@@ -137,6 +138,11 @@ struct Identified {
       const double g = gradient[layout.free[i]];
       if (g != 0.0 && !fit.told[i]) return std::nullopt;
       for (std::size_t k = 0; k < n; ++k) sum += g * gradient[layout.free[k]] * fit.covariance[i * n + k];
+    }
+    for (const DecayParameters& move : by_curve) {
+      double along = 0.0;
+      for (std::size_t i = 0; i < move.size(); ++i) along += gradient[i] * move[i];
+      sum += along * along;
     }
     return sum;
   }
@@ -325,7 +331,7 @@ void start_from_contained(const Readings& r, FitInput in, std::vector<DecayFit>&
     for (std::size_t k = 0; k < again.layout.free.size(); ++k)
       again.fit.parameters[k] = again.layout.all[again.layout.free[k]];
     in.kinetics = fit.kinetics;
-    again = refined(r, in, again, 100);
+    again = refined(r, in, again, intervals_of(in));
     if (common_mean_square(fits, again.fit, n) < common_mean_square(fits, fit.fit, n)) fit = again;
   }
 }
@@ -402,10 +408,10 @@ FitResult fit_torque_decay(const TorqueRecord& record, const FitInput& input, St
   const std::vector<DecayFit> fits = fit_candidates(r, in);
   DecayFit best = fits[choose(r, fits, result)];
   in.kinetics = best.kinetics;
-  if (fine) best = refined(r, in, std::move(best), 200);
+  if (fine) best = refined(r, in, std::move(best), 2 * intervals_of(in));
   result.model = name_of(best.kinetics);
   judge_fall(r, record.torque.size(), in, result);
-  const Identified identified{best.layout, best.fit, best.parameters()};
+  const Identified identified{best.layout, best.fit, best.parameters(), moves_by_curve(r, in, best)};
   report(r, best.fit, result);
   result.effective_readings = best.fit.independent;
   if (const std::string why =

@@ -86,7 +86,7 @@ class Reader {
   /// Of the last flow curve that tells all parameters of its law, or as it is given.
   void find_law() {
     if (input_.tau_0 && input_.mu) {
-      law_ = KnownLaw{flow_laws().front().name, {*input_.tau_0, *input_.mu}};
+      law_ = KnownLaw{flow_laws().front().name, {*input_.tau_0, *input_.mu}, {}};
       return;
     }
     for (const SectionReading& s : result_.sections) {
@@ -148,10 +148,11 @@ class Reader {
   }
 
   void note_curve(SectionReading& reading) const {
-    reading.notes.push_back(
-        text_of("%s: of the flow curve on lines %ld to %ld; the decay's intervals hold for these "
-                "values as they stand",
-                names_of(*law_).c_str(), curve_->first_line, curve_->last_line));
+    reading.notes.push_back(text_of("%s: of the flow curve on lines %ld to %ld; %s", names_of(*law_).c_str(),
+                                    curve_->first_line, curve_->last_line,
+                                    law_->covariance.empty()
+                                        ? "the decay's intervals hold for these values as they stand"
+                                        : "the decay's intervals contain what that curve leaves open"));
     if (options_.blades) return;  // its torques are not the record's
     const double end = reading.decay->end_torque;
     double steady = 0.0;

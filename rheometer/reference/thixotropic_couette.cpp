@@ -35,6 +35,8 @@ struct Gap {
   std::function<double(double)> omega;
 
   std::size_t nodes() const { return x.size(); }
+  /// Of the interval before node i.
+  double interval(std::size_t i) const { return power == 1.0 ? dx : x[i] - x[i - 1]; }
   std::size_t unknowns() const { return nodes() * parts.size(); }  ///< but for s, which stands behind them
 
   double lambda(std::size_t i, std::span<const double> y) const {
@@ -119,7 +121,7 @@ double speed_of(const Gap& gap, std::span<const double> y, std::vector<double>* 
   for (std::size_t i = 1; i < gap.nodes(); ++i) {
     const double right = gap.excess(i, y);
     const PositivePart part = gap.power == 1.0 ? positive_part(left, right, gap.dx)
-                                               : positive_power(left, right, gap.power, gap.dx);
+                                               : positive_power(left, right, gap.power, gap.interval(i));
     sum += part.integral;
     if (d_excess) {
       (*d_excess)[i - 1] += part.d_a;
@@ -320,7 +322,8 @@ Gap make_gap(const CouetteFlow& flow, double width, const CouetteOptions& option
   gap.find_gate = options.find_gate;
   gap.dx = width / options.intervals;
   for (int i = 0; i <= options.intervals; ++i) {
-    gap.x.push_back(i * gap.dx);
+    const double share = static_cast<double>(i) / options.intervals;
+    gap.x.push_back(gap.power == 1.0 ? i * gap.dx : width * share * share);
     gap.stress_share.push_back(std::exp(-2.0 * gap.x.back()));
   }
   const double omega = flow.omega;
@@ -414,7 +417,8 @@ class Integrator {
     for (std::size_t i = gap_.nodes(); i-- > 0;) {
       const double e = gap_.excess(i, y);
       if (e <= 0.0) continue;
-      return i + 1 == gap_.nodes() ? gap_.x[i] : gap_.x[i] + gap_.dx * e / (e - gap_.excess(i + 1, y));
+      return i + 1 == gap_.nodes() ? gap_.x[i]
+                                   : gap_.x[i] + gap_.interval(i + 1) * e / (e - gap_.excess(i + 1, y));
     }
     return 0.0;
   }

@@ -10,7 +10,8 @@
 // or any other kinetics of kinetics_equations.hpp; with modes lambda is the sum of parts, each with an equation of its own.
 // Material moves in circles, so every radius keeps its own lambda.
 //
-// Discretised on equal intervals of x = ln(r/R_i), where the constraint is int gamma_dot dx: lambda at the
+// Discretised on intervals of x = ln(r/R_i), equal ones for n = 1, else shorter at the vane, where a shear-thinning material
+// shears in a thin layer; the constraint is int gamma_dot dx: lambda at the
 // nodes, the excess stress linear between them, the shear rate of its positive part integrated exactly (the plug's edge
 // lies inside an interval). Second order in x while lambda(r) is smooth. Under the gate, a node that passes
 // gamma_c is found as a root. Units: SI; Omega [rad/s].

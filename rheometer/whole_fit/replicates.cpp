@@ -43,7 +43,7 @@ std::optional<ReplicateMean> replicate_mean(const FitParameter& p,
     wide = std::max(wide.value_or(0.0), student_quantile(0.975, n - 1.0) * deviation / std::sqrt(n));
     if (mean > 0.0) m.between = deviation / mean;
   }
-  if (wide)
+  if (wide && *wide > 0.0)  // copies of one record, without intervals of their own, tell none
     m.mean.ci95 = Interval{sign == Sign::any ? mean - *wide : std::max(0.0, mean - *wide), mean + *wide};
   if (!half.empty() && mean > 0.0) m.within = std::sqrt(own) / mean;
   m.of_record = std::move(of_record);

@@ -6,7 +6,7 @@
 //   T/(2 pi r^2 h) = (1 + lambda) tau_0 + k gamma_dot^n where it yields,   int gamma_dot/r dr = Omega,
 //   d lambda/dt = A_thix/tau_0 - alpha lambda gamma_dot.
 //
-// Radii are equal steps of ln r, the integral is the trapezoidal rule, the torque is found by bisection, and lambda goes
+// Radii stand closer at the vane (ln r - ln R_i as i^2), the integral is the trapezoidal rule, the torque is found by bisection, and lambda goes
 // on by Heun's method. A test is a ramp down of the broken material; after each rest lambda is A_thix rest/tau_0; a
 // start-up rises with the modulus G before it flows. Noise in proportion to the torque.
 
@@ -30,9 +30,14 @@ class Gap {
  public:
   Gap(const GapMaterial& m, const Instrument& in, std::size_t nodes) : m_(m), in_(in), lambda_(nodes, 0.0) {
     const double width = std::log(in.container_radius / in.vane_radius);
-    dx_ = width / static_cast<double>(nodes - 1);
-    for (std::size_t i = 0; i < nodes; ++i)
-      radius_.push_back(in.vane_radius * std::exp(dx_ * static_cast<double>(i)));
+    const auto x = [&](std::size_t i) {
+      const double share = static_cast<double>(i) / static_cast<double>(nodes - 1);
+      return width * share * share;
+    };
+    for (std::size_t i = 0; i < nodes; ++i) {
+      radius_.push_back(in.vane_radius * std::exp(x(i)));
+      weight_.push_back(0.5 * (x(std::min(i + 1, nodes - 1)) - x(i > 0 ? i - 1 : 0)));
+    }
   }
 
   void set(double lambda) { std::fill(lambda_.begin(), lambda_.end(), lambda); }
@@ -56,7 +61,7 @@ class Gap {
     const auto speed = [&](double T) {
       double sum = 0.0;
       for (std::size_t i = 0; i < radius_.size(); ++i)
-        sum += (i == 0 || i + 1 == radius_.size() ? 0.5 : 1.0) * dx_ * shear_rate(T, i, lambda[i]);
+        sum += weight_[i] * shear_rate(T, i, lambda[i]);
       return sum;
     };
     double low = 0.0, high = 1.0;
@@ -78,8 +83,7 @@ class Gap {
 
   GapMaterial m_;
   Instrument in_;
-  double dx_ = 0.0;
-  std::vector<double> radius_, lambda_;
+  std::vector<double> radius_, weight_, lambda_;
 };
 
 /// Torque of the vane over the cylinder's, by speed and by the cylinder's torque; for a cylinder 1.

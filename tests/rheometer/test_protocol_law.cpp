@@ -34,8 +34,9 @@ bool mentions(const std::vector<std::string>& texts, const std::string& words) {
                      [&](const std::string& t) { return t.find(words) != std::string::npos; });
 }
 
-// The reference by IDA against Heun's method on radii of its own. 2e-3 of the torque: both grids are of second order in
-// 400 and 600 radii, and lambda varies over a few of them at the vane. Without breakdown the torque stays the steady one.
+// The reference by IDA against Heun's method on radii of its own. 4e-3 of the torque: with n < 1 the edge of the thin layer
+// lies between two radii of the trapezoidal rule, by whose number (240, 480, 960) the torque scatters by 2e-3. The reference
+// itself moves by 1.5e-3 at most on four times its intervals. Without breakdown the torque stays the steady one.
 TEST(ThixotropicCouette, HerschelBulkleyIsTheOneOfAnotherIntegration) {
   const Instrument in;
   for (const double n : {0.5, 1.0, 1.5}) {
@@ -44,12 +45,14 @@ TEST(ThixotropicCouette, HerschelBulkleyIsTheOneOfAnotherIntegration) {
     CouetteFlow flow{{m.tau_0, m.k}, {m.A_thix, RousselKinetics{m.alpha}, lambda}, omega, {}, n};
     const std::vector<double> times{0.0, 1.0, 4.0, 10.0};
     const CouetteDecay decay = thixotropic_couette(flow, times, in);
+    const CouetteDecay fine = thixotropic_couette(flow, times, in, {.intervals = 1600});
     made::Gap gap(m, in, 600);
     gap.set(lambda);
     double now = 0.0;
     for (std::size_t i = 0; i < times.size(); ++i) {
       for (; now < times[i] - 1e-9; now += 0.05) gap.advance(omega, 0.05);
-      EXPECT_NEAR(decay.torque[i] / gap.torque(omega), 1.0, 2e-3) << n << " after " << times[i];
+      EXPECT_NEAR(decay.torque[i] / fine.torque[i], 1.0, 2e-3) << n << " after " << times[i];
+      EXPECT_NEAR(decay.torque[i] / gap.torque(omega), 1.0, 4e-3) << n << " after " << times[i];
     }
     flow.thixotropy = {0.0, RousselKinetics{0.0}, lambda};
     const double steady = steady_torque({(1.0 + lambda) * m.tau_0, m.k, n}, omega, in).torque;
@@ -59,10 +62,10 @@ TEST(ThixotropicCouette, HerschelBulkleyIsTheOneOfAnotherIntegration) {
 }
 
 // tau_0, k and n of the ramp; lambda and alpha of the decay by them; the static yield stress of each start-up without its
-// viscous part, (1 + lambda) tau_0, and with it A_thix. Noise of 0.2 %, by which the ramp tells tau_0 and n
-// within 1.5 %, twice as much in one record of twenty: 4 % are asked of what the decay tells by them, 2 % of peaks, which are
-// single readings. The peaks alone
-// claim 17 to 34 % more by their viscous stress.
+// viscous part, (1 + lambda) tau_0, and with it A_thix. Noise of 0.2 %, by which the ramp tells tau_0 and n within 1.5 %,
+// twice as much in one record of twenty: 2 % are asked of lambda by them, 1 % of A_thix; 4 % of alpha, to which the edge of
+// the thin sheared layer adds 1 % in the made record (0.2 % of the torque between 240 and 480 radii); 2 % of peaks, which
+// are single readings. The peaks alone claim 17 to 34 % more by their viscous stress.
 TEST(Protocol, AHerschelBulkleyRecordIsReadByItsOwnLaw) {
   const GapTest test;
   const GapMaterial& m = test.material;
@@ -79,8 +82,8 @@ TEST(Protocol, AHerschelBulkleyRecordIsReadByItsOwnLaw) {
   EXPECT_TRUE(mentions(decay.notes, "yield_stress, consistency, flow_index: of the flow curve"));
   EXPECT_FALSE(decay.fit->mu);
   EXPECT_TRUE(decay.fit->of_law.at("consistency")->given);
-  EXPECT_NEAR(decay.fit->lambda_0->value, m.A_thix * 240.0 / m.tau_0, 0.04 * m.A_thix * 240.0 / m.tau_0);
-  EXPECT_NEAR(decay.fit->A_thix->value, m.A_thix, 0.04 * m.A_thix);
+  EXPECT_NEAR(decay.fit->lambda_0->value, m.A_thix * 240.0 / m.tau_0, 0.02 * m.A_thix * 240.0 / m.tau_0);
+  EXPECT_NEAR(decay.fit->A_thix->value, m.A_thix, 0.01 * m.A_thix);
   EXPECT_NEAR(decay.fit->alpha->value, m.alpha, 0.04 * m.alpha);
   for (const SectionReading& s : r.sections) {
     if (!s.start_up) continue;
@@ -106,6 +109,13 @@ TEST(Protocol, ABinghamRecordKeepsItsLaw) {
   EXPECT_TRUE(mentions(decay.notes, "yield_stress, plastic_viscosity: of the flow curve"));
   EXPECT_TRUE(decay.fit->mu->given);
   EXPECT_NEAR(decay.fit->lambda_0->value, m.A_thix * 240.0 / m.tau_0, 0.005 * m.A_thix * 240.0 / m.tau_0);
+  // the interval contains the ramp's: with its values given it is narrower
+  const auto width = [](const FitResult& f) { return f.lambda_0->ci95->high - f.lambda_0->ci95->low; };
+  FitInput given = by_roussel();
+  given.tau_0 = decay.fit->tau_0->value, given.mu = decay.fit->mu->value;
+  const ProtocolReading by_given = read_protocol(record_of(test), given);
+  EXPECT_GT(width(*decay.fit), 1.2 * width(*section_of(by_given, SectionKind::constant_rate).fit));
+  EXPECT_TRUE(decay.fit->lambda_0->ci95->low < 4.8 && 4.8 < decay.fit->lambda_0->ci95->high);
   FitInput in = by_roussel();
   in.law = "herschel_bulkley", in.law_given = true;
   const ProtocolReading rich = read_protocol(record_of(test), in);

@@ -121,6 +121,16 @@ void note_unidentifiable(const FittedLaw& f, FitResult& result) {
     result.notes.push_back(names + ": the record cannot tell " + (missing > 1 ? "them" : "it"));
 }
 
+void report_covariance(const FittedLaw& f, FitResult& result) {
+  const std::size_t n = f.free.size(), all = f.all.size();
+  if (!(f.fit.degrees_of_freedom > 0.0)) return;
+  const double t = student_quantile(0.975, f.fit.degrees_of_freedom) / 1.96;
+  result.law_covariance.assign(all * all, 0.0);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t k = 0; k < n; ++k)
+      result.law_covariance[f.free[i] * all + f.free[k]] = t * t * f.fit.covariance[i * n + k];
+}
+
 void report_parameters(const Readings& r, const FittedLaw& f, const FitInput& input, FitResult& result) {
   const std::size_t n = f.free.size();
   const double degrees = f.fit.degrees_of_freedom;
@@ -217,6 +227,7 @@ FitResult fit_by_law(const TorqueRecord& record, const FitInput& input, std::opt
   const auto kept = static_cast<double>(result.curve.x.size());
   result.effective_readings = static_cast<double>(result.readings) * f.fit.independent / std::max(1.0, kept);
   report_parameters(r, f, input, result);
+  report_covariance(f, result);
   report_plug(r, f, input, result);
   report_band(f, input, result);
   if (f.all[1] <= 0.0)

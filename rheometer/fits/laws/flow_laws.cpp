@@ -29,7 +29,7 @@ const FlowLaw* law_of(const FitResult& fit) {
 std::optional<KnownLaw> known_law(const FitResult& fit) {
   const FlowLaw* law = law_of(fit);
   if (!law || !fit.reasons.empty()) return std::nullopt;
-  KnownLaw known{law->name, {}};
+  KnownLaw known{law->name, {}, fit.law_covariance};
   for (const LawParameter& p : law->parameters) {
     const auto value = value_of(fit, p.row);
     if (!value) return std::nullopt;
