@@ -231,7 +231,10 @@ void read_results(const Scene& scene, const Pour& pour, const std::vector<Sample
   r.plug_share /= top;
   for (double& share : r.cover) share /= cover;
   r.wall = along_wall(scene, pour);
-  for (const AtWall& at : r.wall) r.pressure_max = std::max(r.pressure_max, at.pressure_max);
+  for (std::size_t k = 0; k < r.wall.size() && k < pour.wall_mean.size(); ++k) {
+    r.wall[k].pressure_end = pour.wall_mean[k];
+    r.pressure_max = std::max(r.pressure_max, r.wall[k].pressure_max);
+  }
 }
 
 }  // namespace tremie::bored_pile

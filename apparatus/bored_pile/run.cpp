@@ -104,7 +104,7 @@ scene::SizeEstimate estimate(const Scene& scene) {
   e.steps = e.steps_expected =
       experiment::whole_steps(scene.model.time_step ? e.time_expected / *scene.model.time_step
                                                     : 1.5 * pile_volume(scene) / scene.rate / step);
-  e.point_step = 0.7e-6;  // of the points at the end, of which half are there in the mean
+  e.point_step = 0.5e-6;  // of the points at the end, of which half are there in the mean
   return e;
 }
 
