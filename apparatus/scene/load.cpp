@@ -23,7 +23,8 @@ std::string quoted_list(const std::vector<std::string>& words) {
 struct FromFile {
   const char *section, *folder;
 };
-constexpr FromFile from_files[] = {{"mix", "mixes"}, {"cone", "cones"}, {"funnel", "funnels"}, {"box", "boxes"}, {"ring", "rings"}};
+constexpr FromFile from_files[] = {
+    {"mix", "mixes"}, {"cone", "cones"}, {"funnel", "funnels"}, {"box", "boxes"}, {"ring", "rings"}};
 
 /// The file that `mix = "…"` stands for: a name from reference_data/mixes, or a path beside the scene.
 fs::path file_of(const FromFile& from, const std::string& name, const Origin& origin,
