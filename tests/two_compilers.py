@@ -13,6 +13,7 @@ SHORT = {
     "slump flow, explicit": ("paper_mix_a.toml", ["model.cell=40 mm", "test.duration=0.02 s"]),
     "L-box with side walls": ("l_box_mix_a.toml", ["model.cell=20 mm", "test.duration=1 s", "model.space=plane_with_side_walls"]),
     "L-box with bars": ("l_box.toml", ["model.cell=30 mm", "test.duration=0.2 s", "model.space=half", "test.bars=2"]),
+    "LCPC box": ("lcpc_box.toml", ["model.cell=25 mm", "test.duration=2 s", "test.pour_time=1 s"]),
     "vane, plane": ("icar_vane_mix_a.toml", ["model.cell=10 mm", "test.duration=0.5 s"]),
     "vane with ends": ("icar_vane_mix_a.toml", ["model.cell=20 mm", "model.space=cylindrical", "mix.thixotropy=false"]),
     "cell": ("cell_hysteresis_loop.toml", []),
