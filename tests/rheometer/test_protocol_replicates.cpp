@@ -86,7 +86,8 @@ TEST(ProtocolReplicates, AnExponentsIntervalMayBeNegative) {
   std::vector<ProtocolReading> readings(2);
   for (ProtocolReading& r : readings)
     r.breakdown.exponent = ParameterEstimate{0.04, Interval{-0.27, 0.34}, false};
-  const ReplicateMean& m = mean_named(replicate_means(readings), "rate_exponent");
+  const std::vector<ReplicateMean> means = replicate_means(readings);
+  const ReplicateMean& m = mean_named(means, "rate_exponent");
   EXPECT_NEAR(m.mean.ci95->low, -0.27, 1e-12);
 }
 
