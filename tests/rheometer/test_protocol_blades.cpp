@@ -97,6 +97,7 @@ TEST(ProtocolBlades, EverySectionGivesTheMaterialBack) {
   const ProtocolReading r = read_protocol(record, by_roussel(), with_blades());
   EXPECT_TRUE(r.reasons.empty());
   const SectionReading& curve = section_of(r, SectionKind::flow_curve_down);
+  ASSERT_TRUE(curve.fit && curve.fit->tau_0 && curve.fit->mu);
   EXPECT_NEAR(curve.fit->tau_0->value, m.tau_0, 0.01 * m.tau_0);
   EXPECT_NEAR(curve.fit->mu->value, m.k, 0.01 * m.k);
   const SectionReading& decay = section_of(r, SectionKind::constant_rate);
@@ -111,8 +112,12 @@ TEST(ProtocolBlades, EverySectionGivesTheMaterialBack) {
     EXPECT_NEAR(*s.start_up->shear_modulus, m.G, 0.02 * m.G);
   }
   EXPECT_NEAR(r.structuration.A_thix_by_law->value, m.A_thix, 0.02 * m.A_thix);
-  const ProtocolReading plain = read_protocol(record, by_roussel());
-  EXPECT_LT(section_of(plain, SectionKind::flow_curve_down).fit->mu->value, 0.75 * m.k);
+  FitInput as_bingham = by_roussel();
+  as_bingham.law = "bingham", as_bingham.law_given = true;
+  const ProtocolReading plain = read_protocol(record, as_bingham);
+  const auto& as_cylinder = section_of(plain, SectionKind::flow_curve_down).fit;
+  ASSERT_TRUE(as_cylinder && as_cylinder->mu);
+  EXPECT_LT(as_cylinder->mu->value, 0.75 * m.k);
 }
 
 TEST(ProtocolBlades, ASectionThatCannotBeCorrectedSaysSo) {
