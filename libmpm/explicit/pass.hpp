@@ -74,10 +74,11 @@ f64x8 update_yield_stress(const Mix& mix, double dt, const f64x8& gamma_dot, Lan
   f64x8& lambda = points.lambda[g];
   if (dt > 0.0 && points.lambda_parts.empty())
     lambda = flocculation_step(lambda, *mix.thixotropy, mix.tau_0, points.gamma_dot[g], gamma_dot, dt);
+  // By its address: clang binds no reference to an element of a whole register.
+  const auto part = [&](std::size_t i) { return reinterpret_cast<double*>(&points.lambda_parts[i][g]); };
   for (int l = 0; dt > 0.0 && !points.lambda_parts.empty() && l < f64x8_size; ++l)
-    lambda[l] = flocculation_step(
-        lambda[l], *mix.thixotropy, mix.tau_0, points.gamma_dot[g][l], gamma_dot[l],
-        dt, [&](std::size_t i) -> auto& { return points.lambda_parts[i][g][l]; });
+    lambda[l] = flocculation_step(lambda[l], *mix.thixotropy, mix.tau_0, points.gamma_dot[g][l], gamma_dot[l],
+                                  dt, [&](std::size_t i) -> double& { return part(i)[l]; });
   points.gamma_dot[g] = gamma_dot;
   sums.lambda = max(sums.lambda, lambda);
   return (1.0 + lambda) * mix.tau_0;
