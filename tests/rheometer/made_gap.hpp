@@ -60,8 +60,7 @@ class Gap {
   double torque(const std::vector<double>& lambda, double omega) const {
     const auto speed = [&](double T) {
       double sum = 0.0;
-      for (std::size_t i = 0; i < radius_.size(); ++i)
-        sum += weight_[i] * shear_rate(T, i, lambda[i]);
+      for (std::size_t i = 0; i < radius_.size(); ++i) sum += weight_[i] * shear_rate(T, i, lambda[i]);
       return sum;
     };
     double low = 0.0, high = 1.0;
