@@ -119,26 +119,6 @@ const std::vector<ColumnOf<AtWall>> wall_columns{
     {"age_end_min", "age of the concrete along the wall at the end",
      [](const AtWall& w) { return minutes * w.age; }}};
 
-/// By how much the pressure on the wall alternates from cell to cell, largest, over that at rest on the base. Seen in the report of
-/// the 2 m model pile: two fifths. The level, the volume and where each load goes do not follow it.
-double swing_on_the_wall(const std::vector<AtWall>& wall) {
-  double swing = 0.0;
-  for (std::size_t i = 1; i + 1 < wall.size(); ++i)
-    swing = std::max(
-        swing, std::abs(wall[i].pressure_end - 0.5 * (wall[i - 1].pressure_end + wall[i + 1].pressure_end)));
-  return wall.empty() ? 0.0 : swing / wall.front().hydrostatic;
-}
-
-std::string pressure_swings(const View& v) {
-  constexpr double most = 0.1;
-  const double swing = swing_on_the_wall(v.r.wall);
-  if (!(swing > most)) return {};
-  return fmt::format(
-      "the pressure on the wall alternates from cell to cell by {:.0f} % of that at the base: the largest "
-      "pressure and the head may be as wrong",
-      100.0 * swing);
-}
-
 std::string washed(const View& v) {
   if (!v.r.washed) return {};
   return "the pipe's mouth came to the concrete's surface: there the fluid washes it, which is not computed; "
@@ -194,7 +174,7 @@ scene::Outcome run_and_read(const Scene& scene, const RunOptions& options, const
   const Record raw = run(scene, observer);
   const View view{scene, raw};
   scene::Outcome outcome = outcome_of(readings(), view, options.measured.name, "bored pile");
-  add_reasons<View>({washed, crowded, too_old, pressure_swings}, view, outcome.checks.reasons);
+  add_reasons<View>({washed, crowded, too_old}, view, outcome.checks.reasons);
   outcome.remarks = remarks_of(view);
   outcome.stage = stage_of(scene);
   outcome.axisymmetric = true;
