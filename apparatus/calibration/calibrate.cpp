@@ -105,13 +105,15 @@ double distance(const Point& a, const Point& b) {
   return std::sqrt(sum);
 }
 
-/// How much a run's residual counts: as much as the likeliest of the points about it, within a tenth of the range.
+/// How much a run's residual counts: as much as the likeliest of the points about it, within a twentieth of the range. Where
+/// t500 grows without bound, a fifth of the range away, one left-out run would outweigh all that lie in the posterior.
+constexpr double about = 0.05;
 double nearness(const Posterior& posterior, const Point& run) {
   const double most = posterior.weights[posterior.best];
   double largest = 0.0;
   for (std::size_t i = 0; i < posterior.points.size(); ++i) {
     if (posterior.weights[i] < 1e-6 * most) continue;
-    const double d = distance(posterior.points[i], run) / 0.1;
+    const double d = distance(posterior.points[i], run) / about;
     largest = std::max(largest, posterior.weights[i] / most * std::exp(-0.5 * d * d));
   }
   return largest;

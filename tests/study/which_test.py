@@ -25,7 +25,7 @@ TESTS = {
     "L-box": ("l_box", "walls", '[model]\nspace = "plane_with_side_walls"\ncell = "20 mm"\n', {"passing_ratio": 0.03}, 12.0),
     "U-box": ("u_box", "walls", '[model]\ncell = "20 mm"\n', {"rise_mm": 8.0}, 19.0),
     "LCPC box": ("lcpc_box", "walls", '[model]\ncell = ["20 mm", "10 mm"]\n', {"length_mm": 15.0}, 6.0),
-    "V-funnel": ("v_funnel", "walls", '[model]\ncell = "6.5 mm"\n', {"flow_time_s": 0.1}, 10.0),
+    "V-funnel": ("v_funnel", "walls", '[model]\ncell = "8 mm"\n', {"flow_time_s": 0.1}, 10.0),
     "inverted cone": ("inverted_cone", "walls", "", {"flow_time_s": 0.1}, 5.5),
 }
 SHARES = {"flow_time_s"}
