@@ -16,6 +16,10 @@ namespace {
 
 using View = RunView<boxes::Scene, boxes::Outcome>;
 
+constexpr double bar_diameter = 0.013;  ///< [m]
+/// Three bars are three diameters apart there, the least spacing for which a row's drag is known [m].
+constexpr double least_width = 11.0 * bar_diameter;
+
 Section box_section() {
   return {
       .name = "box",
@@ -36,13 +40,32 @@ Section box_section() {
 Section test_section() {
   return {.name = "test",
           .help = "The schedule.",
-          .keys = {rest_key("60 s", "in the compartment, before the gate is lifted"), duration_key("180 s"),
-                   lift_key("gate_speed", "30 cm/s", "of the lift")}};
+          .keys = {rest_key("60 s", "in the compartment, before the gate is lifted"),
+                   duration_key("180 s"),
+                   lift_key("gate_speed", "30 cm/s", "of the lift"),
+                   {.name = "bars",
+                    .kind = Kind::integer,
+                    .range = between(0, 3),
+                    .fallback = "0",
+                    .help = "0, or 3 of 13 mm in the opening, by their drag averaged over the width"}}};
+}
+
+void check_bars(const Values& values) {
+  const auto bars = values.integer("test.bars");
+  if (bars == 0) return;
+  if (bars != 3) values.fail("test.bars", fmt::format("{} is not allowed; allowed: 0 or 3", bars));
+  if (values.word("model.method") == "newton")
+    values.fail("model.method",
+                "\"newton\" does not know bars; allowed with test.bars: \"auto\" or \"admm\"");
+  if (values.number("box.width") < least_width)
+    values.fail("box.width", fmt::format("is too narrow for three bars of 13 mm; allowed: at least \"{}\"",
+                                         write_quantity(least_width, Dimension::length)));
 }
 
 void settle(Values& values) {
   settle_mix(values);
   settle_interface(values, "walls");
+  check_bars(values);
   if (values.number("box.opening") > values.number("box.height"))
     values.fail("box.opening", fmt::format("is above the box's top; allowed: at most height, \"{}\"",
                                            write_quantity(values.number("box.height"), Dimension::length)));
@@ -75,10 +98,12 @@ boxes::Scene read_scene(const Values& values) {
                .column_height = values.number("box.height"),
                .channel_length = compartment,
                .channel_height = values.number("box.opening"),
-               .width = values.number("box.width")};
+               .width = values.number("box.width"),
+               .bar_diameter = bar_diameter};
   scene.rest = values.number("test.rest");
   scene.duration = values.number("test.duration");
   scene.gate_speed = values.number_unless("test.gate_speed", "instant");
+  scene.bars = static_cast<int>(values.integer("test.bars"));
   scene.walls = read_wall_law(values, "walls");
   scene.model = read_model(values);
   scene.frame_interval = read_output(values).frame_interval;
@@ -145,9 +170,9 @@ Stage stage_of(const boxes::Scene& scene) {
 std::string judged(const View& v) {
   constexpr double asked_for = 0.3;
   if (!v.r.stopped_at || !v.r.h2) return {};
-  return fmt::format(
-      "The filling height is {} 300 mm that are asked of self-compacting concrete, here without bars.",
-      *v.r.h2 >= asked_for ? "at least the" : "below the");
+  return fmt::format("The filling height is {} 300 mm that are asked of self-compacting concrete{}.",
+                     *v.r.h2 >= asked_for ? "at least the" : "below the",
+                     v.scene.bars > 0 ? "" : ", here without bars");
 }
 
 /// Measured: seven cells make the filling height 0.6 % too large, five 3 %, four 4 %, against fourteen and twenty-eight.
@@ -190,7 +215,8 @@ std::vector<std::string> uses(const boxes::Scene& scene) {
   lines.push_back(scene.model.space == SpaceKind::plane ? "side walls: left out (model.space = \"plane\")"
                                                         : "side walls: their drag, averaged over the width");
   lines.push_back("walls: " + word(scene.walls));
-  lines.push_back("bars: left out");
+  lines.push_back(scene.bars > 0 ? fmt::format("bars: {} of 13 mm, averaged over the width", scene.bars)
+                                 : "bars: left out (test.bars = 0)");
   add_model_uses(scene.model, lines);
   return lines;
 }

@@ -34,6 +34,23 @@ def l_box_scene(setting, case):
             f'duration = "{setting["boundary"]["end"]} s"\n[output]\nframes = false\n')
 
 
+def funnel_scene(setting, case):
+    shape = setting["geometry"]
+    keys = {"top": "top_diameter", "mouth": "mouth_diameter", "pipe": "pipe", "taper": "taper", "throat": "throat"}
+    funnel = "".join(f'{key} = "{shape[name]} m"\n' for key, name in keys.items())
+    return (f'apparatus = "inverted_cone"\n{mix_of(setting, case)}[funnel]\n{funnel}[test]\nduration = "{setting["boundary"]["end"]} s"\n'
+            f'[model]\ncell = "4 mm"\n[output]\nframes = false\n')
+
+
+def pile_scene(setting, case):
+    pile, flow = setting["geometry"], setting["boundary"]
+    return (f'apparatus = "bored_pile"\n{mix_of(setting, case)}[pile]\nradius = "{pile["pile_radius"]} m"\ndepth = "{pile["pile_depth"]} m"\n'
+            f'[pipe]\ninner_radius = "{pile["pipe_inner_radius"]} m"\nouter_radius = "{pile["pipe_outer_radius"]} m"\nstart = "{pile["mouth"]} m"\n'
+            f'embedment = ["0.1 m", "{pile["pile_depth"] - 0.1} m"]\npull = "0.1 m"\n[fluid]\ndensity = "{flow["fluid"]} kg/m3"\n'
+            f'[test]\nrate = "{flow["inflow"]} m3/s"\n[[load]]\nvolume = "{flow["inflow"] * flow["end"]} m3"\n'
+            f'[model]\ncell = "27 mm"\npoints_per_cell = 3\n[output]\nframes = false\n')
+
+
 def columns_of(file):
     with open(file, newline="") as stream:
         rows = list(csv.reader(stream))
@@ -88,6 +105,29 @@ def l_box(tremie):
     return by_case("l_box", readings)
 
 
+def funnel(tremie):
+    def readings(setting, case):
+        with tempfile.TemporaryDirectory() as folder:
+            series = run(tremie, funnel_scene(setting, case), pathlib.Path(folder))["timeseries"]
+        return {"emptied_percent": (series["time_s"], [100 * share for share in series["emptied"]])}
+
+    return by_case("funnel", readings)
+
+
+def pile(tremie):
+    def readings(setting, case):
+        with tempfile.TemporaryDirectory() as folder:
+            tables = run(tremie, pile_scene(setting, case), pathlib.Path(folder))
+        series, wall = tables["timeseries"], tables["wall"]
+        times = series["time_s"]
+        levels = [sum(three) / 3 for three in zip(*(series[f"level_{place}_m"] for place in ("at_pipe", "between", "at_wall")))]
+        rise = [1e3 * (level - at(60.0, times, levels)) for level in levels]
+        gradient = (at(0.6, wall["height_m"], wall["pressure_end_Pa"]) - at(1.0, wall["height_m"], wall["pressure_end_Pa"])) / 0.4e3
+        return {"rise_mm": (times, rise), "gradient_kPa_per_m": ([times[-1]], [gradient])}
+
+    return by_case("pile", readings)
+
+
 def channel(profile):
     def readings(setting, case):
         columns = columns_of(profile)
@@ -120,7 +160,8 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         profile = pathlib.Path(folder) / "profile.csv"
         profile.write_text(subprocess.run([channel_profile], check=True, capture_output=True, text=True).stdout)
-        codes = [check("channel", channel(profile), folder), check("cone", cone(tremie), folder), check("l_box", l_box(tremie), folder)]
+        codes = [check("channel", channel(profile), folder), check("cone", cone(tremie), folder), check("l_box", l_box(tremie), folder),
+                 check("funnel", funnel(tremie), folder), check("pile", pile(tremie), folder)]
         if not refuses(folder):
             codes.append(1)
             print("check.py passes what it should not")

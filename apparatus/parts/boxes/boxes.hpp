@@ -1,8 +1,8 @@
 #pragma once
 
 // A box with a gate, in the plane along it or in space: a column of concrete that flows under a wall into what lies beyond
-// when the gate is lifted. An L-box has a channel there, a U-box a second shaft. Without bars or, in space, with some in front
-// of the gate. In the plane the concrete may be poured where the column would stand, as into the LCPC box.
+// when the gate is lifted. An L-box has a channel there, a U-box a second shaft. Without bars or with some in front of the gate,
+// which a section averages over the width. In the plane the concrete may be poured where the column would stand, as into the LCPC box.
 
 #include <array>
 #include <optional>
@@ -44,7 +44,7 @@ struct Scene {
   std::optional<Pour> pour = {};            ///< in the plane alone; the column is what lies there at time 0
   std::optional<double> gate_speed = 0.30;  ///< [m/s]; empty: the gate is gone at once
   WallLaw walls = NoSlip{};                 ///< floor, ends, front wall, gate and side walls
-  int bars = 0;                             ///< in space alone
+  int bars = 0;                             ///< in front of the gate
   Model model;
   double frame_interval = 0.0;  ///< simulated time between frames [s]; 0: chosen (run/run_loop.hpp)
   int threads = 1;

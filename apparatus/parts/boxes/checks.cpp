@@ -28,8 +28,9 @@ std::string inertia_at_the_bars(const View& j) {
 
 /// The drag of a bar between cells that resolve it and those for which it was measured; and a gap wants two cells.
 std::string wide_cells_at_the_bars(const View& j) {
-  return j.scene.bars > 0 ? parts::cells_between_bars(j.scene.model.cell[0], j.scene.box.bar_diameter)
-                          : std::string{};
+  return j.scene.bars > 0 && in_space(j.scene)
+             ? parts::cells_between_bars(j.scene.model.cell[0], j.scene.box.bar_diameter)
+             : std::string{};
 }
 
 /// Depths and how far they reach are the grid's where a few cells make them: below these the passing ratio is

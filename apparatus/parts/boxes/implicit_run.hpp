@@ -69,7 +69,7 @@ template <class Geometry>
 Outcome run_in(const Scene& scene, const scene::Observer& observer, ProgressText text) {
   ImplicitBody<Geometry> body{filled_column<Geometry>(scene)};
   StepSettings settings = step_settings<Geometry>(scene);
-  if constexpr (Geometry::dim == 3) add_bars(scene, body);
+  add_bars(scene, body);
 
   Outcome outcome;
   double through = 0.0;  // gate and front wall, share of the volume

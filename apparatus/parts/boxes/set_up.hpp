@@ -105,10 +105,29 @@ inline std::vector<parts::Bar> bars_of(const Scene& scene) {
   return bars;
 }
 
-/// Puts the bars of the scene into a body in space.
-inline void add_bars(const Scene& scene, ImplicitBody<ThreeD>& body) {
+/// The bars of a section, a metre of which is averaged over the box's width: a screen of a row of them.
+inline std::vector<BarPoint<2>> screen_of_bars(const Scene& scene, double cell_up) {
+  const double height = scene.box.channel_height;
+  const int rows = static_cast<int>(std::ceil(2.0 * height / cell_up));
+  BarPoint<2> bar{.x = {}, .axis = {0.0, 1.0}};
+  bar.length = height / rows * scene.bars / scene.box.width, bar.diameter = scene.box.bar_diameter;
+  bar.mobility = row_mobility(bar.diameter, gap_between_bars(scene) + bar.diameter);
+  std::vector<BarPoint<2>> points;
+  for (int k = 0; k < rows; ++k) {
+    bar.x = {scene.box.column_length + 0.5 * bar.diameter, (k + 0.5) * height / rows};
+    points.push_back(bar);
+  }
+  return points;
+}
+
+/// Puts the bars of the scene into a body.
+template <class Geometry>
+void add_bars(const Scene& scene, ImplicitBody<Geometry>& body) {
+  if (scene.bars == 0) return;
   const auto& axes = body.grid.axes;
-  if (parts::resolves_bars(axes[1].h, scene.box.bar_diameter))
+  if constexpr (Geometry::dim == 2)
+    body.bars = screen_of_bars(scene, axes[1].h);
+  else if (parts::resolves_bars(axes[1].h, scene.box.bar_diameter))
     parts::add_resolved_bars(bars_of(scene), 0.5 * std::min(axes[1].h, axes[2].h), body.boundary);
   else
     body.bars = parts::slender_bars(bars_of(scene), axes);

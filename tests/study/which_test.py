@@ -1,0 +1,93 @@
+#!/usr/bin/env python3
+"""Which tests tell yield stress and viscosity of a mix: which_test.py TREMIE [FOLDER]
+
+Runs each test of a mix, and of mixes a sixth more and less in each parameter, for the sensitivities of its readings. A usual
+error of each reading makes them an information matrix (Fisher); that of a pair of tests is the sum. Prints the standard errors
+of both parameters, in per cent, by each test and by each pair, with walls that hold and with a layer that slides. Half an hour
+of one core. The table and the chart of docs/guide/which_test.md are this script's."""
+
+import itertools
+import json
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+STEP = math.log(7.0 / 6.0)
+PRIOR = math.log(10.0)  # standard deviation of the logarithm of a parameter of which nothing is known
+MIXES = {"self-compacting": (25.0, 40.0), "tremie": (60.0, 30.0), "stiff": (400.0, 60.0)}  # Pa, Pa s
+SLIDES = 'contact = "interface"\ninterface_yield_ratio = 0.5\ninterface_viscosity = "1000 Pa.s/m"\n'
+
+# test: (apparatus, its walls' section, settings, {reading: usual standard error in its unit, or a share of it}, litres)
+TESTS = {
+    "slump flow": ("slump_flow", "floor", "", {"spread_mm": 15.0, "t500_s": 0.3, "slump_mm": 10.0}, 5.5),
+    "L-box": ("l_box", "walls", '[model]\nspace = "plane_with_side_walls"\ncell = "20 mm"\n', {"passing_ratio": 0.03}, 12.0),
+    "U-box": ("u_box", "walls", '[model]\ncell = "20 mm"\n', {"rise_mm": 8.0}, 19.0),
+    "LCPC box": ("lcpc_box", "walls", '[model]\ncell = ["20 mm", "10 mm"]\n', {"length_mm": 15.0}, 6.0),
+    "V-funnel": ("v_funnel", "walls", '[model]\ncell = "6.5 mm"\n', {"flow_time_s": 0.1}, 10.0),
+    "inverted cone": ("inverted_cone", "walls", "", {"flow_time_s": 0.1}, 5.5),
+}
+SHARES = {"flow_time_s"}
+
+
+def readings(tremie, folder, test, tau_0, mu, slides):
+    apparatus, section, settings, errors, _ = TESTS[test]
+    (folder / "scene.toml").write_text(
+        f'apparatus = "{apparatus}"\n[mix]\nyield_stress = "{tau_0} Pa"\nplastic_viscosity = "{mu} Pa.s"\n'
+        f'density = "2350 kg/m3"\n{settings}[output]\nframes = false\n' + (f"[{section}]\n{SLIDES}" if slides else ""))
+    run = subprocess.run([tremie, "run", "scene.toml", "--out", "out", "--force", "--quiet", "--threads", "1"], cwd=folder, capture_output=True)
+    if run.returncode not in (0, 3):
+        raise SystemExit(run.stderr.decode())
+    summary = json.loads((folder / "out/summary.json").read_text())
+    values = {name: summary["results"].get(name) for name in errors}
+    return {name: value for name, value in values.items() if value is not None}, summary["cost"]["cpu_s"], run.returncode
+
+
+def information(tremie, folder, test, mix, slides):
+    """The 2x2 information of ln tau_0 and ln mu; seconds of the run; readings and exit code at the mix."""
+    tau_0, mu = mix
+    here, seconds, code = readings(tremie, folder, test, tau_0, mu, slides)
+    shifted = [[readings(tremie, folder, test, tau_0 * math.exp(a * s), mu * math.exp(b * s), slides)[0] for s in (-STEP, STEP)]
+               for a, b in ((1, 0), (0, 1))]
+    matrix = [[0.0, 0.0], [0.0, 0.0]]
+    for name, value in here.items():
+        error = TESTS[test][3][name] * (value if name in SHARES else 1.0)
+        if not all(name in point for pair in shifted for point in pair):
+            continue
+        slope = [(pair[1][name] - pair[0][name]) / (2 * STEP * error) for pair in shifted]
+        for i, j in itertools.product(range(2), range(2)):
+            matrix[i][j] += slope[i] * slope[j]
+    return matrix, seconds, here, code
+
+
+def errors(*matrices):
+    """Standard errors of ln tau_0 and ln mu, in per cent."""
+    a, b, d = (sum(m[i][j] for m in matrices) + (PRIOR**-2 if i == j else 0.0) for i, j in ((0, 0), (0, 1), (1, 1)))
+    determinant = a * d - b * b
+    return 100 * math.sqrt(d / determinant), 100 * math.sqrt(a / determinant)
+
+
+def main():
+    tremie = str(pathlib.Path(sys.argv[1]).resolve())
+    folder = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else tempfile.mkdtemp())
+    folder.mkdir(parents=True, exist_ok=True)
+    print("mix,walls,tests,error_tau_0_percent,error_mu_percent,litres,cpu_s,readings,exit_codes", flush=True)
+    for (mix, values), slides in itertools.product(MIXES.items(), (False, True)):
+        known = {}
+        for test in TESTS:
+            known[test] = information(tremie, folder, test, values, slides)
+            print(row(mix, slides, [test], known), flush=True)
+        for pair in itertools.combinations(TESTS, 2):
+            print(row(mix, slides, pair, known), flush=True)
+
+
+def row(mix, slides, tests, known):
+    tau_0, mu = errors(*(known[test][0] for test in tests))
+    told = "; ".join(f"{name} {value:.3g}" for test in tests for name, value in known[test][2].items()) if len(tests) == 1 else ""
+    return (f'{mix},{"slide" if slides else "hold"},{" + ".join(tests)},{tau_0:.1f},{mu:.1f},{sum(TESTS[t][4] for t in tests):g},'
+            f'{sum(known[t][1] for t in tests):.1f},{told},{" ".join(str(known[t][3]) for t in tests)}')
+
+
+if __name__ == "__main__":
+    main()
