@@ -91,7 +91,7 @@ Section sliding_floor(const Settings& settings) {
            rested ? spreads[best].rested[third] : spreads[best].fresh[third], NAN});
   }
   section.findings.push_back(
-      "Pairs lie on a ridge: a larger τ_i and a smaller k_i spread about as far. No tribometer was used.");
+      "Pairs lie on a ridge: larger τ_i and smaller k_i spread about as far. No tribometer was used.");
   return section;
 }
 

@@ -105,7 +105,7 @@ Section torque_records(const Settings& settings) {
   compare_site(section);
   compare_paste(section);
   section.findings.push_back(
-      "No single exponential fits the paste's decay at 40 rpm; `tremie fit` gives no α (code 3).");
+      "No single exponential fits the decay at 40 rpm; `tremie fit` gives no α (code 3).");
   return section;
 }
 
