@@ -11,7 +11,7 @@ namespace tremie::l_box {
 namespace {
 
 /// In space a thin bed of a fluid mix may level beyond what its yield stress lets it, on cells with few points, or stop
-/// before cells that fast flow left half full have been mended (lbox_bars.md): at 50 Pa the drop is 1.16 times what the
+/// before cells that fast flow left half full have been mended (bars.md): at 50 Pa the drop is 1.16 times what the
 /// yield stress holds, with bars and without, at 20 Pa 1.37 and 1.63 times, and the ratio 0.07 and 0.15 too small.
 std::string wrong_level(const boxes::View& j) {
   constexpr double least = 0.6, most = 1.3;

@@ -48,11 +48,10 @@ std::string head(const std::vector<Section>& sections, double wall_seconds) {
       (miss ? missed : c.note.empty() ? met : open) += 1;
     }
   return fmt::format(
-      "# Validation\n\nWhat was measured, and in the last table two published correlations, beside what "
-      "Tremie predicts. `tremie verify --validation` remakes this page ({:.0f} s here), its charts and "
-      "`validation.csv`.\n\n**{} of {} met, {} missed, {} without a verdict.** ± is half of a "
-      "95 % interval; met: the unrounded difference is within both (root of the sum of squares). A wide "
-      "interval is met easily, and shows no more than that.\n\n",
+      "# Validation\n\nMeasurements beside Tremie's predictions; the last table has two published "
+      "correlations. `tremie verify --validation` remakes this page ({:.0f} s), its charts and "
+      "`validation.csv`.\n\n**{} of {} met, {} missed, {} without a verdict.** ± is half of a 95 % interval. "
+      "Met: the difference is within both (root of the sum of squares). A wide interval is easily met.\n\n",
       wall_seconds, met, met + missed + open, missed, open);
 }
 

@@ -34,18 +34,18 @@ std::string findings_of(const Section& section) {
     most_short = std::max(most_short, fresh.measured - fresh.predicted);
   }
   return fmt::format(
-      "± of a prediction is of cells and steps alone; the paper prints no error of its yield stresses (10 % "
-      "of one moves a spread by 2 %). Without slip the fresh spreads are {:.0f} to {:.0f} mm short. By α = "
-      "0.01 rest takes {:.0f} to {:.0f} mm; the laboratory lost 15 to 20.",
+      "A prediction's ± includes cells and steps alone; 10 % of the yield stress moves a spread by 2 %. "
+      "Fresh spreads without slip are {:.0f} to {:.0f} mm short. With α = 0.01 rest takes {:.0f} to {:.0f} "
+      "mm; the laboratory lost 15 to 20.",
       least_short, most_short, least_lost, most_lost);
 }
 
 }  // namespace
 
 Section paper_mixes(const Settings& settings) {
-  Section section{"mixes", "Mixes A to C, fresh and after 240 s",
-                  "Everything as the paper prints it, α = 0.01 and its friction coefficients as well; cone "
-                  "at 15 cm/s. Nothing is fitted."};
+  Section section{
+      "mixes", "Mixes A to C, fresh and after 240 s",
+      "Every value as the paper prints it, friction included; cone at 15 cm/s. Nothing is fitted."};
   std::vector<Ask> asked;
   const std::vector<std::string> as_printed{"mix.thixotropy.kinetics=gated"};
   for (const Floor& floor : {Floor{"no slip", false}, Floor{"friction", true}})

@@ -53,15 +53,15 @@ std::size_t best_of(const std::vector<Spreads>& spreads, std::size_t left_out) {
 
 std::string table(const std::vector<Layer>& all, const std::vector<Spreads>& spreads) {
   std::string text =
-      "\n\n| τ_i/τ0 | k_i (Pa·s/m) | A fresh | rested | B fresh | rested | C fresh | rested "
-      "|\n|---|---|---|---|---|---|---|---|\n";
+      "\n\n|τ_i/τ0|k_i (Pa·s/m)|A fresh|rested|B fresh|rested|C fresh|rested|\n"
+      "|---|---|---|---|---|---|---|---|\n";
   for (std::size_t i = 0; i < all.size(); ++i) {
-    text += fmt::format("| {} | {} |", all[i].ratio, all[i].viscosity);
+    text += fmt::format("|{}|{}|", all[i].ratio, all[i].viscosity);
     for (std::size_t mix = 0; mix < 3; ++mix)
-      text += fmt::format(" {:.0f} | {:.0f} |", spreads[i].fresh[mix], spreads[i].rested[mix]);
+      text += fmt::format("{:.0f}|{:.0f}|", spreads[i].fresh[mix], spreads[i].rested[mix]);
     text += "\n";
   }
-  return text + "| measured | ± 30 | 590 | 575 | 550 | 530 | 500 | 485 |\n";
+  return text + "|measured|± 30|590|575|550|530|500|485|\n";
 }
 
 }  // namespace
@@ -77,24 +77,21 @@ Section sliding_floor(const Settings& settings) {
   for (std::size_t i = 0; i < readings.size(); ++i)
     (i % 2 == 0 ? spreads[i / 6].fresh : spreads[i / 6].rested)[i / 2 % 3] = readings[i].value;
   Section section{"sliding", "A floor that slides",
-                  "A layer of paste slides along the plate with τ = τ_i + k_i u. Nine pairs (τ_i/τ0, k_i), "
-                  "one for all three mixes, "
-                  "and the default kinetics; no other value fitted. The pair that fits two mixes' fresh "
-                  "spreads best forecasts the "
-                  "third's, fresh and rested." +
+                  "A layer of paste slides along the plate with τ = τ_i + k_i u; default kinetics. Each of "
+                  "nine pairs (τ_i/τ0, k_i) is common to all mixes. The pair that fits two mixes' fresh "
+                  "spreads best forecasts the third's." +
                       table(all, spreads)};
   for (std::size_t third = 0; third < 3; ++third) {
     const std::size_t best = best_of(spreads, third);
     for (const bool rested : {false, true})
       section.comparisons.push_back(
-          {fmt::format("{} {}, floor of the two others ({}, {} Pa·s/m)", paper_mix[third].name,
-                       rested ? "rested" : "fresh", all[best].ratio, all[best].viscosity),
+          {fmt::format("{} {} ({}, {})", paper_mix[third].name, rested ? "rested" : "fresh", all[best].ratio,
+                       all[best].viscosity),
            "mm", rested ? paper_mix[third].rested : paper_mix[third].fresh, paper_tolerance,
            rested ? spreads[best].rested[third] : spreads[best].fresh[third], NAN});
   }
   section.findings.push_back(
-      "Pairs lie on a ridge: a larger τ_i and a smaller k_i spread about as far. No tribometer was used on "
-      "these mixes.");
+      "Pairs lie on a ridge: larger τ_i and smaller k_i spread about as far. No tribometer was used.");
   return section;
 }
 

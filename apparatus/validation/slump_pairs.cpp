@@ -75,11 +75,10 @@ Group group_of(const std::vector<Pair>& pairs, double low, double high) {
 struct Hypothesis {
   const char *words, *keys;
 };
-constexpr Hypothesis hypotheses[] = {
-    {"Bingham, a floor that holds, 15 cm/s", ""},
-    {"Coulomb's floor, coefficient 0.3", "[floor]\ncontact = \"friction\"\ncoefficient = 0.3\n"},
-    {"a slow lift, 3 cm/s", "[test]\nlift_speed = \"3 cm/s\"\n"},
-    {"Herschel-Bulkley, n = 0.5", nullptr}};
+constexpr Hypothesis hypotheses[] = {{"Bingham, no slip, 15 cm/s", ""},
+                                     {"friction 0.3", "[floor]\ncontact = \"friction\"\ncoefficient = 0.3\n"},
+                                     {"lift at 3 cm/s", "[test]\nlift_speed = \"3 cm/s\"\n"},
+                                     {"Herschel-Bulkley, n = 0.5", nullptr}};
 
 std::string scene_of(const Hypothesis& h, double tau_0) {
   const std::string flow =
@@ -114,14 +113,10 @@ std::string slumps_at_500(const Settings& settings) {
 Section slump_pairs(const Settings& settings) {
   Section section{
       "pairs", "Slump and flow of the same concretes",
-      "103 concretes of one laboratory (Yeh, Cement and Concrete Composites 29 (2007) 474; UCI Machine "
-      "Learning "
-      "Repository, CC BY 4.0), slump and flow by one cone, no rheometer in between. Bingham concrete has "
-      "nearly one "
-      "curve of slump over flow, whatever its yield stress and viscosity (the table of `tremie estimate`). "
-      "Measured: "
-      "means of bands 100 mm wide, ± 1.96 standard errors of the mean.\n\n![Slump over flow, measured and "
-      "computed](slump_pairs.svg)"};
+      "103 concretes of one laboratory, slump and flow by one cone (Yeh, Cement and Concrete Composites 29 "
+      "(2007) 474; UCI Machine Learning Repository, CC BY 4.0). All Bingham concretes have nearly one curve "
+      "of slump over flow. Measured: means of bands 100 mm wide, ± 1.96 standard errors; in brackets number "
+      "and scatter.\n\n![Slump over flow, measured and computed](slump_pairs.svg)"};
   const auto pairs = measured_pairs();
   const auto folders = scene::data_folders();
   const auto table = estimate::find_slump_table(folders);
@@ -129,9 +124,8 @@ Section slump_pairs(const Settings& settings) {
   for (const double low : {350.0, 450.0, 550.0}) {
     const Group g = group_of(pairs, low, low + 100.0);
     section.comparisons.push_back(
-        {fmt::format("slump at a flow of {:.0f} mm ({} concretes, scatter ± {:.0f})", g.flow, g.count,
-                     g.deviation),
-         "mm", g.slump, 1.96 * g.deviation / std::sqrt(static_cast<double>(g.count)), slump_at(curve, g.flow),
+        {fmt::format("slump at {:.0f} mm ({} concretes, ± {:.0f})", g.flow, g.count, g.deviation), "mm",
+         g.slump, 1.96 * g.deviation / std::sqrt(static_cast<double>(g.count)), slump_at(curve, g.flow),
          1.96e3 * estimate::table_slump_error * table.mould.height});
   }
   report::Curve measured{.label = "measured", .mark = report::Mark::points};
@@ -144,11 +138,9 @@ Section slump_pairs(const Settings& settings) {
                           .height = 420};
   io::write_text(settings.folder / "slump_pairs.svg", report::svg_file({chart}));
   section.findings.push_back(
-      "Slump at a flow of 500 mm, computed: " + slumps_at_500(settings) +
-      " (measured: some 200 mm). A yield stress that grows with pressure, and coarse stones that stay in the "
-      "middle, might lower it; neither is computed here. **Tremie's slump of fluid mixes reads high**, by "
-      "some "
-      "50 mm at a flow of 500 mm: use the spread.");
+      "Computed slump at 500 mm: " + slumps_at_500(settings) +
+      ". Pressure-dependent yield, or coarse stones that stay in the middle, might lower it; neither is "
+      "computed. **Tremie's slump of fluid mixes reads high**, by some 50 mm: use the spread.");
   return section;
 }
 

@@ -56,9 +56,9 @@ std::string scene_of(double tau_0) {
 
 Section stiff_mixes(const Settings& settings) {
   Section section{"slump", "Slump of stiff mixes",
-                  "Slump over yield stress, 2400 kg/m3, 50 Pa.s, cone at 10 cm/s. Measured: correlations "
-                  "with yield stresses by BTRHEOM (NISTIR 6094), τ0 = ρ(300 − s)/270 (Hu) and ρ(300 − s)/347 "
-                  "+ 212 (Ferraris, de Larrard), scatter by their mean deviations, 195 and 162 Pa."};
+                  "Slump over yield stress, 2400 kg/m3, 50 Pa.s, cone at 10 cm/s. \"Measured\" are "
+                  "correlations with yield stresses by BTRHEOM (NISTIR 6094): τ0 = ρ(300 − s)/270 (Hu) and "
+                  "ρ(300 − s)/347 + 212 (Ferraris, de Larrard), mean deviations 195 and 162 Pa."};
   const double yield_stresses[] = {600.0, 1200.0, 1800.0};
   std::vector<Ask> asked;
   for (const double tau_0 : yield_stresses) asked.push_back({scene_of(tau_0), "height_mm"});
@@ -67,19 +67,15 @@ Section stiff_mixes(const Settings& settings) {
     for (std::size_t i = 0; i < readings.size(); ++i)
       section.comparisons.push_back({fmt::format("{:.0f} Pa, {}", yield_stresses[i], c.name), "mm",
                                      slump_of(c, yield_stresses[i]), slump_error(c),
-                                     300.0 - readings[i].value, readings[i].error, "none: one instrument"});
+                                     300.0 - readings[i].value, readings[i].error, "none"});
   std::string closed;
   for (const double tau_0 : yield_stresses)
     closed += fmt::format("{}{:.0f}", closed.empty() ? "" : ", ", uniaxial_slump(tau_0));
   section.findings.push_back(fmt::format(
-      "Tremie is near the closed form of a yielding cone (Schowalter and Christensen's balance of weight and "
-      "uniaxial stress, √3 τ0 by von Mises): {} mm. Both correlations are of one instrument, the BTRHEOM, "
-      "which is known to read higher than others, and rheometers differ by factors, so that they allow no "
-      "verdict. "
-      "Slumps beside yield stresses of the ICAR and ConTec rheometers are published (Hočevar, Kavčič and "
-      "Bokan-Bosiljkov, Građevinar 65 (2013): 26 concretes; Laskar, Materials Research 12 (2009) 75: 30 "
-      "mixes); their "
-      "tables could not be had for this page.",
+      "Tremie is near the closed form of a yielding cone (Schowalter and Christensen, uniaxial strength √3 "
+      "τ0): {} mm. The BTRHEOM reads higher than others, and rheometers differ by factors: no verdict. "
+      "Slumps with ICAR and ConTec yield stresses (Hočevar et al., Građevinar 65 (2013); Laskar, Materials "
+      "Research 12 (2009) 75) were not available as tables.",
       closed));
   return section;
 }

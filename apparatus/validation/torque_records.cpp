@@ -19,7 +19,7 @@ namespace {
 
 // As printed: 2 to 1.25 N m in about 10 s. Mix, speed and rest are not.
 constexpr double site_start = 2.0, site_end = 1.25, site_time = 10.0;
-const char* const no_site = "none: no mix, speed, rest";
+const char* const no_site = "none: mix unknown";
 
 /// Mix A after 240 s of rest at 0.25 rev/s, the gated kinetics.
 CouetteDecay mix_a_decay(double alpha) {
@@ -35,7 +35,7 @@ void compare_site(Section& section) {
     if (alpha == 0.01)
       section.comparisons.push_back(
           {"site, torque at the start", "N m", site_start, NAN, torque.front(), NAN, no_site});
-    section.comparisons.push_back({fmt::format("site, torque after 10 s over its start, α = {}", alpha), "",
+    section.comparisons.push_back({fmt::format("site, torque ratio after 10 s, α = {}", alpha), "",
                                    site_end / site_start, NAN, torque.back() / torque.front(), NAN, no_site});
   }
 }
@@ -65,32 +65,31 @@ void compare_paste(Section& section) {
     const auto end = static_cast<std::ptrdiff_t>(next);
     const StraightLine line =
         straight_line({rest.begin(), rest.begin() + end}, {stress.begin(), stress.begin() + end});
-    section.comparisons.push_back({fmt::format("paste after {:.0f} s, from shorter rests", rest[next]), "Pa",
-                                   stress[next], peak_scatter * stress[next], line.at(rest[next]),
+    section.comparisons.push_back({fmt::format("paste after {:.0f} s", rest[next]), "Pa", stress[next],
+                                   peak_scatter * stress[next], line.at(rest[next]),
                                    line.half_width_of_reading(rest[next])});
-    section.comparisons.back().what += ", a line";
+    section.comparisons.back().what += ", line";
     const auto saturating =
         saturation_of({rest.begin(), rest.begin() + end + 1}, {stress.begin(), stress.begin() + end + 1});
     if (saturating && saturating->forecast_of_longest)
-      section.comparisons.push_back(
-          {fmt::format("paste after {:.0f} s, from shorter rests, saturating", rest[next]), "Pa",
-           stress[next], peak_scatter * stress[next], *saturating->forecast_of_longest, NAN});
+      section.comparisons.push_back({fmt::format("paste after {:.0f} s, saturating", rest[next]), "Pa",
+                                     stress[next], peak_scatter * stress[next],
+                                     *saturating->forecast_of_longest, NAN});
   }
   const std::vector<BreakdownTime>& times = reading.breakdown.times;
   const auto &rate = reading.breakdown.rate, &exponent = reading.breakdown.exponent;
   if (rate && exponent && exponent->ci95)
-    section.findings.push_back(fmt::format(
-        "Half of the paste's excess torque is lost after {:.1f} s at 40 rpm and {:.1f} to {:.1f} s at 0.115 "
-        "rpm: k γ̇^a with a = {:.2f} [{:.2f}, {:.2f}], k = {:.2f} 1/s{}. Breakdown by strain, a = 1, would "
-        "take "
-        "346 times as long at the lower speed.",
-        times.front().half_time, times.back().half_time, times[1].half_time, exponent->value,
-        exponent->ci95->low, exponent->ci95->high, rate->value,
-        reading.breakdown.modes.empty() ? "" : " for the mode of the largest share"));
+    section.findings.push_back(
+        fmt::format("Half of the paste's excess torque is lost after {:.1f} s at 40 rpm and {:.1f} to {:.1f} "
+                    "s at 0.115 rpm: k γ̇^a with a = {:.2f} [{:.2f}, {:.2f}], k = {:.2f} 1/s{}. With a = 1 "
+                    "the lower speed would take 346 times as long.",
+                    times.front().half_time, times.back().half_time, times[1].half_time, exponent->value,
+                    exponent->ci95->low, exponent->ci95->high, rate->value,
+                    reading.breakdown.modes.empty() ? "" : " for the mode of the largest share"));
   if (reading.structuration.early && reading.structuration.late)
     section.findings.push_back(
         fmt::format("The paste gains {:.1f} Pa/s between its first two rests, {:.1f} between its last: every "
-                    "line overshoots the next rest.",
+                    "line overshoots.",
                     *reading.structuration.early, *reading.structuration.late));
 }
 
@@ -98,18 +97,15 @@ void compare_paste(Section& section) {
 
 Section torque_records(const Settings& settings) {
   if (settings.stop && *settings.stop) throw Interrupted{};
-  Section section{
-      "torque", "Torque records",
-      "The paper's site test (2 to 1.25 N m in 10 s) beside the Couette flow of Mix A after 240 s at 0.25 "
-      "rev/s, which stands in for a mix that is not described. The rheocem paste (\"0.55\"): static yield "
-      "stress after 30 to 480 s, each rest forecast from the shorter ones by a line, since Roussel's "
-      "A_thix is constant, and by structure that saturates. One record; ± 21 % is twice the scatter of its "
-      "source's averaged ones."};
+  Section section{"torque", "Torque records",
+                  "Site: the paper's test (2 to 1.25 N m in 10 s; mix and speed unknown) beside Mix A after "
+                  "240 s in Couette flow at 0.25 rev/s. Paste: rheocem \"0.55\", static yield stress, "
+                  "forecast from shorter rests by a line (Roussel's constant A_thix) and by saturating "
+                  "structure; ± 21 % is twice the scatter of its source's averaged records."};
   compare_site(section);
   compare_paste(section);
   section.findings.push_back(
-      "One exponential describes no decay of the paste at 40 rpm, and `tremie fit` gives no α for it (code "
-      "3).");
+      "No single exponential fits the decay at 40 rpm; `tremie fit` gives no α (code 3).");
   return section;
 }
 

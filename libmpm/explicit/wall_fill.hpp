@@ -4,7 +4,7 @@
 //
 // A front rolls over a floor that it sticks to, and its points never settle: half of the cells above the
 // floor stays empty, and a sum over points gives the floor that share of the concrete's resistance
-// (tests/verification/floor.md). But a cell inside the body is full, by geometry: its points' viscous and
+// (docs/theory/mpm_step.md). But a cell inside the body is full, by geometry: its points' viscous and
 // yield stress is integrated over the whole cell. Pressure, mass and volume stay the points' own. The
 // pressure's row moves to where the points are (cell_pressures.hpp), so that the flow fills what is hollow.
 

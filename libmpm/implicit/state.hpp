@@ -38,7 +38,7 @@ struct StepSettings {
   double boundary_stiffness = 1000.0;  ///< of walls inside the grid, in m/dt
   double alternating_viscosity = 0.0;  ///< zeta of yield_problem.hpp, in eta; sections alone
   bool cut_cell_rule = false;       ///< stresses of partly filled cells where the points are; sections alone
-  bool settle_on_floor = false;     ///< partly filled cells on the floor are full from below (floor.md)
+  bool settle_on_floor = false;     ///< partly filled cells on the floor are full from below (mpm_step.md)
   bool moving_surface = false;      ///< gravity where the step leaves the free surface; sections alone
   double side_wall_distance = 0.0;  ///< of a width-averaged section [m]; 0: plane strain, no side walls
   double wall_gap = 0.0;            ///< how near a point may come to a rigid wall [m]

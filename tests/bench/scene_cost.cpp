@@ -3,7 +3,7 @@
 // the same flow; the difference leaves out start and end. valgrind knows no AVX-512: build with
 // -DTREMIE_NATIVE=OFF.
 //
-//   scene_cost TREMIE BARE_SLUMP DIR     writes scene_cost.md into DIR
+//   scene_cost TREMIE BARE_SLUMP DIR     prints its tables; its runs lie in DIR meanwhile
 
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -154,9 +154,8 @@ void write(std::ostream& out, const std::string& tremie, const std::string& bare
   out << "# What a scene carries\n\n"
       << tremie::study::made_by("study_scene_cost") << "\nMix A, cells of 20 x 10 mm, from " << shorter
       << " to " << longer
-      << " s of the flow; every row differs from the first by what it names.\nInstructions by callgrind, one "
-         "thread, "
-         "compiled without the processor's own instructions.\n\n"
+      << " s of the flow; every row names its difference from the first.\nInstructions by callgrind, one "
+         "thread, baseline x86-64.\n\n"
          "| scene | bytes a point | points | steps | iterations a step | instructions a point and step |\n"
          "|---|---|---|---|---|---|\n";
   const std::string folder = directory + "/.scene_cost",
@@ -174,12 +173,11 @@ void write(std::ostream& out, const std::string& tremie, const std::string& bare
                                 {"the step and its line of the series", read}})
     out << fmt::format("| {} | | {} | {} | | {:.0f} |\n", name, c.points, c.steps, c.per_point_step);
   out << fmt::format(
-      "\nThe last two rows are `tests/bench/bare_slump.cpp`, which is the first scene without a program "
-      "around it. Reading "
-      "spread, height, energy and means of the points takes {:.2f} % of a step; what the program has beyond "
-      "that, and this "
-      "scene does not use, {:.2f} %. Less than 3 % of either sign is what it changes that the step is "
-      "compiled in another file.\n",
+      "\nThe last two rows are the first scene without a program (`tests/bench/bare_slump.cpp`). Readings "
+      "take {:.2f} % "
+      "of a step, the rest of the program {:.2f} %. Compiling the step in another file changes its cost by "
+      "up to "
+      "3 % of either sign.\n",
       100.0 * (read.per_point_step / step.per_point_step - 1.0), 100.0 * (first / read.per_point_step - 1.0));
   output_of("rm -r " + folder);
   write_programs(out, tremie);
@@ -195,7 +193,7 @@ int main(int argc, char** argv) {
   try {
     std::ostringstream text;
     write(text, argv[1], argv[2], argv[3]);
-    std::ofstream(std::string(argv[3]) + "/scene_cost.md") << text.str();
+    std::cout << text.str();
     return 0;
   } catch (const std::exception& error) {
     std::cerr << error.what() << '\n';

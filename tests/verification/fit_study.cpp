@@ -44,10 +44,10 @@ double quantile(std::vector<double> v, double p) {
 }
 
 void write_apparent(std::ofstream& out, const Apparent& a, const std::string& directory) {
-  out << "\nalpha read the paper's way (exponential through the apparent lambda over a window, divided by a "
+  out << "\nalpha read the paper's way: the exponent of the apparent lambda over a window, divided by a "
          "nominal shear "
-         "rate; lambda = 0 at\nthe Reiner-Riwlin torque of the dynamic material), median of "
-      << seeds << " records. The truth is " << synthetic::alpha << ", the fit's median " << median(a.fitted)
+         "rate\n(lambda = 0 at the dynamic Reiner-Riwlin torque). Median of "
+      << seeds << " records; truth " << synthetic::alpha << ", the fit's median " << median(a.fitted)
       << ".\n\n"
       << "| window | rate 2 Omega/(1 - Ri^2/Ro^2) = 3.91 1/s | rate at the vane at the start, about 10.2 1/s "
          "|\n|---|---|---|\n";
@@ -96,13 +96,14 @@ void write_site(std::ofstream& out, const std::string& file) {
   const double ratio = icar.vane_radius / icar.container_radius;
   out << "\n## The paper's site test\n\nTorque 2 -> 1.25 N m in about 10 s, exponent 0.43 1/s, shear rate "
          "12.43 1/s; the record "
-         "is rebuilt from these numbers\n(reference_data/site_torque/rebuilt.csv).\n\n"
+         "is rebuilt\n(reference_data/site_torque/rebuilt.csv).\n\n"
          "The paper's way: 0.43/12.43 = "
       << std::setprecision(3) << 0.43 / rate
-      << " (it prints 0.0358). This assumes that all of the "
-         "sheared material is sheared at\n12.43 1/s, throughout the record.\n\nThe full way needs what the "
-         "paper does not "
-         "give: the speed of the vane, and two of the material's numbers. Each row states its own.\n\n"
+      << " (it prints 0.0358). This assumes 12.43 1/s in all sheared material, throughout the record.\n\nThe "
+         "full "
+         "fit needs what the paper does not print: the vane's speed and two material parameters. Each row "
+         "states "
+         "its own.\n\n"
          "| assumption | alpha | lambda_0 | tau_0 Pa | mu Pa s | sheared as far as | alpha the paper's way "
          "from the same fit, Newtonian rate / rate at the vane |\n"
          "|---|---|---|---|---|---|---|\n";
@@ -133,10 +134,9 @@ void run(const std::string& directory, const std::string& site) {
   std::ofstream out(directory + "/fit_study.md");
   out << "# What a fit of a torque record is worth\n\n"
       << made_by("study_fit") << "\n\n"
-      << "Mix A (54 Pa, 35.8 Pa s; 1.3 Pa/s, 240 s of rest, alpha 0.0358, gated), ICAR geometry, 0.25 rev/s "
-         "for the decay; "
-      << seeds
-      << " records each, noise 2 % of the\nreading. How often the truth lies inside the 95 % interval:\n\n"
+      << "Mix A (54 Pa, 35.8 Pa s; 1.3 Pa/s, 240 s of rest, alpha 0.0358, gated), ICAR geometry, decay at "
+         "0.25 rev/s; "
+      << seeds << " records each, 2 % noise.\nCoverage of the 95 % intervals:\n\n"
       << "| record | parameter | truth | median | inside the interval | null |\n|---|---|---|---|---|---|\n";
   for (const int readings : {7, 20, 200})
     write_coverage(out, ("flow curve, " + std::to_string(readings) + " readings").c_str(),

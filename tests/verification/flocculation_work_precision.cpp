@@ -226,47 +226,22 @@ void write_csv(const std::vector<Result>& results, const std::string& path) {
 }
 
 const char* const head =
-    "Error: largest difference to CVODE at 1e-13, over the largest lambda, the start included. CPU time: "
-    "that of the whole "
-    "history, set-up\nincluded, the smallest of nine. The chart is flocculation_work_precision.svg, the data "
-    "flocculation_work_precision.csv.\n\n"
-    "There are two per-point updates. `flocculation_step` is the material points': a step of a simulation "
-    "gives it "
-    "the shear rate at its two\nends, and nothing else is known. `flocculation_step_along` is for a history "
-    "that can be "
-    "asked for its rate at any time: it asks at two\nplaces inside the step, and looks for the time at which "
-    "the gate is "
-    "crossed. `tremie cell` has histories that are linear in pieces,\nwhere the ends tell all; it uses the "
-    "first.\n\n"
-    "CPU time in microseconds for the whole history with an error of at most 1e-6, and the observed "
-    "orders:\n\n";
+    "Error: largest difference to CVODE at 1e-13 over the largest lambda. CPU time: of the whole history "
+    "with set-up, smallest\n"
+    "of nine. Chart: flocculation_work_precision.svg, data: flocculation_work_precision.csv.\n\n"
+    "There are two updates per point. `flocculation_step` serves material points: it knows the shear rate at "
+    "both ends of a step.\n"
+    "`flocculation_step_along` serves a known history: it evaluates the rate within the step.\n\n"
+    "CPU time in microseconds for the whole history at an error of at most 1e-6, and observed orders:\n\n";
 
 const char* const remarks =
-    "Both updates are exact where they should be: at constant rate, and under the gate for any rate that is "
-    "linear over "
-    "a step. On a ramp\nthe first is of order 4, because the build-up is weighed with the asymmetry of the "
-    "rate over "
-    "the step; on curved histories it is of\norder 2, because the mean of two ends stands for the mean of "
-    "the step. The "
-    "update along the history is of order 6. Stepping over the\ngate costs an order or more; splitting the "
-    "step "
-    "where the rate crosses gamma_c gives it back. In the stiff history lambda is 8 orders\nbelow its start, "
-    "and every "
-    "step in the table meets 1e-6.\n\n"
-    "Over a whole smooth history CVODE takes a few dozen long steps of high order. On the two curved ones "
-    "the "
-    "update from two rates needs\nhundreds of steps and is less than 100 times cheaper (the column says by "
-    "how much); the "
-    "update along the history takes steps as long as\nCVODE's. CVODE's time at a tolerance of 1e-3 (in the "
-    "data) is "
-    "about what its set-up costs: without that, the ratios of the smooth\nhistories would be about half. In "
-    "a simulation "
-    "neither long steps nor a look inside the step are to be had (second table).\n"
-    "Each history has an update that is at least 100 times cheaper: one of the two, the along where the rate "
-    "is "
-    "curved.\n"
-    "Tried before: the rate in the middle of the step alone (Simpson's rule, order 4) gave 93 times for "
-    "the pulse and 69 for the wave.\n";
+    "Both updates are exact at constant rate and, under the gate, for linear rates. On curved histories the "
+    "first is of order 2, the\n"
+    "update along the history of order 6. Stepping over the gate costs an order; splitting the step at "
+    "gamma_c restores it.\n\n"
+    "On the two curved histories CVODE takes a few dozen long steps; the first update is less than 100 times "
+    "cheaper, the update along\n"
+    "the history about a hundred times. CVODE's set-up is about half of its time on smooth histories.\n";
 
 void write_row(std::ofstream& out, const Result& r) {
   const double update = cheapest(r.points, "update", 1e-6), along = cheapest(r.points, "update along", 1e-6),
@@ -295,11 +270,9 @@ void write_markdown(const std::vector<Result>& results, const std::string& path)
   for (const Result& r : results) write_row(out, r);
   out << "\n"
       << remarks
-      << "\nCPU time in nanoseconds for one material point and one step of 1 ms, as in a simulation: the "
-         "rate is known "
-         "at the ends of the\nstep alone, and the next step is not known yet. CVODE at 1e-6 starts anew in "
-         "each "
-         "step.\n\n| history | update | CVODE | CVODE / update |\n|---|---|---|---|\n";
+      << "\nCPU time in nanoseconds for one material point and one step of 1 ms, as in a simulation. CVODE "
+         "at 1e-6 "
+         "starts anew in each step.\n\n| history | update | CVODE | CVODE / update |\n|---|---|---|---|\n";
   for (const Result& r : results)
     out << "| " << r.c.title << " | " << number(1e9 * r.step.update, 3) << " | "
         << number(1e9 * r.step.cvode, 3) << " | " << number(r.step.cvode / r.step.update, 3) << " |\n";

@@ -1,5 +1,5 @@
 #!/bin/bash
-# The figures of paper.md: the paper's scenes to 20 s, and what changes when one thing is changed.
+# The figures of explicit.md: the paper's scenes to 20 s, and what changes when one thing is changed.
 #
 #   paper_study.sh PROGRAM scenes      about 75 s of CPU a scene
 #   paper_study.sh PROGRAM variants    20 mm cells, 3 s of flow: 6 s each

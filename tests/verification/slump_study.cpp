@@ -64,9 +64,9 @@ std::string name(const Grid& g) {
 }
 
 void against_finite_elements(std::ofstream& md, std::ofstream& csv) {
-  md << "## Mix C, instant release, against the finite elements\n\nSpread in mm; the worst error from 1 s "
-        "on; the "
-        "centre height against 48.1 mm.\n\n| cells, points | evened out | 1 s | 2 s | 3 s | 5 s | 10 s | 20 "
+  md << "## Mix C, instant release, against the finite elements\n\nSpread in mm; worst error from 1 s on; "
+        "height at "
+        "the centre.\n\n| cells, points | evened out | 1 s | 2 s | 3 s | 5 s | 10 s | 20 "
         "s | worst | "
         "height | steps | CPU s |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n| finite elements | | "
         "435.4 | "
@@ -120,19 +120,18 @@ void mixes_over_grids(std::ofstream& md, std::ofstream& csv) {
     row({{10, 5}, {2, 2}}, MethodKind::automatic);
     row({{10, 5}, {4, 4}}, MethodKind::newton);
   }
-  md << fmt::format(
-      "\nCost a step grows from the coarsest to the finest grid like points to the power: {}.\n", growth);
+  md << fmt::format("\nThe cost of a step grows with the number of points to the power: {}.\n", growth);
 }
 
 }  // namespace
 
 constexpr const char* question_and_answer =
-    R"(**Question.** How far is a section from finite elements, and do cells, points or the solver matter?
+    R"(**Question.** How large is the error of a section against finite elements? Do cells, points or the solver matter?
 
-**Answer.** The default, 10×5 mm with 4×4 points a cell that are evened out, stays within 1 % of the finite elements from 1 s on. Cells from 10×10 to 5×2.5 mm,
-other points, and Newton's method in place of ADMM move the spreads of Mixes A to C by at most 1.5 %.
+**Answer.** The default, 10×5 mm with 4×4 points a cell, stays within 1 % of the finite elements from 1 s on. Cells from 10×10 to 5×2.5 mm, other points, and
+Newton's method instead of ADMM move the spreads of Mixes A to C by at most 1.5 %.
 
-**Limits.** Exact Bingham, no slip, no thixotropy. Where "moving" stands, the concrete had not stopped after 20 s.
+**Limits.** Exact Bingham, no slip, no thixotropy. "Moving" means not at rest after 20 s.
 
 )";
 

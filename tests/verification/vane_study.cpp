@@ -123,15 +123,15 @@ void newtonian_blades(std::ofstream& md, std::ofstream& csv) {
                         100 * error, r.cpu);
       csv << fmt::format("thin blades {},{},{:.6f},{:.6f},{:.3f}\n", n, size, T, error, r.cpu);
     }
-  md << "\nThe closed form leaves out (R/R_o)^(2n-2): 0.8 % with 4 blades, 0.03 % with 6.\n";
+  md << "\nThe closed form neglects (R/R_o)^(2n-2): 0.8 % with 4 blades, 0.03 % with 6.\n";
 }
 
 /// The finite elements' own convergence, and what they say at the speeds of a flow curve.
 void finite_elements(std::ofstream& md, std::ofstream& csv) {
-  md << "\n## The same blades by finite elements\n\nQuadratic velocities on a mesh that closes up towards "
-        "the "
-        "blade's tip, regularised yield stress taken to its limit, no inertia "
-        "(vane_finite_elements.hpp); n elements from shaft to tip. They share nothing with the points.\n\n"
+  md << "\n## The same blades by finite elements\n\nQuadratic velocities, a mesh refined towards the blade's "
+        "tip, regularised yield stress in its limit, no inertia (vane_finite_elements.hpp); n elements from "
+        "shaft "
+        "to tip.\n\n"
         "| fluid | rev/s | n = 8 | 16 | 32 | points, cells of 5 mm | points against n = 16 | CPU s, n = 16 "
         "|\n"
         "|---|---|---|---|---|---|---|---|\n";
@@ -157,9 +157,9 @@ void finite_elements(std::ofstream& md, std::ofstream& csv) {
 }
 
 void steady(std::ofstream& md, std::ofstream& csv) {
-  md << "\n## ICAR vane, blades of 3 mm, steady at 0.25 rev/s\n\nRatio: to the solid cylinder by "
-        "Reiner-Riwlin. Disagreement of the wall's torque and of power/speed with the blades', from 0.5 s "
-        "on.\n\n| fluid | cells mm | torque N m | ratio | wall | power | CPU s "
+  md << "\n## ICAR vane, blades of 3 mm, steady at 0.25 rev/s\n\nRatio to the solid cylinder by "
+        "Reiner-Riwlin. From 0.5 s on: disagreement of the wall's torque and of power/speed with the "
+        "blades'.\n\n| fluid | cells mm | torque N m | ratio | wall | power | CPU s "
         "|\n|---|---|---|---|---|---|---|\n";
   for (double yield : {0.0, tau_0})
     for (const std::array<double, 2>& cell :
@@ -177,11 +177,11 @@ void steady(std::ofstream& md, std::ofstream& csv) {
       csv << fmt::format("steady {},{},{:.6f},,{:.3f}\n", yield > 0.0 ? "Mix A" : "Newtonian", name,
                          r.outcome.results.torque_end, r.cpu);
     }
-  md << "\nThe blade is at least one cell thick, so cells around are 3 mm at most; 5×1.5 has two.\n";
+  md << "\nBlades are at least one cell thick, so cells are at most 3 mm there; 5×1.5 has two.\n";
 }
 
 void what_else(std::ofstream& md) {
-  md << "\n## Mix A at 5 mm: what must not matter\n\n| what | torque N m | against 0 deg, 10 mm shaft "
+  md << "\n## Mix A at 5 mm: what should not matter\n\n| what | torque N m | against 0 deg, 10 mm shaft "
         "|\n|---|---|---|\n";
   const double base = timed(plane(5.0, 1.5)).outcome.results.torque_end;
   const auto row = [&](const std::string& what, const Scene& s, double sign) {
@@ -205,9 +205,8 @@ void what_else(std::ofstream& md) {
 
 /// Returns the chart.
 std::string decays(std::ofstream& md, std::ofstream& csv, std::ofstream& curves) {
-  md << "\n## Mix A after 240 s of rest, alpha = 0.0358, 0.25 rev/s: decay of the torque\n\nTorque in N m; "
-        "largest difference from 0.5 s on against 2.5 mm cells; disagreement of the torques from 0.5 s "
-        "on.\n\n"
+  md << "\n## Mix A after 240 s of rest, alpha = 0.0358, 0.25 rev/s: decay of the torque\n\nTorque in N m. "
+        "From 0.5 s on: worst difference from 2.5 mm cells, disagreement of the torques.\n\n"
         "| cells mm |";
   for (double t : times) md << fmt::format(" {} s |", t);
   md << " worst | wall | power | steps | CPU s |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n";
@@ -262,9 +261,8 @@ void closed_loop(std::ofstream& md) {
   s.hold_time = 2.0;
   s.average_time = 0.5;
   const Run r = timed(s);
-  md << "\n## What an ICAR reports of Mix A\n\nA flow curve without thixotropy, and Reiner-Riwlin's "
-        "parameters "
-        "from it, which take the vane for a cylinder:\n\n| | in | reported | |\n|---|---|---|---|\n";
+  md << "\n## What an ICAR reports of Mix A\n\nA flow curve without thixotropy, and the "
+        "parameters that Reiner and Riwlin's cylinder gives:\n\n| | in | reported | |\n|---|---|---|---|\n";
   if (!r.outcome.results.reiner_riwlin) return;
   const auto& b = *r.outcome.results.reiner_riwlin;
   md << fmt::format("| yield stress Pa | {} | {:.1f} | {:+.1f} % |\n", tau_0, b.yield_stress,
@@ -281,10 +279,10 @@ void closed_loop(std::ofstream& md) {
 }  // namespace
 
 constexpr const char* question_and_answer =
-    R"(**Question.** Is the torque of the vane's plane section right, and do cells, the blades' place on them, or the shaft matter?
+    R"(**Question.** How large is the error of the torque of the vane's plane section? Do cells, the blades' position or the shaft matter?
 
-**Answer.** It is within 0.4 % of finite elements, which share nothing with the points. Turning the blades against the points or another shaft moves it by 0.003 %; the
-decay on 5 mm cells is within 1.3 % of that on 2.5 mm.
+**Answer.** The torque is within 0.4 % of independent finite elements. The blades' position and the shaft move it by 0.003 %. The decay on 5 mm cells is within 1.3 % of
+that on 2.5 mm cells.
 
 **Limits.** No ends ([vane_ends.md](vane_ends.md)); blades are at least one cell thick.
 
@@ -295,7 +293,7 @@ int main(int argc, char** argv) {
   std::ofstream md(folder + "/vane_study.md"), csv(folder + "/vane_study.csv"),
       curves(folder + "/vane_decay.csv");
   md << "# The vane's plane section: error against run time\n\n"
-     << study::made_by("study_vane") << "\nThe decays are drawn in vane_study.svg.\n\n"
+     << study::made_by("study_vane") << " Chart of the decays: vane_study.svg.\n\n"
      << question_and_answer;
   csv << "case,cell_mm,torque_N_m,error,cpu_s\n";
   newtonian_blades(md, csv);

@@ -34,7 +34,7 @@ std::string wide_cells_at_the_bars(const View& j) {
 }
 
 /// Depths and how far they reach are the grid's where a few cells make them: below these the passing ratio is
-/// up to 40 % off (lbox_cells.md).
+/// up to 40 % off (lbox_study.md).
 constexpr double least_behind_the_gate = 3.5, least_at_the_end = 1.0, least_along = 3.0;  // [cells]
 
 std::string few_cells(const View& j) {

@@ -25,7 +25,7 @@ bool in_a_section(const Scene& scene) { return scene.model.space == SpaceKind::a
 bool is_implicit(const Scene& scene) { return scene.model.scheme == SchemeKind::implicit; }
 
 /// Between the floor that holds it and its free surface a body of a cell has no rows of cells to shear: its spread is
-/// up to 20 % off (explicit.md), of one without a yield stress, which nothing else holds, still at its last cell but one.
+/// up to 20 % off (three_d.md), of one without a yield stress, which nothing else holds, still at its last cell but one.
 /// From 1.2 cells on a mix with a yield stress is within 5.3 %, by implicit steps in three dimensions from 1.5 on (6.3 % at
 /// 1.2, three_d.md). One that slides need not shear: 6 % from half a cell on.
 std::string too_thin(const View& j) {
