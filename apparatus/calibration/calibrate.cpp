@@ -13,7 +13,8 @@ namespace tremie::calibration {
 namespace {
 
 constexpr double enough = 1.0 / 3.0;  ///< of the measurement's error: what the emulator's may be
-constexpr double far_off = 3.0;       ///< standard errors at which a measurement contradicts the others
+constexpr double margin = 0.8;   ///< of that: the error of the cells, which comes last, widens the posterior
+constexpr double far_off = 3.0;  ///< standard errors at which a measurement contradicts the others
 constexpr double most_r_hat = 1.05, fewest_draws = 200.0;
 constexpr double contradiction = 0.01;  ///< chance of a chi square so large that calls for a reason
 
@@ -133,7 +134,8 @@ double error_near_posterior(const State& s, const Emulated& e) {
 
 bool emulators_suffice(const State& s) {
   return std::all_of(s.emulated.begin(), s.emulated.end(), [&](const Emulated& e) {
-    return !is_measured(s, e) || !e.trained || error_near_posterior(s, e) < enough * reading_of(s, e).error;
+    return !is_measured(s, e) || !e.trained ||
+           error_near_posterior(s, e) < margin * enough * reading_of(s, e).error;
   });
 }
 

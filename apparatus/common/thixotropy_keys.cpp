@@ -31,6 +31,7 @@ std::vector<Key> kinetics_keys() {
       else if (known->help.find(key.help) == std::string::npos)
         known->help += fmt::format("; {}: {}", kinetics.word, key.help);
       known->required = known->required && key.required;
+      known->varies = known->varies || stated.optional;
       known->only_with->words.emplace_back(kinetics.word);
     }
   });

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <sstream>
 
 #include "apparatus/parts/cone/cone_test.hpp"
 #include "apparatus/registry/registry.hpp"
@@ -398,6 +399,38 @@ TEST(SceneReader, TheTemplateIsAValidScene) {
     if (apparatus.keys.command != "run") continue;
     const std::string text = write_template(apparatus.keys);
     EXPECT_EQ(complaint(text), "") << text;
+  }
+}
+
+/// The lines of a text whose comment says "needed", and those that open sections.
+std::string needed_lines(const std::string& text) {
+  std::istringstream in(text);
+  std::string lines;
+  for (std::string line; std::getline(in, line);)
+    if (line.starts_with('[') || line.starts_with("apparatus") || line.find("# needed") != std::string::npos)
+      lines += line + "\n";
+  return lines;
+}
+
+std::string without_comments(const std::string& text) {
+  std::istringstream in(text);
+  std::string lines;
+  for (std::string line; std::getline(in, line);) {
+    line.erase(std::min(line.find('#'), line.size()));
+    line.erase(line.find_last_not_of(' ') + 1);
+    if (!line.empty()) lines += line + "\n";
+  }
+  return lines;
+}
+
+// "Every line shows its default and may be left out": a key whose default is another kinetics' once opened a gate.
+TEST(SceneReader, TheTemplateShowsTheDefaults) {
+  for (const auto& apparatus : all_apparatus()) {
+    if (apparatus.keys.command != "run") continue;
+    const std::string text = write_template(apparatus.keys);
+    EXPECT_EQ(without_comments(read_text(text, "a.toml").resolved),
+              without_comments(read_text(needed_lines(text), "a.toml").resolved))
+        << apparatus.keys.name;
   }
 }
 
