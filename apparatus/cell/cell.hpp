@@ -5,7 +5,7 @@
 #include <string>
 
 #include "apparatus/common/apparatus.hpp"
-#include "rheometer/reference/material_cell.hpp"
+#include "rheometer/cell/material_cell.hpp"
 
 namespace tremie::cell {
 

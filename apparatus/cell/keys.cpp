@@ -126,7 +126,7 @@ scene::ApparatusKeys keys() {
           .help = "One material cell at a prescribed shear rate: tremie cell.",
           .schema = scene::joined(
               {{top_section()}, scene::mix_sections(), {test_section(), history_section(), model_section()}}),
-          .settle = scene::settle_mix,
+          .settle = [](Values& values) { scene::settle_mix_with(values, {.elastic = true}); },
           .command = "cell"};
 }
 

@@ -24,6 +24,7 @@ struct View {
 
 /// The largest of the stresses [Pa]; empty where no sample has one.
 std::optional<double> largest_stress(const View& v) {
+  if (v.r.peak) return v.r.peak->stress;
   std::optional<double> largest;
   for (const CellSample& s : v.series)
     if (s.shear_stress) largest = std::max(largest.value_or(*s.shear_stress), *s.shear_stress);
@@ -41,6 +42,13 @@ std::vector<std::string> stress_lines(const View& v) {
           "flocculation         " + shown(last.flocculation, ""),
           "largest error        " + shown(v.r.flocculation_error_max, " of lambda against CVODE"),
           "hysteresis area      " + shown(v.r.hysteresis_area, " Pa/s")};
+}
+
+bool is_elastic(const View& v) { return v.r.peak.has_value(); }
+
+std::vector<std::string> elastic_lines(const View& v) {
+  return {fmt::format("strain at its peak   {:.4g}", v.r.peak->strain),
+          "largest error        " + shown(v.r.stress_error_max, " Pa of the stress against CVODE")};
 }
 
 std::vector<std::string> comparison_lines(const View& v) {
@@ -71,13 +79,31 @@ const std::vector<scene::Reading<View>>& readings() {
        .words = "largest difference of λ from CVODE",
        .value = [](V v) { return number(v.r.flocculation_error_max); },
        .lines = comparison_lines},
+      {.name = "strain_at_stress_max",
+       .words = "shear strain since the shear began, at the largest stress",
+       .value = [](V v) { return number(v.r.peak->strain); },
+       .applies = is_elastic,
+       .lines = elastic_lines},
+      {.name = "stress_error_max_Pa",
+       .words = "largest difference of the stress from CVODE",
+       .value = [](V v) { return number(v.r.stress_error_max); },
+       .applies = is_elastic},
       {"time_s", "time since the start of the test", {}, [](V, S s) { return s.time; }},
       {"shear_rate_per_s", "", {}, [](V, S s) { return s.shear_rate; }},
       {"shear_stress_Pa", "", {}, [](V, S s) { return or_nan(s.shear_stress); }},
       {"flocculation", "flocculation state λ", {}, [](V, S s) { return or_nan(s.flocculation); }},
-      {"flocculation_reference", "flocculation state λ by CVODE", {}, [](V, S s) {
-         return or_nan(s.flocculation_reference);
-       }}};
+      {"flocculation_reference",
+       "flocculation state λ by CVODE",
+       {},
+       [](V, S s) { return or_nan(s.flocculation_reference); }},
+      {.name = "strain",
+       .words = "shear strain since the shear began",
+       .at = [](V, S s) { return or_nan(s.strain); },
+       .applies = is_elastic},
+      {.name = "shear_stress_reference_Pa",
+       .words = "shear stress by CVODE",
+       .at = [](V, S s) { return or_nan(s.shear_stress_reference); },
+       .applies = is_elastic}};
   return table;
 }
 
@@ -90,6 +116,15 @@ std::string update_is_off(const View& v) {
   return fmt::format(
       "the flocculation's update is {:.2g} off CVODE, more than 1 % of its largest value: a "
       "smaller model.time_step",
+      *error);
+}
+
+/// A reason where the elastic cell's stress is off its reference.
+std::string stress_is_off(const View& v) {
+  const auto& error = v.r.stress_error_max;
+  if (!error || !(*error > 0.01 * v.r.peak->stress)) return {};
+  return fmt::format(
+      "the stress is {:.2g} Pa off CVODE, more than 1 % of its largest value: a smaller model.time_step",
       *error);
 }
 
@@ -121,7 +156,7 @@ scene::Outcome outcome(const Scene& scene, const CellResult& result) {
   read_into(readings(), view, o);
   o.asked = scene.name + ", one material cell";
   o.has_points = false;
-  scene::add_reasons<View>({update_is_off}, view, o.checks.reasons);
+  scene::add_reasons<View>({update_is_off, stress_is_off}, view, o.checks.reasons);
   o.cost.steps = result.steps;
   o.cost.points = 1;
   o.cost.simulated = result.samples.back().time;
@@ -133,7 +168,10 @@ std::vector<std::string> uses(const std::any& any_scene) {
   const MaterialCell& cell = std::any_cast<Scene>(&any_scene)->cell;
   return {fmt::format("{} pieces of the history; no points, no grid", cell.history.size()),
           fmt::format("flocculation: {}",
-                      cell.mix.thixotropy ? "computed, and by CVODE beside it" : "not computed")};
+                      cell.mix.thixotropy ? "computed, and by CVODE beside it" : "not computed"),
+          cell.mix.G > 0.0
+              ? fmt::format("below the yield stress: elastic, {:g} Pa, and by CVODE beside it", cell.mix.G)
+              : "below the yield stress: rigid (no mix.shear_modulus)"};
 }
 
 }  // namespace

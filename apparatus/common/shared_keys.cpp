@@ -49,6 +49,11 @@ Section material_section(const std::string& bulk_modulus) {
            .range = positive,
            .fallback = bulk_modulus,
            .help = "K; or youngs_modulus and poisson_ratio"},
+          {.name = "shear_modulus",
+           .dimension = Dimension::pressure,
+           .range = positive,
+           .example = "2 kPa",
+           .help = "G: elastic below the yield stress; cell alone, flows are rigid there"},
           {.name = "youngs_modulus",
            .dimension = Dimension::pressure,
            .range = positive,
@@ -108,16 +113,34 @@ void settle_bulk_modulus(Values& values) {
   values.drop(nu);
 }
 
+constexpr const char* shear_modulus_key = "mix.shear_modulus";
+
+void check_shear_modulus(const Values& values, bool elastic) {
+  if (!elastic)
+    values.fail(
+        shear_modulus_key,
+        "is known to apparatus = \"cell\" alone: a flow takes concrete below its yield stress for rigid; "
+        "leave it out here");
+  if (values.word("model.yield") != ExactBingham::word)
+    values.fail(shear_modulus_key,
+                "stands beside model.yield = \"" + values.word("model.yield") +
+                    "\", by which concrete flows below its yield stress; allowed beside it: \"" +
+                    std::string(ExactBingham::word) + "\"");
+}
+
 }  // namespace
 
 Schema mix_sections(const std::string& bulk_modulus) {
   return {material_section(bulk_modulus), thixotropy_section()};
 }
 
-void settle_mix(Values& values) {
+void settle_mix(Values& values) { settle_mix_with(values, {}); }
+
+void settle_mix_with(Values& values, const MixAbilities& can) {
   settle_bulk_modulus(values);
   settle_law(values);
-  settle_thixotropy(values);
+  settle_thixotropy(values, can.layer);
+  if (values.has(shear_modulus_key)) check_shear_modulus(values, can.elastic);
 }
 
 Mix read_mix(const Values& values) {
@@ -127,6 +150,7 @@ Mix read_mix(const Values& values) {
   mix.mu = values.has("mix.plastic_viscosity") ? values.number("mix.plastic_viscosity")
                                                : newtonian(read_law(values));
   mix.K = values.number("mix.bulk_modulus");
+  if (values.has(shear_modulus_key)) mix.G = values.number(shear_modulus_key);
   mix.thixotropy = read_thixotropy(values);
   return mix;
 }

@@ -18,6 +18,14 @@ Schema mix_sections(const std::string& bulk_modulus = "1 MPa");
 /// Rules of the mix: one way to give K, yield stress with thixotropy. Call it from ApparatusKeys::settle.
 void settle_mix(Values& values);
 
+/// What an apparatus can compute beyond a rigid material whose structure breaks down by the shear rate at the point.
+struct MixAbilities {
+  bool elastic = false;  ///< mix.shear_modulus
+  bool layer = false;    ///< mix.thixotropy.layer
+};
+/// The same for an apparatus that can; a key that the apparatus cannot compute is an InputError.
+void settle_mix_with(Values& values, const MixAbilities& can);
+
 Mix read_mix(const Values& values);
 
 /// Keys that the schedules of several tests have.

@@ -41,6 +41,7 @@ std::vector<Key> kinetics_keys() {
 }
 
 constexpr const char* modes_key = "mix.thixotropy.modes";
+constexpr const char* layer_key = "mix.thixotropy.layer";
 
 void check_modes(const Values& values) {
   if (!values.has(modes_key)) return;
@@ -93,6 +94,11 @@ Section thixotropy_section() {
                   .only_with = Condition{"kinetics", {std::string(RatePowerKinetics::word)}},
                   .example = "[[0.6, 1.0], [0.3, 0.1], [0.1, 0.01]]",
                   .help = "share of lambda and of A_thix, factor on k, of each; one where it is left out"});
+  keys.push_back({.name = "layer",
+                  .range = positive,
+                  .example = "5 mm",
+                  .help = "a grain: structure breaks down by the mean shear rate over this length; icar_vane "
+                          "alone"});
   keys.push_back(initial);
   return {.name = "mix.thixotropy",
           .help =
@@ -102,7 +108,7 @@ Section thixotropy_section() {
           .optional = true};
 }
 
-void settle_thixotropy(Values& values) {
+void settle_thixotropy(Values& values, bool layer_has_meaning) {
   if (!values.has_section("mix.thixotropy")) return;
   for_each_kinetics([&](const auto& kinetics) {
     if (kinetics.word != values.word("mix.thixotropy.kinetics")) return;
@@ -114,6 +120,10 @@ void settle_thixotropy(Values& values) {
                                           name_of(key.name), key.example));
   });
   check_modes(values);
+  if (values.has(layer_key) && !layer_has_meaning)
+    values.fail(layer_key,
+                "is a length over which the shear rate varies; allowed in apparatus = \"icar_vane\" alone, "
+                "which follows it between vane and container; leave it out here");
   if (values.number("mix.yield_stress") == 0.0)
     values.fail("mix.yield_stress",
                 "is 0 with [mix.thixotropy]: the flocculation state grows by A_thix/tau_0 and has no value; "
@@ -123,7 +133,8 @@ void settle_thixotropy(Values& values) {
 std::optional<Thixotropy> read_thixotropy(const Values& values) {
   if (!values.has_section("mix.thixotropy")) return std::nullopt;
   Thixotropy t{.A_thix = values.number("mix.thixotropy.structuration_rate"),
-               .initial_flocculation = values.number("mix.thixotropy.initial_flocculation")};
+               .initial_flocculation = values.number("mix.thixotropy.initial_flocculation"),
+               .layer = values.has(layer_key) ? values.number(layer_key) : 0.0};
   for_each_kinetics([&](auto kinetics) {
     if (kinetics.word != values.word("mix.thixotropy.kinetics")) return;
     for (const auto& key : kinetics.keys())

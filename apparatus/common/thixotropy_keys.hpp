@@ -13,8 +13,8 @@ namespace tremie::scene {
 Section thixotropy_section();
 
 /// Drops the defaults of keys that the scene's kinetics may go without. Throws InputError where the mix has no yield
-/// stress.
-void settle_thixotropy(Values& values);
+/// stress, or a layer that has no meaning in the apparatus.
+void settle_thixotropy(Values& values, bool layer_has_meaning);
 
 /// Empty without the table.
 std::optional<Thixotropy> read_thixotropy(const Values& values);

@@ -13,6 +13,8 @@ namespace tremie::icar_vane {
 namespace {
 
 constexpr double largest_dt = 0.02;  // resolves the decay: lambda follows the flow by one step [s]
+constexpr double slow_tolerance =
+    1e-4;                      // of the yield solver where a layer is given: a slow vane's rates are small
 constexpr double reach = 1.2;  // of a step, in cells: points move along arcs, without error in a whole turn
 
 template <class Section>
@@ -92,6 +94,7 @@ Outcome run_section(const Scene& scene, const Section& section, const scene::Obs
   StepSettings settings = experiment::step_settings(scene.model);
   settings.keep_forces = true;
   settings.cfl = reach;
+  if (scene.mix.thixotropy && scene.mix.thixotropy->layer > 0.0) settings.admm.tolerance = slow_tolerance;
 
   Outcome outcome;
   double turned = 0.0, speed = 0.0, momentum = 0.0;

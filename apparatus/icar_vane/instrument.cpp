@@ -23,6 +23,9 @@ constexpr double agreement = 0.01;                 // of the three torques, once
 constexpr double agreement_with_reference = 0.02;  // of the torque at the end, Couette sections
 constexpr double agreement_regularised = 0.05;     // the same where the law is a regularised one
 constexpr double agreement_of_blades = 0.25;       // of blades' torque with a cylinder's, the law regularised
+constexpr double cells_of_width =
+    1.0;  // of the sheared width at the start, for a fall that the cells do not set
+constexpr double cells_of_layer = 2.0;  // of mix.thixotropy.layer, the same
 constexpr double settled = 1.0;  // from then on inertia is balanced, and readings are the concrete's [s]
 
 Instrument instrument_of(const Vane& vane) {
@@ -86,7 +89,13 @@ std::optional<double> couette_reference(const Scene& scene, const Instrument& in
   if (!has_integrated_references()) return std::nullopt;
   flow.omega_of_time = [omega](double time) { return omega * start_up(time); };
   const double times[] = {0.0, scene.duration};
-  return thixotropic_couette(flow, times, instrument).torque.back();
+  CouetteOptions options;
+  if (const double layer = flow.thixotropy.layer; layer > 0.0)  // eight intervals to it at the vane
+    options.intervals =
+        std::clamp(static_cast<int>(8.0 * std::log(instrument.container_radius / instrument.vane_radius) *
+                                    instrument.vane_radius / layer),
+                   options.intervals, 4000);
+  return thixotropic_couette(flow, times, instrument, options).torque.back();
 }
 
 /// Time over which the torques at the end are averaged [s], clear of the start.
@@ -185,6 +194,26 @@ void check_torques_agree(const Scene& scene, Outcome& outcome) {
                              : "the flow is not steady, or the cells are too large"));
 }
 
+/// Adds a reason where breakdown that hardly depends on the rate narrows the sheared width to a cell.
+void check_localisation(const Scene& scene, Outcome& outcome) {
+  const auto width = sheared_width(scene);
+  const double cell = scene.model.cell[0], layer = scene.mix.thixotropy ? scene.mix.thixotropy->layer : 0.0;
+  if (!width || outcome.series.back().time < settled) return;
+  if (layer > 0.0 && layer < cells_of_layer * cell)
+    outcome.checks.reasons.push_back(fmt::format(
+        "mix.thixotropy.layer is {:.3g} cells: the fall of the torque hangs on the cells below {:g}; "
+        "use model.cell = \"{:.3g} mm\" or less",
+        layer / cell, cells_of_layer, 1e3 * layer / cells_of_layer));
+  if (layer == 0.0 && *width < cells_of_width * cell)
+    outcome.checks.reasons.push_back(
+        fmt::format("the rested concrete is sheared {:.2g} mm wide at the vane, {:.2g} cells: below {:g} the "
+                    "fall of the torque "
+                    "hangs on the cells; give a length of the material, mix.thixotropy.layer, or model.cell "
+                    "= \"{:.2g} mm\" "
+                    "or less",
+                    1e3 * *width, *width / cell, cells_of_width, 1e3 * *width / cells_of_width));
+}
+
 /// Adds a reason where a Couette section's torque at the end is not that of the radial equations, which its
 /// own three readings cannot tell when all of them follow one wrong stress.
 void check_against_reference(const Scene& scene, Outcome& outcome) {
@@ -217,12 +246,45 @@ std::optional<double> apparent_flocculation(const Scene& scene, double torque, d
   return apparent_lambda(std::abs(torque), offset, scene.mix.tau_0, instrument);
 }
 
+std::optional<double> sheared_width(const Scene& scene) {
+  const auto& t = scene.mix.thixotropy;
+  if (!t || !breaks_down(t->kinetics) || !slow_shear_breaks_down(t->kinetics) || !is_exact(scene.model.law))
+    return std::nullopt;
+  double slowest = std::abs(scene.speeds.empty() ? scene.speed : scene.speeds.front());
+  for (const double speed : scene.speeds) slowest = std::min(slowest, std::abs(speed));
+  if (slowest == 0.0 || !(scene.rest > 0.0 || t->initial_flocculation > 0.0)) return std::nullopt;
+  const double lambda = flocculation_after_rest(t->initial_flocculation, *t, scene.mix.tau_0, scene.rest);
+  const auto* power = std::get_if<HerschelBulkley>(&scene.model.law);
+  const HerschelBulkleyFluid fluid{static_yield_stress(lambda, scene.mix.tau_0),
+                                   power && power->n != 1.0 ? power->k : scene.mix.mu,
+                                   power ? power->n : 1.0};
+  return steady_torque(fluid, angular_speed(slowest), instrument_of(scene.vane)).sheared_radius -
+         scene.vane.radius;
+}
+
+std::vector<std::string> localisation_use(const Scene& scene) {
+  const auto width = sheared_width(scene);
+  if (!width) return {};
+  const double layer = scene.mix.thixotropy->layer, cell = scene.model.cell[0];
+  std::vector<std::string> lines{
+      fmt::format("sheared width of the rested concrete at the vane: {:.3g} mm at the start, {:.2g} cells",
+                  1e3 * *width, *width / cell)};
+  lines.push_back(layer > 0.0 ? fmt::format("breakdown: by the mean shear rate over {:g} mm, {:.2g} cells",
+                                            1e3 * layer, layer / cell)
+                              : fmt::format("breakdown: by the shear rate at the point; below {:g} cells of "
+                                            "sheared width the torque's fall hangs on them "
+                                            "(mix.thixotropy.layer)",
+                                            cells_of_width));
+  return lines;
+}
+
 std::string progress_text(const Sample& s) { return fmt::format("torque {:.3f} N.m", s.torque); }
 
 void read_and_check(const Scene& scene, Outcome& outcome) {
   read_instrument(scene, outcome);
   check_torques_agree(scene, outcome);
   check_against_reference(scene, outcome);
+  check_localisation(scene, outcome);
 }
 
 }  // namespace tremie::icar_vane

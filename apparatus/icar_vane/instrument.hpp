@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "apparatus/icar_vane/icar_vane.hpp"
 
@@ -15,6 +16,13 @@ std::optional<double> apparent_flocculation(const Scene& scene, double torque, d
 
 /// "torque 0.512 N.m": while a run goes on.
 std::string progress_text(const Sample& sample);
+
+/// How wide the rested concrete is sheared at the vane when it starts at its slowest speed, by the law's Couette flow [m];
+/// empty where it is nothing that breakdown narrows: without breakdown, by Roussel's power of the rate, a regularised law.
+std::optional<double> sheared_width(const Scene& scene);
+
+/// What `tremie check` says of it: where the fall of the torque hangs on the cells.
+std::vector<std::string> localisation_use(const Scene& scene);
 
 /// Fills the results from the series, and adds the reasons why they are not to be trusted.
 void read_and_check(const Scene& scene, Outcome& outcome);

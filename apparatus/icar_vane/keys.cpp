@@ -191,7 +191,7 @@ void check_steady(const Values& values, const Scene& scene) {
 }
 
 void settle(Values& values) {
-  settle_mix(values);
+  settle_mix_with(values, {.layer = true});
   settle_schedule(values);
   settle_cell(values);
   check_schedule(values);

@@ -6,6 +6,7 @@
 
 #include "apparatus/common/flow_readings.hpp"
 #include "apparatus/icar_vane/ends.hpp"
+#include "apparatus/icar_vane/instrument.hpp"
 #include "rheometer/reference/instrument.hpp"
 #include "rheometer/reference/references.hpp"
 
@@ -429,6 +430,7 @@ std::vector<std::string> uses(const Scene& scene) {
   lines.push_back(
       plane ? fmt::format("blades: {} of {:g} mm", scene.vane.blades, scene.vane.blade_thickness * mm)
             : "blades: left out (model.space = \"couette\"): the vane is a solid cylinder");
+  for (std::string& line : localisation_use(scene)) lines.push_back(std::move(line));
   lines.push_back("end effects above and below the vane: neglected");
   lines.push_back("third dimension: left out (model.space)");
   lines.push_back(flow_curve_use(scene));

@@ -13,6 +13,8 @@ using Json = nlohmann::ordered_json;
 Json start_up_json(const StartUpReading& s, bool stress) {
   return {{stress ? "peak_shear_stress_Pa" : "peak_torque_N_m", s.peak_torque},
           {"peak_time_s", s.peak_time},
+          {stress ? "peak_strain" : "peak_angle_rad",
+           stress ? s.peak_angle / evenly_sheared_speed : s.peak_angle},
           {"peak_inside", s.peak_inside},
           {stress ? "end_shear_stress_Pa" : "end_torque_N_m", s.end_torque},
           {"static_yield_stress_Pa", json_of(s.static_yield_stress)},

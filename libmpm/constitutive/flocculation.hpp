@@ -14,6 +14,9 @@ struct Thixotropy {
   double A_thix = 0.0;  ///< structuration rate at rest [Pa/s]
   Kinetics kinetics = {};
   double initial_flocculation = 0;  ///< lambda before any rest
+  /// The shear rate that breaks structure down is its mean over the concrete within this length, weighted by 1 -
+  /// distance/layer [m]; 0: the rate at the point itself.
+  double layer = 0.0;
 };
 
 /// lambda after a rest of duration `rest`, in closed form.

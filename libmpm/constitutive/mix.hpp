@@ -12,6 +12,7 @@ struct Mix {
   double tau_0 = 0.0;       ///< dynamic yield stress [Pa]
   double mu = 0.0;          ///< plastic viscosity [Pa s]
   double K = 1e6;           ///< bulk modulus [Pa]
+  double G = 0.0;           ///< shear modulus below the yield stress [Pa]; 0: rigid, as every flow has it
   std::optional<Thixotropy> thixotropy;
 };
 

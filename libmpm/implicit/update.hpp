@@ -2,6 +2,7 @@
 
 // After the solve: what the new velocities make of the state of the points, and what a step tells of itself.
 
+#include "libmpm/particles/layer_mean.hpp"
 #include "libmpm/implicit/solve.hpp"
 
 namespace tremie::detail {
@@ -61,6 +62,8 @@ void update_flocculation(const YieldProblem<Geometry>& problem, const YieldLaw& 
   shear_rate_at_points<Geometry>(body.grid, body.v, points, gamma_dot);
   if (is_exact(law) && slow_shear_breaks_down(body.mix.thixotropy->kinetics))
     clear_rigid_cells<Form>(problem, law, body, gamma_dot);
+  if (const double layer = body.mix.thixotropy->layer; layer > 0.0)
+    gamma_dot = layer_means<Geometry>(body.grid, points, gamma_dot, layer);
 #pragma omp parallel for schedule(static)
   for (std::size_t p = 0; p < points.size(); ++p)
     points.lambda[p] = flocculation_step(points.lambda[p], *body.mix.thixotropy, body.mix.tau_0,

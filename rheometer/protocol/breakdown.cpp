@@ -215,9 +215,14 @@ Breakdown breakdown_of(const std::vector<Fall>& all, const Instrument& instrumen
     const auto half = excess_half_time(f);
     if (!half || !(f.omega > 0.0)) continue;
     whole.push_back(f);
-    shear_rate.push_back(newtonian_shear_rate(f.omega, instrument));
+    shear_rate.push_back(newtonian_shear_rate(plastic_speed(f), instrument));
     b.times.push_back({f.section, f.omega, shear_rate.back(), *half, f.time[onset_of(f)], {}, {}, {}});
   }
+  if (std::any_of(whole.begin(), whole.end(), [](const Fall& f) { return f.compliance > 0.0; }))
+    b.notes.push_back(
+        "breakdown_rate: by plastic shear rates: to the vane's speed in a start-up comes the elastic turn "
+        "that "
+        "its torque gives back while it falls");
   Falls falls{rows_of(whole, shear_rate), {}, {}, 0.0};
   const bool two_speeds = has_two_speeds(falls.rows.shear_rate);
   if (!two_speeds)

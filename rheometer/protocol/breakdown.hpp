@@ -16,7 +16,8 @@ namespace tremie {
 
 struct BreakdownTime {
   std::size_t section = 0;
-  double omega = 0.0, rate = 0.0;  ///< [rad/s]; shear rate at the vane of a Newtonian fluid [1/s]
+  double omega = 0.0,
+         rate = 0.0;  ///< [rad/s]; shear rate at the vane of a Newtonian fluid, plastic if asked for [1/s]
   double half_time = 0.0;  ///< until half of the torque's excess over its end is lost, from the peak on [s]
   double onset = 0.0;      ///< from the peak until the fit begins [s] (onset_of)
   std::optional<double> breakdown_rate;    ///< of the first mode, by the joint fit [1/s]

@@ -89,4 +89,13 @@ std::size_t onset_of(const Fall& f) {
   return static_cast<std::size_t>(onset - slope.begin());
 }
 
+double plastic_speed(const Fall& f) {
+  if (!(f.compliance > 0.0)) return f.omega;
+  const std::size_t onset = onset_of(f);
+  const double half = 0.5 * (f.torque[onset] + end_of(f.torque));
+  std::size_t i = onset + 1;
+  while (i + 1 < f.torque.size() && f.torque[i] > half) ++i;
+  return f.omega + f.compliance * (f.torque[onset] - f.torque[i]) / (f.time[i] - f.time[onset]);
+}
+
 }  // namespace tremie

@@ -176,12 +176,27 @@ class Reader {
     std::vector<Section> sections;
     for (const SectionReading& s : result_.sections) sections.push_back(s.section);
     Breakdown& b = result_.breakdown;
-    b = breakdown_of(falls_of(record_, sections), input_.instrument, input_.choose_kinetics);
+    std::vector<Fall> falls = falls_of(record_, sections);
+    if (options_.elastic) add_compliance(falls);
+    b = breakdown_of(falls, input_.instrument, input_.choose_kinetics);
     if (options_.blades && !b.times.empty())
       b.notes.push_back(
           "breakdown_rate: by the vane's torques as they stand; with four blades it reads some 10 % less "
           "than with a "
           "cylinder, the exponent the same");
+  }
+
+  /// A start-up without a rise of its own has the mean compliance of the others.
+  void add_compliance(std::vector<Fall>& falls) const {
+    double sum = 0.0, n = 0.0;
+    const auto rise_of = [&](const Fall& f) {
+      const auto& start_up = result_.sections[f.section - 1].start_up;
+      return start_up ? start_up->rise : std::nullopt;
+    };
+    for (const Fall& f : falls)
+      if (const auto rise = rise_of(f)) sum += 1.0 / *rise, n += 1.0;
+    for (Fall& f : falls)
+      if (f.start_up && n > 0.0) f.compliance = rise_of(f) ? 1.0 / *rise_of(f) : sum / n;
   }
 
   const ProtocolRecord& record_;

@@ -20,11 +20,13 @@ struct StartUpReading {
   double peak_torque = 0.0;  ///< [N m]
   double peak_time = 0.0;    ///< since the vane began to turn [s]
   double end_torque = 0.0;   ///< at the end of the section [N m]
+  double peak_angle = 0.0;   ///< that the vane has turned by then [rad]
   bool peak_inside = false;  ///< false: the torque still rises at the end, so the peak is a lower bound
   std::optional<double> static_yield_stress;  ///< of the peak [Pa]
   /// The same without the viscous stress at this speed, by the record's flow curve [Pa].
   std::optional<double> static_by_law;
-  std::optional<double> shear_modulus;  ///< of the rise to half the peak [Pa]
+  std::optional<double> rise;           ///< of the torque over the angle up to half the peak [N m/rad]
+  std::optional<double> shear_modulus;  ///< of that rise [Pa]
 };
 
 /// The shape of a decay behind its peak, without a material: T_end + C e^(-t/t_0) against T_end + C (1 + t/t_0)^(-m).
@@ -72,6 +74,7 @@ struct ProtocolReading {
 
 struct ProtocolOptions {
   double compliance = 0.0;           ///< of the instrument: its own turn by torque [rad/(N m)]
+  bool elastic = false;              ///< breakdown by the plastic shear rates of start-ups (plastic_speed)
   std::optional<BladeTable> blades;  ///< corrects the torques of a vane with four thin blades
 };
 

@@ -33,6 +33,14 @@ std::optional<double> rise(const ProtocolRecord& r, std::size_t begin, std::size
   return slope > 0.0 ? std::optional(slope) : std::nullopt;
 }
 
+/// Angle [rad] that the vane has turned from its start to the peak.
+double angle_until(const ProtocolRecord& r, std::size_t begin, std::size_t peak) {
+  double turned = 0.0;
+  for (std::size_t i = std::max<std::size_t>(begin, 1); i <= peak; ++i)
+    turned += 0.5 * (r.omega[i] + r.omega[i - 1]) * (r.time[i] - r.time[i - 1]);
+  return turned;
+}
+
 /// Whether rows up to the peak share their times, as in an export that rounds them to fewer digits than its rows need.
 bool times_are_rounded(const ProtocolRecord& r, std::size_t begin, std::size_t peak) {
   int shared = 0;
@@ -70,6 +78,7 @@ StartUpReading read_start_up(const ProtocolRecord& r, const Section& s, const In
   reading.peak_torque = r.torque[peak];
   reading.end_torque = r.torque[s.end - 1];
   reading.peak_time = r.time[peak] - (s.begin > 0 ? r.time[s.begin - 1] : r.time[s.begin]);
+  reading.peak_angle = angle_until(r, s.begin, peak);
   // the torque has to fall again, by more than a reading's scatter
   reading.peak_inside = peak > s.begin && peak + 2 < s.end && reading.end_torque < 0.98 * reading.peak_torque;
   const auto section = [&](const std::vector<double>& v) {
@@ -88,7 +97,8 @@ StartUpReading read_start_up(const ProtocolRecord& r, const Section& s, const In
       notes.push_back(
           "shear_modulus: several rows share one time, so that the rise over the angle is not told");
     else
-      reading.shear_modulus = modulus(rise(r, s.begin, peak), in, options, notes);
+      reading.rise = rise(r, s.begin, peak),
+      reading.shear_modulus = modulus(reading.rise, in, options, notes);
   } else {
     notes.push_back(peak <= s.begin + 1
                         ? "static_yield_stress: the torque does not rise, so no start-up was recorded"

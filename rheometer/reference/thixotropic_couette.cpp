@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "rheometer/reference/couette_flow.hpp"
+#include "rheometer/reference/couette_layer.hpp"
 #include "rheometer/reference/kinetics_equations.hpp"
 #include "rheometer/reference/sundials_support.hpp"
 
@@ -33,6 +34,9 @@ struct Gap {
   std::vector<double> x, stress_share;  ///< ln(r/R_i) and (R_i/r)^2 of the nodes
   std::vector<char> flowing;            ///< the gate's side, gated alone
   std::function<double(double)> omega;
+  double compliance = 0.0;       ///< int exp(-2 x) dx / G over the whole gap [1/Pa]; 0: rigid below yield
+  std::vector<LayerMean> means;  ///< of the rate that breaks structure down; none: the rate at the node
+  std::unique_ptr<BandMatrix> band = {};  ///< of Newton's system with these
 
   std::size_t nodes() const { return x.size(); }
   /// Of the interval before node i.
@@ -132,6 +136,31 @@ double speed_of(const Gap& gap, std::span<const double> y, std::vector<double>* 
   return sum;
 }
 
+/// int gamma_dot dx over each interval, with its derivatives.
+void integrate_intervals(const Gap& gap, std::span<const double> y, std::vector<PositivePart>& intervals) {
+  intervals.clear();
+  double left = gap.excess(0, y);
+  for (std::size_t i = 1; i < gap.nodes(); ++i) {
+    const double right = gap.excess(i, y);
+    intervals.push_back(gap.power == 1.0 ? positive_part(left, right, gap.dx)
+                                         : positive_power(left, right, gap.power, gap.interval(i)));
+    left = right;
+  }
+}
+
+/// The shear rates that break structure down at the nodes, where they are means over a layer; nothing where they are
+/// those at the nodes.
+std::span<const double> mean_rates(const Gap& gap, std::span<const double> y, std::vector<double>& rates) {
+  if (gap.means.empty()) return {};
+  std::vector<PositivePart> intervals;
+  integrate_intervals(gap, y, intervals);
+  rates.assign(gap.nodes(), 0.0);
+  for (std::size_t i = 0; i < gap.nodes(); ++i)
+    for (std::size_t k = 0; k < gap.means[i].weight.size(); ++k)
+      rates[i] += gap.means[i].weight[k] * intervals[gap.means[i].first + k].integral;
+  return rates;
+}
+
 /// d(speed)/d(s) given the derivatives by the excess.
 double speed_by_stress(const Gap& gap, const std::vector<double>& d_excess) {
   double sum = 0.0;
@@ -163,14 +192,20 @@ void solve_stress(const Gap& gap, std::span<double> y, double omega) {
 /// Time derivatives that agree with the state: the kinetics, and the constraint differentiated.
 void consistent_rates(const Gap& gap, double t, std::span<const double> y, std::span<double> rates) {
   std::vector<double> d_excess;
-  speed_of(gap, y, &d_excess);
+  const double speed = speed_of(gap, y, &d_excess);
+  std::vector<double> buffer;
+  const std::span<const double> mean = mean_rates(gap, y, buffer);
   double by_lambda = 0.0;
   for (std::size_t i = 0, at = 0; i < gap.nodes(); ++i) {
-    const double gamma_dot = gap.gamma_dot(i, y);
+    const double gamma_dot = mean.empty() ? gap.gamma_dot(i, y) : mean[i];
     for (std::size_t j = 0; j < gap.parts.size(); ++j, ++at) {
       rates[at] = gap.rate_of_part(i, j, y[at], gamma_dot);
       by_lambda -= d_excess[i] * gap.tau_0 / gap.mu * rates[at];
     }
+  }
+  if (gap.compliance > 0.0) {
+    rates[gap.unknowns()] = (gap.omega(t) - speed) / gap.compliance;
+    return;
   }
   const double dt = 1e-6, d_omega = (gap.omega(t + dt) - gap.omega(t)) / dt;
   rates[gap.unknowns()] = (d_omega - by_lambda) / speed_by_stress(gap, d_excess);
@@ -179,19 +214,25 @@ void consistent_rates(const Gap& gap, double t, std::span<const double> y, std::
 int residual(sunrealtype t, N_Vector y_vector, N_Vector rates_vector, N_Vector result, void* user) {
   const Gap& gap = *static_cast<const Gap*>(user);
   const std::span<double> y = values(y_vector), rates = values(rates_vector), f = values(result);
+  std::vector<double> buffer;
+  const std::span<const double> mean = mean_rates(gap, y, buffer);
   for (std::size_t i = 0, at = 0; i < gap.nodes(); ++i) {
-    const double gamma_dot = gap.gamma_dot(i, y);
+    const double gamma_dot = mean.empty() ? gap.gamma_dot(i, y) : mean[i];
     for (std::size_t j = 0; j < gap.parts.size(); ++j, ++at)
       f[at] = rates[at] - gap.rate_of_part(i, j, y[at], gamma_dot);
   }
   f[gap.unknowns()] = speed_of(gap, y, nullptr) - gap.omega(t);
+  if (gap.compliance > 0.0) f[gap.unknowns()] += gap.compliance * rates[gap.unknowns()];
   return std::isfinite(f[gap.unknowns()]) ? 0 : 1;  // 1: IDA tries a smaller step
 }
 
 int distance_to_gate(sunrealtype, N_Vector y_vector, N_Vector, sunrealtype* g, void* user) {
   const Gap& gap = *static_cast<const Gap*>(user);
   const std::span<double> y = values(y_vector);
-  for (std::size_t i = 0; i < gap.nodes(); ++i) g[i] = gap.gamma_dot(i, y) - gap.gamma_c;
+  std::vector<double> buffer;
+  const std::span<const double> mean = mean_rates(gap, y, buffer);
+  for (std::size_t i = 0; i < gap.nodes(); ++i)
+    g[i] = (mean.empty() ? gap.gamma_dot(i, y) : mean[i]) - gap.gamma_c;
   return 0;
 }
 
@@ -243,6 +284,74 @@ std::pair<double, double> eliminated(const NodeBlock& block, std::span<const dou
   return {row * column / by_sum, row * right / by_sum};
 }
 
+/// The parts of a node by the mean rate and by themselves: the diagonal of Newton's system, and d(residual)/d(mean rate).
+struct ByMeanRate {
+  std::vector<double> diagonal, by_rate;
+};
+
+ByMeanRate by_mean_rate(const Gap& gap, std::span<const double> y, std::span<const double> mean, double cj) {
+  ByMeanRate by;
+  for (std::size_t i = 0, at = 0; i < gap.nodes(); ++i)
+    for (const Part& p : gap.parts) {
+      const auto d = kinetics_equations::derivatives_of(p.kinetics, gap.build_rate, y[at++] / p.share,
+                                                        mean[i], gap.flows(i, mean[i]));
+      by.diagonal.push_back(cj - d.build_by_lambda + d.k * d.broken_by_lambda);
+      by.by_rate.push_back(mean[i] > 0.0 ? p.share * d.k * d.broken_by_rate : 0.0);
+    }
+  return by;
+}
+
+/// Newton's system where the rate is a mean over a layer. Eliminating the parts leaves their sum at every node, a band of the
+/// mean's reach, and s.
+int solve_with_layer(const Gap& gap, std::span<const double> y, double cj, std::span<const double> b,
+                     std::span<double> x) {
+  const std::size_t n = gap.nodes(), parts = gap.parts.size();
+  std::vector<double> buffer, d_excess, sum(n, 0.0), by_sum(n, 0.0), by_s(n, 0.0), sum_by_s(n);
+  std::vector<PositivePart> intervals;
+  integrate_intervals(gap, y, intervals);
+  speed_of(gap, y, &d_excess);
+  const ByMeanRate by = by_mean_rate(gap, y, mean_rates(gap, y, buffer), cj);
+  for (std::size_t at = 0; at < n * parts; ++at) {
+    sum[at / parts] += b[at] / by.diagonal[at];
+    by_sum[at / parts] += by.by_rate[at] / by.diagonal[at];
+  }
+  const double by_lambda = -gap.tau_0 / gap.mu;  // of the excess
+  gap.band->set_to_zero();
+  for (std::size_t i = 0; i < n; ++i) {
+    gap.band->at(i, i) += 1.0;
+    for (std::size_t k = 0; k < gap.means[i].weight.size(); ++k) {
+      const std::size_t j = gap.means[i].first + k;
+      const double w = gap.means[i].weight[k] * by_sum[i];
+      gap.band->at(i, j) += w * intervals[j].d_a * by_lambda;
+      gap.band->at(i, j + 1) += w * intervals[j].d_b * by_lambda;
+      by_s[i] +=
+          w * (intervals[j].d_a * gap.stress_share[j] + intervals[j].d_b * gap.stress_share[j + 1]) / gap.mu;
+    }
+  }
+  if (!gap.band->factor()) return 1;  // recoverable: IDA tries a smaller step
+  gap.band->solve(sum, sum);
+  gap.band->solve(by_s, sum_by_s);
+  double pivot = speed_by_stress(gap, d_excess) + cj * gap.compliance, right = b[gap.unknowns()];
+  for (std::size_t i = 0; i < n; ++i) {
+    pivot -= d_excess[i] * by_lambda * sum_by_s[i];
+    right -= d_excess[i] * by_lambda * sum[i];
+  }
+  if (!(std::abs(pivot) > 0.0)) return 1;
+  const double s = x[gap.unknowns()] = right / pivot;
+  std::vector<double> excess(n);
+  for (std::size_t i = 0; i < n; ++i)
+    excess[i] = gap.stress_share[i] / gap.mu * s + by_lambda * (sum[i] - sum_by_s[i] * s);
+  for (std::size_t i = 0, at = 0; i < n; ++i) {
+    double mean = 0.0;
+    for (std::size_t k = 0; k < gap.means[i].weight.size(); ++k) {
+      const std::size_t j = gap.means[i].first + k;
+      mean += gap.means[i].weight[k] * (intervals[j].d_a * excess[j] + intervals[j].d_b * excess[j + 1]);
+    }
+    for (std::size_t j = 0; j < parts; ++j, ++at) x[at] = (b[at] - by.by_rate[at] * mean) / by.diagonal[at];
+  }
+  return 0;
+}
+
 /// Newton's system is an arrow: the parts of a node couple among themselves and to s, the constraint to all. Eliminating
 /// them leaves one equation for s, so a solve costs O(n) where a dense factorisation would cost O(n^3).
 int solve_arrow(SUNLinearSolver solver, SUNMatrix, N_Vector x_vector, N_Vector b_vector, sunrealtype) {
@@ -255,6 +364,7 @@ int solve_arrow(SUNLinearSolver solver, SUNMatrix, N_Vector x_vector, N_Vector b
   const Gap& gap = *static_cast<const Gap*>(user);
   const std::span<double> y = values(y_vector), x = values(x_vector), b = values(b_vector);
   const std::size_t n = gap.unknowns(), parts = gap.parts.size();
+  if (!gap.means.empty()) return solve_with_layer(gap, y, cj, b, x);
 
   thread_local std::vector<double> d_excess, blocks;
   speed_of(gap, y, &d_excess);
@@ -263,7 +373,7 @@ int solve_arrow(SUNLinearSolver solver, SUNMatrix, N_Vector x_vector, N_Vector b
     const std::span<double> all(blocks);
     return NodeBlock{all.subspan(at, parts), all.subspan(n + at, parts), all.subspan(2 * n + at, parts)};
   };
-  double pivot = speed_by_stress(gap, d_excess), right = b[n];
+  double pivot = speed_by_stress(gap, d_excess) + cj * gap.compliance, right = b[n];
   for (std::size_t i = 0; i < gap.nodes(); ++i) {
     const NodeBlock block = block_at(i * parts);
     fill_block(gap, i, y, cj, block);
@@ -303,12 +413,16 @@ void check(const CouetteFlow& flow) {
     throw std::invalid_argument("the yield stress and the plastic viscosity must be greater than 0");
   if (!(flow.flow_index >= 0.2 && flow.flow_index <= 2.0))
     throw std::invalid_argument("the flow index must lie between 0.2 and 2");
+  if (!(std::isfinite(flow.shear_modulus) && flow.shear_modulus >= 0.0))
+    throw std::invalid_argument("the shear modulus must be 0, for a rigid material, or greater");
+  if (!(std::isfinite(flow.thixotropy.layer) && flow.thixotropy.layer >= 0.0))
+    throw std::invalid_argument("the layer must be 0, for none, or greater");
   if (!flow.omega_of_time && !positive(flow.omega))
     throw std::invalid_argument("the speed must be greater than 0");
   kinetics_equations::check(flow.thixotropy, flow.thixotropy.initial_flocculation);
 }
 
-Gap make_gap(const CouetteFlow& flow, double width, const CouetteOptions& options) {
+Gap make_gap(const CouetteFlow& flow, double width, const Instrument& in, const CouetteOptions& options) {
   const Thixotropy& t = flow.thixotropy;
   Gap gap;
   gap.tau_0 = flow.bingham.tau_0;
@@ -326,6 +440,12 @@ Gap make_gap(const CouetteFlow& flow, double width, const CouetteOptions& option
     gap.x.push_back(gap.power == 1.0 ? i * gap.dx : width * share * share);
     gap.stress_share.push_back(std::exp(-2.0 * gap.x.back()));
   }
+  if (t.layer > 0.0) {
+    gap.means = layer_means(gap.x, t.layer / in.vane_radius);
+    gap.band = std::make_unique<BandMatrix>(gap.nodes(), reach_of(gap.means));
+  }
+  if (flow.shear_modulus > 0.0)
+    gap.compliance = 0.5 * (1.0 - std::pow(in.vane_radius / in.container_radius, 2)) / flow.shear_modulus;
   const double omega = flow.omega;
   gap.omega = flow.omega_of_time ? flow.omega_of_time : [omega](double) { return omega; };
   return gap;
@@ -341,10 +461,15 @@ class Integrator {
         solver_(arrow_solver(memory_.get(), context_)) {
     const std::span<double> y = values(y_.get);
     for (std::size_t i = 0; i < gap_.unknowns(); ++i) y[i] = gap_.parts[i % gap_.parts.size()].share * lambda;
-    solve_stress(gap_, y, gap_.omega(0.0));
+    if (gap_.compliance > 0.0)
+      y[gap_.unknowns()] = 0.0;
+    else
+      solve_stress(gap_, y, gap_.omega(0.0));
     if (!std::isfinite(y[gap_.unknowns()])) throw std::runtime_error("the Couette flow has no finite torque");
+    std::vector<double> buffer;
+    const std::span<const double> mean = mean_rates(gap_, y, buffer);
     for (std::size_t i = 0; i < gap_.nodes(); ++i)
-      gap_.flowing.push_back(gap_.gamma_dot(i, y) >= gap_.gamma_c);
+      gap_.flowing.push_back((mean.empty() ? gap_.gamma_dot(i, y) : mean[i]) >= gap_.gamma_c);
     consistent_rates(gap_, 0.0, y, values(rates_.get));
     void* m = memory_.get();
     sundials_ok(IDAInit(m, residual, 0.0, y_.get, rates_.get), "IDAInit");
@@ -407,7 +532,7 @@ class Integrator {
     }
     if (!changed) return;
     steps_before_ = steps();  // a new start sets the counter to 0
-    solve_stress(gap_, values(y_.get), gap_.omega(now_));
+    if (!(gap_.compliance > 0.0)) solve_stress(gap_, values(y_.get), gap_.omega(now_));
     consistent_rates(gap_, now_, values(y_.get), values(rates_.get));
     sundials_ok(IDAReInit(memory_.get(), now_, y_.get, rates_.get), "IDAReInit");
   }
@@ -448,7 +573,7 @@ double sheared_width(const CouetteFlow& flow, const Instrument& in) {
 std::optional<CouetteDecay> solve(const CouetteFlow& flow, std::span<const double> times,
                                   const Instrument& in, const CouetteOptions& options, double width,
                                   bool whole) {
-  Integrator integrator(make_gap(flow, width, options), flow.thixotropy.initial_flocculation, options);
+  Integrator integrator(make_gap(flow, width, in, options), flow.thixotropy.initial_flocculation, options);
   CouetteDecay result;
   for (const double x : integrator.gap().x) result.radius.push_back(in.vane_radius * std::exp(x));
   for (const double t : times) {
@@ -470,7 +595,7 @@ CouetteDecay thixotropic_couette(const CouetteFlow& flow, std::span<const double
   if (!std::is_sorted(times.begin(), times.end()) || (!times.empty() && times.front() < 0.0))
     throw std::invalid_argument("the times must ascend from 0 or later");
   const double gap = std::log(in.container_radius / in.vane_radius);
-  if (!options.whole_gap) {
+  if (!options.whole_gap && flow.thixotropy.layer == 0.0) {
     const double width = sheared_width(flow, in);
     if (width < gap)
       if (auto result = solve(flow, times, in, options, width, false)) return *std::move(result);

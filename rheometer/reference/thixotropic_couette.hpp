@@ -8,7 +8,10 @@
 //   d lambda/dt = A_thix/tau_0 - alpha lambda gamma_dot                                               equation (3),
 //
 // or any other kinetics of kinetics_equations.hpp; with modes lambda is the sum of parts, each with an equation of its own.
-// Material moves in circles, so every radius keeps its own lambda.
+// Material moves in circles, so every radius keeps its own lambda. With thixotropy.layer, gamma_dot in the kinetics is its
+// mean over that length (couette_layer.hpp). With a shear modulus G the material is elastic below its yield stress
+// (Saramito, J. Non-Newtonian Fluid Mech. 145 (2007) 1, at small strains): the vane's speed is then that of the equations
+// above and, in series, (1 - R_i^2/R_o^2) / (4 pi R_i^2 h G) dT/dt.
 //
 // Discretised on intervals of x = ln(r/R_i), equal ones for n = 1, else shorter at the vane, where a shear-thinning material
 // shears in a thin layer; the constraint is int gamma_dot dx: lambda at the
@@ -31,6 +34,7 @@ struct CouetteFlow {
   double omega = 0.0;                           ///< constant speed of the vane [rad/s], > 0
   std::function<double(double)> omega_of_time;  ///< if set, takes the place of omega; smooth, > 0
   double flow_index = 1.0;                      ///< n, 0.2 to 2; bingham.mu is then the consistency [Pa s^n]
+  double shear_modulus = 0.0;  ///< G below the yield stress, without stress at time 0 [Pa]; 0: rigid
 };
 
 struct CouetteOptions {

@@ -72,6 +72,10 @@ const std::vector<FitOption>& fit_options() {
              "Critical shear rate of the gated kinetics (default: \"0.1 1/s\")",
              {13, "critical_shear_rate_per_s"}),
       flag("protocol", &O::protocol, "Read every section of a record with time, speed and torque"),
+      flag("elastic", &O::elastic,
+           "With --protocol: k and a by plastic shear rates, as material that is elastic below its yield "
+           "stress "
+           "flows on while its torque falls"),
       number("instrument_compliance", &O::instrument_compliance, "rad/(N.m)",
              "Rotation of the instrument by its own torque: \"0.02 rad/(N.m)\"", {},
              OptionRange::not_negative),
@@ -154,6 +158,8 @@ void check(const FitOptions& o) {
         "--tribometer is a smooth cylinder's, by --vane-radius and --container-radius; not with --protocol, "
         "--ends, "
         "--blades or --geometry");
+  if (o.elastic && !o.protocol)
+    throw std::invalid_argument("--elastic is of the start-ups of a protocol: --protocol");
   if (!o.fill_height.empty() && !o.tribometer)
     throw std::invalid_argument("--fill-height is a tribometer's: --tribometer");
   if (o.blades != "none" && law_of(o) != flow_laws().front().name)

@@ -23,6 +23,7 @@ struct FitOptions {
   double critical_shear_rate = FitInput{}.gamma_c;
   bool protocol = false;
   double instrument_compliance = 0.0;  ///< [rad/(N m)]
+  bool elastic = false;                ///< a protocol's breakdown by plastic shear rates
   double torque_offset = 0.0;          ///< [N m] with its sign
   std::string ends = "none", blades = "none";
   std::optional<double> max_aggregate;

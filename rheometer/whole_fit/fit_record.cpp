@@ -243,7 +243,8 @@ ProtocolFit fit_protocol(const Fitting& f, const std::string& file, const FitInp
                                "geometry: " + geometry_words(f.reading, f.options, p.record.sheared_evenly));
     FitInput of_record = in;
     if (p.record.sheared_evenly) of_record.instrument = evenly_sheared();
-    ProtocolOptions options{.compliance = f.options.instrument_compliance, .blades = {}};
+    ProtocolOptions options{
+        .compliance = f.options.instrument_compliance, .elastic = f.options.elastic, .blades = {}};
     if (f.options.blades != "none") options.blades = f.blades();
     p.reading = read_protocol(p.record, of_record, options);
     return p;

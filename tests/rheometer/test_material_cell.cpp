@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "rheometer/records/torque_record.hpp"
-#include "rheometer/reference/material_cell.hpp"
+#include "rheometer/cell/material_cell.hpp"
 
 namespace tremie {
 namespace {

@@ -1,4 +1,4 @@
-#include "rheometer/reference/material_cell.hpp"
+#include "rheometer/cell/material_cell.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "rheometer/cell/elastic_cell.hpp"
+#include "rheometer/cell/elastic_ode.hpp"
 #include "rheometer/records/torque_record.hpp"
 #include "rheometer/reference/flocculation_ode.hpp"
 #include "rheometer/reference/references.hpp"
@@ -31,6 +33,7 @@ class Run {
     if (!t) return;
     lambda_ = flocculation_after_rest(t->initial_flocculation, *t, cell.mix.tau_0, cell.rest);
     for (const double share : part_shares(t->kinetics)) parts_.push_back(share * lambda_);
+    elastic_.lambda = lambda_, elastic_.parts = parts_;
   }
 
   CellResult operator()() {
@@ -42,7 +45,12 @@ class Run {
       for (long i = 1; i <= n; ++i) step(s, start, s.duration / static_cast<double>(n), i, n);
       start += s.duration;
     }
-    if (cell_.mix.thixotropy && has_integrated_references()) compare();
+    if (is_elastic()) {
+      result_.peak = {elastic_.largest_stress, elastic_.strain_at_largest_stress};
+      if (has_integrated_references()) compare_elastic();
+    } else if (cell_.mix.thixotropy && has_integrated_references()) {
+      compare();
+    }
     find_area();
     return std::move(result_);
   }
@@ -52,19 +60,27 @@ class Run {
     const auto rate = [&](long k) {
       return k == n ? s.to : s.from + (s.to - s.from) * static_cast<double>(k) / static_cast<double>(n);
     };
-    if (const auto& t = cell_.mix.thixotropy)
+    if (is_elastic()) {
+      advance(elastic_, cell_.mix, law_, rate(i - 1), rate(i), dt);
+      lambda_ = elastic_.lambda;
+    } else if (const auto& t = cell_.mix.thixotropy) {
       lambda_ = flocculation_step(lambda_, *t, cell_.mix.tau_0, rate(i - 1), rate(i), dt,
                                   [&](std::size_t part) -> double& { return parts_[part]; });
+    }
     add(i == n ? start + s.duration : start + static_cast<double>(i) * dt, rate(i));
     ++result_.steps;
   }
 
   void add(double time, double gamma_dot) {
     const double tau_y = static_yield_stress(lambda_, cell_.mix.tau_0);
-    const double stress = cell_.mix.mu * gamma_dot + tremie::stress(law_, gamma_dot, tau_y);
+    const double stress =
+        is_elastic() ? elastic_.stress : cell_.mix.mu * gamma_dot + tremie::stress(law_, gamma_dot, tau_y);
     stress_limit_.push_back(stress);
     CellSample sample{time, gamma_dot, stress, {}, {}};
-    if (is_exact(law_) && gamma_dot == 0.0 && tau_y > 0.0) sample.shear_stress.reset();
+    if (is_elastic())
+      sample.strain = elastic_.strain;
+    else if (is_exact(law_) && gamma_dot == 0.0 && tau_y > 0.0)
+      sample.shear_stress.reset();
     if (cell_.mix.thixotropy) sample.flocculation = lambda_;
     result_.samples.push_back(sample);
   }
@@ -86,6 +102,33 @@ class Run {
     }
   }
 
+  /// As compare(), of stress and lambda.
+  void compare_elastic() {
+    const Mix& mix = cell_.mix;
+    const auto* hb = std::get_if<HerschelBulkley>(&law_);
+    const HerschelBulkleyFluid fluid{mix.tau_0, hb && hb->n != 1.0 ? hb->k : mix.mu, hb ? hb->n : 1.0};
+    std::vector<double> times;
+    for (const CellSample& sample : result_.samples) times.push_back(sample.time);
+    const double lambda_0 = mix.thixotropy ? flocculation_after_rest(mix.thixotropy->initial_flocculation,
+                                                                     *mix.thixotropy, mix.tau_0, cell_.rest)
+                                           : 0.0;
+    const ElasticOdeResult reference =
+        elastic_ode(linear_pieces(cell_.history), {fluid, mix.G, mix.thixotropy}, lambda_0, times);
+    double off_stress = 0.0, off_lambda = 0.0;
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      CellSample& sample = result_.samples[i];
+      sample.shear_stress_reference = reference.stress[i];
+      off_stress = std::max(off_stress, std::abs(*sample.shear_stress - reference.stress[i]));
+      if (!sample.flocculation) continue;
+      sample.flocculation_reference = reference.lambda[i];
+      off_lambda = std::max(off_lambda, std::abs(*sample.flocculation - reference.lambda[i]));
+    }
+    result_.stress_error_max = off_stress;
+    if (mix.thixotropy) result_.flocculation_error_max = off_lambda;
+  }
+
+  bool is_elastic() const { return cell_.mix.G > 0.0; }
+
   void find_area() {
     const std::vector<CellSample>& s = result_.samples;
     const auto [low, high] = std::minmax_element(
@@ -101,6 +144,7 @@ class Run {
   const YieldLaw& law_;
   double lambda_ = 0.0;
   std::vector<double> parts_;  ///< of lambda_, where it has any
+  ElasticCell elastic_;        ///< where there is a shear modulus
   std::vector<double> stress_limit_;
   CellResult result_;
 };
@@ -112,6 +156,10 @@ CellResult run_cell(const MaterialCell& cell, const YieldLaw& law) {
   for (const ShearSegment& s : cell.history) linear_piece(s);  // throws where a segment is out of range
   if (cell.time_step && !(*cell.time_step > 0.0))
     throw std::invalid_argument("the time step must be greater than 0");
+  if (cell.mix.G > 0.0 && (!is_exact(law) || !(cell.mix.tau_0 > 0.0)))
+    throw std::invalid_argument(
+        "an elastic cell needs an exact law and a yield stress greater than 0: without them it flows at "
+        "once");
   return Run(cell, law)();
 }
 

@@ -5,7 +5,8 @@
 //   tau = mu gamma_dot + f(gamma_dot, (1 + lambda) tau_0)     equations (2), (27), (32), (33) in one
 //   dimension
 //
-// with lambda by the per-point update that the material points use, and beside it by CVODE.
+// with lambda by the per-point update that the material points use, and beside it by CVODE. With a shear modulus (mix.G)
+// the cell is elastic below its yield stress: elastic_cell.hpp.
 
 #include <optional>
 #include <string>
@@ -30,9 +31,16 @@ struct CellSample {
   double time = 0.0;        ///< [s]
   double shear_rate = 0.0;  ///< [1/s]
   /// [Pa]; empty where the law leaves it open: an exact Bingham material at rest, anything up to the yield
-  /// stress.
+  /// stress. An elastic one has a stress at all times.
   std::optional<double> shear_stress;
   std::optional<double> flocculation, flocculation_reference;  ///< empty without thixotropy
+  std::optional<double> strain = {};                           ///< since the shear began; elastic alone
+  std::optional<double> shear_stress_reference = {};           ///< by CVODE [Pa]; elastic alone
+};
+
+/// The largest stress of an elastic cell, between the samples too.
+struct StressPeak {
+  double stress = 0.0, strain = 0.0;  ///< [Pa]; since the shear began
 };
 
 struct CellResult {
@@ -45,9 +53,12 @@ struct CellResult {
   /// int tau d(gamma_dot) around the history, rising branch minus falling [Pa/s]; empty unless the shear rate
   /// ends where it began, with a change between.
   std::optional<double> hysteresis_area;
+  std::optional<StressPeak> peak = {};          ///< elastic alone
+  std::optional<double> stress_error_max = {};  ///< largest difference from CVODE [Pa]; elastic alone
 };
 
-/// Runs the cell. Throws std::invalid_argument for an empty history or values out of range.
+/// Runs the cell. Throws std::invalid_argument for an empty history, values out of range, or an elastic cell whose law flows
+/// below its yield stress.
 CellResult run_cell(const MaterialCell& cell, const YieldLaw& law);
 
 /// Reads a history from the text of a CSV with the columns time_s,shear_rate_per_s (format:
