@@ -33,6 +33,7 @@ Sample read(const Body<typename Section::Geometry>& body, const Scene& scene, co
   s.flocculation_apparent = apparent_flocculation(scene, s.torque, speed);
   s.time_step = step.dt;
   s.iterations = step.iterations;
+  s.slip = t.slip;
   return s;
 }
 
@@ -93,6 +94,7 @@ Outcome run_section(const Scene& scene, const Section& section, const scene::Obs
   experiment::rest(body, scene.rest);
   StepSettings settings = experiment::step_settings(scene.model);
   settings.keep_forces = true;
+  settings.wall_law = scene.walls;
   settings.cfl = reach;
   if (scene.mix.thixotropy && scene.mix.thixotropy->layer > 0.0) settings.admm.tolerance = slow_tolerance;
 

@@ -12,6 +12,7 @@
 #include "apparatus/common/apparatus.hpp"
 #include "apparatus/common/model.hpp"
 #include "apparatus/run/record.hpp"
+#include "libmpm/boundary/wall_law.hpp"
 #include "libmpm/constitutive/mix.hpp"
 
 namespace tremie::icar_vane {
@@ -23,7 +24,7 @@ struct Vane {
   double height = 0.127;
   double container_radius = 0.143;
   int blades = 4;                  ///< plane sections alone; a Couette section is a solid cylinder
-  double blade_thickness = 0.003;  ///< plane sections alone [m]
+  double blade_thickness = 0.003;  ///< plane and cylindrical [m]
   double shaft_radius = 0.01;      ///< about which the blades stand; plane and cylindrical [m]
   double bottom_gap = 0.0795;      ///< below the blades, cylindrical alone [m]
   double cover = 0.0795;           ///< concrete above the blades, cylindrical alone [m]
@@ -39,13 +40,23 @@ struct Scene {
   std::vector<double> speeds;  ///< a flow curve's speeds [rev/s]; empty: constant speed
   double pre_shear_speed = 0.5, pre_shear_time = 20.0;  ///< before a flow curve [rev/s], [s]
   double hold_time = 5.0;                               ///< of each speed of a flow curve [s]
-  double average_time = 2.0;    ///< the last part of each hold, over which the torque is averaged [s]
-  double orientation = 0.0;     ///< of the blades against the points, plane sections alone [rad]
-  Model model;                  ///< space couette, plane or cylindrical
-  double frame_interval = 0.0;  ///< [s]
+  double average_time = 2.0;     ///< the last part of each hold, over which the torque is averaged [s]
+  WallLaw walls;                 ///< along the container, or the cylinder: no_slip or interface
+  bool cylinder_slides = false;  ///< the law holds along the cylinder, the container holds; couette alone
+  double orientation = 0.0;      ///< of the blades against the points, plane sections alone [rad]
+  Model model;                   ///< space couette, plane or cylindrical
+  double frame_interval = 0.0;   ///< [s]
   int threads = 1;
   bool with_reference = true;  ///< read torque_couette_reference; no scene key, for runs that are coarser
 };
+
+inline FaceKind container_face(const Scene& scene) {
+  return scene.cylinder_slides ? FaceKind::no_slip : face(scene.walls);
+}
+inline FaceKind cylinder_face(const Scene& scene) {
+  return scene.cylinder_slides ? face(scene.walls) : FaceKind::no_slip;
+}
+inline bool slides(const Scene& scene) { return wall_stress(scene.walls).has_value(); }
 
 inline constexpr double start_up_time = 0.1;  ///< in which the vane reaches a new speed, evenly [s]
 inline constexpr double first_dt = 1e-3;      ///< the first step after a change of speed [s]
@@ -65,6 +76,7 @@ struct Sample {
   std::optional<double> flocculation_mean = {}, flocculation_apparent = {};  ///< equation (6) for the second
   double time_step = 0.0;                                                    ///< [s]
   int iterations = 0;
+  double slip = 0.0;  ///< mean speed of the concrete along the wall that slides [m/s]
 };
 
 /// Reiner-Riwlin's parameters from a flow curve.
@@ -85,6 +97,7 @@ struct ProfilePoint {
 
 struct Results {
   double torque_peak = 0.0, torque_end = 0.0, torque_wall_end = 0.0, torque_power_end = 0.0;  ///< [N m]
+  double slip_end = 0.0;                                                                      ///< [m/s]
   std::optional<ReinerRiwlin> reiner_riwlin = {};  ///< from a flow curve, as the instrument would report it
   /// Equation (6) at the peak and at the end of a constant speed [Pa]. A flow curve tells nothing of the
   /// static one, and its dynamic one is Reiner-Riwlin's.
@@ -94,7 +107,7 @@ struct Results {
       0.0;                    ///< 2 Omega / (1 - R_i^2/R_o^2), which alpha_apparent was divided by [1/s]
   double alpha_window = 0.0;  ///< over which alpha_apparent was fitted [s]
   std::optional<double> torque_couette_reference = {};  ///< of the solid cylinder at the end [N m]
-  /// Cylindrical alone: the torque at the end over that of the plane section times the height, on the same cells.
+  /// Cylindrical alone: the torque at the end over that of the plane section times the height.
   std::optional<double> end_factor = {}, torque_plane = {};  ///< the second [N m]
   std::vector<CurvePoint> flow_curve;
   std::vector<ProfilePoint> profile;  ///< at the end

@@ -66,14 +66,23 @@ bool is_bingham(const Scene& scene) {
   return !is_viscous(scene.model.law) || newtonian(scene.model.law) > 0.0;
 }
 
+/// The wall that slides, as the rheometer's reference has it.
+SlidingWall sliding_wall(const Scene& scene) {
+  const std::optional<WallStress> stress = wall_stress(scene.walls);
+  if (!stress) return {};
+  return {scene.cylinder_slides ? scene.vane.radius : scene.vane.container_radius, stress->yield,
+          stress->viscous};
+}
+
 /// Torque at the end between solid cylinders, by the rheometer's references; empty where it takes SUNDIALS
-/// and the build has none.
+/// and the build has none, and for concrete with structure along a wall that slides.
 std::optional<double> couette_reference(const Scene& scene, const Instrument& instrument) {
   const double omega = angular_speed(std::abs(scene.speed));
   Bingham bingham{scene.mix.tau_0, scene.mix.mu};
-  if (!is_bingham(scene) && scene.mix.thixotropy) return std::nullopt;
-  if (!is_bingham(scene))
-    return couette_torque(scene.model.law, scene.mix.tau_0, scene.mix.mu, omega, instrument);
+  if ((!is_bingham(scene) || slides(scene)) && scene.mix.thixotropy) return std::nullopt;
+  if (!is_bingham(scene) || slides(scene))
+    return couette_torque(scene.model.law, scene.mix.tau_0, scene.mix.mu, omega, instrument,
+                          sliding_wall(scene));
   if (!scene.mix.thixotropy) return reiner_riwlin(bingham, omega, instrument).torque;
   CouetteFlow flow;
   flow.bingham = bingham;
@@ -115,16 +124,17 @@ double momentum_rate_over(const std::vector<Sample>& series, double window) {
 
 void average_end(const std::vector<Sample>& series, Results& r) {
   double time = 0.0;
-  r.torque_end = r.torque_wall_end = r.torque_power_end = 0.0;
+  r.torque_end = r.torque_wall_end = r.torque_power_end = r.slip_end = 0.0;
   for (std::size_t i = series.size(); i-- > 0 && time < averaged_time(series);) {
     const Sample& s = series[i];
     r.torque_end += s.torque * s.time_step;
     r.torque_wall_end += s.torque_wall * s.time_step;
     r.torque_power_end += s.torque_power * s.time_step;
+    r.slip_end += s.slip * s.time_step;
     time += s.time_step;
   }
   if (time == 0.0) return;  // of a run whose first step failed
-  for (double* torque : {&r.torque_end, &r.torque_wall_end, &r.torque_power_end}) *torque /= time;
+  for (double* mean : {&r.torque_end, &r.torque_wall_end, &r.torque_power_end, &r.slip_end}) *mean /= time;
 }
 
 /// lambda at the peak and the exponent of its decay from there on.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdlib>
 
+#include "apparatus/common/law_keys.hpp"
 #include "apparatus/common/shared_keys.hpp"
 #include "apparatus/icar_vane/icar_vane.hpp"
 #include "libmpm/constitutive/constants.hpp"
@@ -56,7 +57,7 @@ Section vane_section() {
                 .range = between(2, 12),
                 .fallback = "4",
                 .help = "in the plane; a Couette section has a solid cylinder"},
-               {.name = "blade_thickness", .range = positive, .fallback = "3 mm", .help = "in the plane"},
+               {.name = "blade_thickness", .range = positive, .fallback = "3 mm", .help = "in the plane and with ends"},
                {.name = "shaft_radius",
                 .range = positive,
                 .fallback = "10 mm",
@@ -92,6 +93,44 @@ Section test_section() {
                           .fallback = "0 deg",
                           .help = "of the blades against the points, in the plane"});
   return section;
+}
+
+constexpr const char* cylinder_word = "cylinder";
+
+Section walls_section() {
+  Section section{.name = "walls",
+                  .help =
+                      "Of the container: its wall, and its floor where there is one; or of a smooth "
+                      "cylinder. What has no law of its own holds the concrete.",
+                  .keys = contact_keys(false)};
+  std::erase(section.keys.front().words, std::string(FreeSlip::word));
+  section.keys.push_back(
+      {.name = "surface",
+       .kind = Kind::choice,
+       .words = {"container", cylinder_word},
+       .fallback = "container",
+       .only_with = Condition{"contact", {Interface::word}},
+       .help = "that slides; the cylinder is a tribometer's, in model.space = \"couette\""});
+  return section;
+}
+
+bool cylinder_slides(const Values& values) {
+  return values.word("walls.contact") == Interface::word && values.word("walls.surface") == cylinder_word;
+}
+
+/// Blades hold the concrete between them, and a wall that takes nothing leaves no torque.
+void check_walls(const Values& values) {
+  if (values.word("walls.contact") != Interface::word) return;
+  if (cylinder_slides(values) && values.word("model.space") != "couette")
+    values.fail("walls.surface",
+                "is \"cylinder\", which a vane has not: its blades hold the concrete between them; allowed: "
+                "\"container\", or model.space = \"couette\"");
+  const bool holds_nothing = values.number("walls.interface_yield_stress") == 0.0 &&
+                             values.number("walls.interface_viscosity") == 0.0;
+  if (holds_nothing)
+    values.fail("walls.interface_viscosity",
+                "is 0, and so is the interface's yield stress: the wall takes nothing from the concrete, and "
+                "there is no torque; allowed: one of them above 0");
 }
 
 /// The layer of a key as the user gave it; that of the defaults for a key without a value.
@@ -193,9 +232,11 @@ void check_steady(const Values& values, const Scene& scene) {
 void settle(Values& values) {
   settle_mix_with(values, {.layer = true});
   settle_schedule(values);
+  settle_interface(values, "walls");
   settle_cell(values);
   check_schedule(values);
   check_vane(values);
+  check_walls(values);
   settle_ends(values);
 }
 
@@ -265,7 +306,8 @@ ApparatusKeys keys() {
        .points_help = "[across, up], or one number for each direction"});
   return {.name = "icar_vane",
           .help = "The ICAR vane rheometer: a vane turning in a container of concrete.",
-          .schema = joined({mix_sections(), {vane_section(), test_section(), model, output_section()}}),
+          .schema = joined(
+              {mix_sections(), {vane_section(), test_section(), walls_section(), model, output_section()}}),
           .settle = settle};
 }
 
@@ -278,6 +320,8 @@ Scene read_scene(const Values& values) {
   if (with_ends(values))
     scene.vane.bottom_gap = values.number("vane.bottom_gap"), scene.vane.cover = values.number("vane.cover");
   read_schedule(values, scene);
+  scene.walls = read_wall_law(values, "walls");
+  scene.cylinder_slides = cylinder_slides(values);
   scene.orientation = values.number("test.orientation");
   scene.model = read_model(values);
   scene.frame_interval = read_output(values).frame_interval;

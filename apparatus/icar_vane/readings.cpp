@@ -129,6 +129,20 @@ std::vector<std::string> end_lines(const View& v) {
       *v.r.end_factor, *v.r.torque_plane)};
 }
 
+bool wall_slides(const View& v) { return slides(v.scene); }
+
+/// What slides, by how much of the speed at its radius, and what an instrument makes of it.
+std::vector<std::string> slip_lines(const View& v) {
+  if (!slides(v.scene)) return {};
+  const Vane& vane = v.scene.vane;
+  const double radius = v.scene.cylinder_slides ? vane.radius : vane.container_radius;
+  const double speed = v.series.empty() ? 0.0 : angular_speed(std::abs(v.series.back().speed)) * radius;
+  return {fmt::format(
+      "slip            {:.3g} mm/s along the {} at the end, {:.0f} % of the speed there without shear",
+      1e3 * v.r.slip_end, v.scene.cylinder_slides ? "cylinder" : "container",
+      speed > 0.0 ? 100.0 * v.r.slip_end / speed : 0.0)};
+}
+
 std::optional<double> if_alpha(const View& v, double value) {
   return v.r.alpha_apparent ? std::optional(value) : std::nullopt;
 }
@@ -162,7 +176,12 @@ Rows<View> torque_rows() {
       {"torque_wall_end_N_m", "torque on the container at the end",
        [](V v) { return number(v.r.torque_wall_end); }},
       {"torque_power_end_N_m", "dissipated power over speed at the end",
-       [](V v) { return number(v.r.torque_power_end); }}};
+       [](V v) { return number(v.r.torque_power_end); }},
+      {.name = "slip_end_m_per_s",
+       .words = "speed of the concrete along the wall that slides, at the end",
+       .value = [](V v) { return number(v.r.slip_end); },
+       .applies = wall_slides,
+       .lines = slip_lines}};
 }
 
 Rows<View> instrument_rows() {
@@ -221,7 +240,11 @@ Rows<View> torque_columns() {
           {"torque_N_m", "torque on the blades", {}, [](V, S x) { return x.torque; }},
           {"torque_wall_N_m", "", {}, [](V, S x) { return x.torque_wall; }},
           {"torque_power_N_m", "", {}, [](V, S x) { return x.torque_power; }},
-          {"momentum_rate_N_m", "", {}, [](V, S x) { return x.momentum_rate; }}};
+          {"momentum_rate_N_m", "", {}, [](V, S x) { return x.momentum_rate; }},
+          {.name = "slip_m_per_s",
+           .words = "speed along the wall that slides",
+           .at = [](V, S x) { return x.slip; },
+           .applies = wall_slides}};
 }
 
 const std::vector<Reading<View>>& readings() {
@@ -387,19 +410,27 @@ std::string flow_curve_use(const Scene& scene) {
                               : fmt::format("flow curve: {} speeds", scene.speeds.size());
 }
 
+void add_wall_uses(const Scene& scene, std::vector<std::string>& lines) {
+  const std::optional<WallStress> stress = wall_stress(scene.walls);
+  if (stress)
+    lines.push_back(fmt::format("{}: a layer slides along it, {:g} Pa + {:g} Pa.s/m times its speed",
+                                scene.cylinder_slides ? "cylinder" : "container", stress->yield,
+                                stress->viscous));
+}
+
 /// Faces of the grid stand for shaft and gaps: where they are.
 std::vector<std::string> uses_with_ends(const Scene& scene) {
   const EndsGrid grid(scene, true);
   std::vector<std::string> lines{flocculation_use(scene.mix)};
-  lines.push_back(
-      grid.n_thick > 0
-          ? fmt::format("blades: {} of {:g} mm", scene.vane.blades, scene.vane.blade_thickness * mm)
-          : fmt::format(
-                "blades: {} without thickness (thinner than half a cell); 3 mm of the ICAR's take 3 % more",
-                scene.vane.blades));
+  lines.push_back(fmt::format("blades: {} of {:g} mm{}", scene.vane.blades, scene.vane.blade_thickness * mm,
+                              grid.n_thick > 0
+                                  ? ""
+                                  : " in the plane section; in space, for the factor of the ends, sheets "
+                                    "(thinner than half a cell)"));
   lines.push_back(fmt::format(
       "ends: {:.3g} mm to the floor, {:.3g} mm of cover, a shaft of {:.3g} mm (faces of the grid)",
       grid.bottom_gap() * mm, grid.cover() * mm, grid.shaft_radius() * mm));
+  add_wall_uses(scene, lines);
   lines.push_back("surface: flat, slips; no vortex, no waves");
   lines.push_back("inertia: left out, steady flow at each speed");
   lines.push_back("third dimension: one blade's sector, which repeats");
@@ -431,6 +462,7 @@ std::vector<std::string> uses(const Scene& scene) {
       plane ? fmt::format("blades: {} of {:g} mm", scene.vane.blades, scene.vane.blade_thickness * mm)
             : "blades: left out (model.space = \"couette\"): the vane is a solid cylinder");
   for (std::string& line : localisation_use(scene)) lines.push_back(std::move(line));
+  add_wall_uses(scene, lines);
   lines.push_back("end effects above and below the vane: neglected");
   lines.push_back("third dimension: left out (model.space)");
   lines.push_back(flow_curve_use(scene));

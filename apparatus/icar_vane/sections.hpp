@@ -7,6 +7,7 @@
 
 #include "apparatus/icar_vane/icar_vane.hpp"
 #include "apparatus/run/step_settings.hpp"
+#include "libmpm/boundary/wall_term.hpp"
 #include "libmpm/implicit/particle_splitting.hpp"
 #include "libmpm/particles/seeding.hpp"
 
@@ -16,9 +17,18 @@ struct Torques {
   double blades = 0.0, wall = 0.0;  ///< [N m/m]
   double angular_momentum = 0.0;    ///< of the concrete [kg m^2/s per m]
   double power = 0.0;               ///< dissipated by the stresses [W/m]
+  double slip = 0.0;                ///< mean speed along the wall that slides [m/s]
 };
 
 inline constexpr double thinnest = 0.125;  ///< of a cell: a thinner blade is a sheet
+
+/// Mean speed at which the concrete slides along the wall with a wall law in the last step [m/s]; 0 without one.
+template <class Geometry>
+double mean_slip(const ImplicitBody<Geometry>& body) {
+  double sum = 0.0;
+  for (const auto& term : body.wall_nodes) sum += slip_velocity(term, body.v).norm();
+  return body.wall_nodes.empty() ? 0.0 : sum / static_cast<double>(body.wall_nodes.size());
+}
 
 /// Concrete circling between a cylinder and the container: a radial line of cells.
 struct CouetteSection {
@@ -32,8 +42,8 @@ struct CouetteSection {
     const int n_cells = std::max(4, static_cast<int>(std::lround(gap / scene.model.cell[0])));
     body.grid.axes[0] = {.h = gap / n_cells,
                          .origin = vane.radius,
-                         .low = FaceKind::no_slip,
-                         .high = FaceKind::no_slip,
+                         .low = cylinder_face(scene),
+                         .high = container_face(scene),
                          .n_cells = n_cells};
     seed_box<Geometry>(
         Vec<1>(vane.radius), Vec<1>(vane.container_radius), {n_cells * scene.model.points_per_cell[0]},
@@ -43,13 +53,14 @@ struct CouetteSection {
   }
   void turn(Body<Geometry>& body, double omega) const { body.walls.v[0][0] = Vec<1>(omega * vane.radius); }
 
-  Torques torques(const Body<Geometry>& body) const {
+  Torques torques(const ImplicitBody<Geometry>& body) const {
     Torques t;
     for (int i = 0; i < body.grid.n_nodes(); ++i) {
       const double r = body.grid.node_position(i)[0];
       if (body.grid.axes[0].on_low_wall(body.grid.node_index[i][0])) t.blades += r * body.wall_force[i][0];
       if (body.grid.axes[0].on_high_wall(body.grid.node_index[i][0])) t.wall -= r * body.wall_force[i][0];
     }
+    t.slip = mean_slip(body);
     for (std::size_t p = 0; p < body.points.size(); ++p)
       t.angular_momentum += body.points.mass[p] * body.points.x[p][0] * body.points.v[p][0];
     t.power = body.dissipation;
@@ -96,7 +107,7 @@ struct PlaneSection {
     body.grid.axes[0] = {.h = cell[0],
                          .origin = shaft,
                          .low = FaceKind::no_slip,
-                         .high = FaceKind::no_slip,
+                         .high = container_face(scene),
                          .n_cells = n_radial,
                          .repeated_knots = {n_blade}};
     body.grid.axes[1] = {.h = cell[1], .periodic = true, .n_cells = n_around, .repeated_knots = {first}};
@@ -124,7 +135,7 @@ struct PlaneSection {
   }
   /// The nodal velocity v_theta = r of a turn as a whole strains nothing, so that the moments of the nodal
   /// forces are in balance to the last digit.
-  Torques torques(const Body<Geometry>& body) const {
+  Torques torques(const ImplicitBody<Geometry>& body) const {
     Torques t;
     for (int i = 0; i < body.grid.n_nodes(); ++i) {
       const double r = body.grid.node_position(i)[0], moment = r * body.wall_force[i][1];
@@ -136,6 +147,7 @@ struct PlaneSection {
     }
     for (double* all : {&t.blades, &t.wall, &t.angular_momentum}) *all *= vane.blades;
     t.power = vane.blades * body.dissipation;
+    t.slip = mean_slip(body);
     return t;
   }
   double radius(const Vec<2>& x) const { return x[0]; }

@@ -32,7 +32,8 @@ NodeTerm<D> term_at(int node, int normal_axis, double reach, const Vec<D>& veloc
 }
 
 /// Walls at the ends of the axes: which components they prescribe, and the terms of a wall law (wall_law.hpp).
-/// Nodes behind a plane of symmetry are no unknowns.
+/// Nodes behind a plane of symmetry are no unknowns. On a line of circles (Couette) the one velocity is along the wall, and
+/// a term counts it: its normal axis is -1.
 template <int D>
 void apply_flat_walls(const ActiveGrid<D>& grid, const WallVelocities<D>& walls, std::vector<char>& fixed,
                       std::vector<NodeTerm<D>>& terms, std::vector<Vec<D>>& v) {
@@ -48,12 +49,12 @@ void apply_flat_walls(const ActiveGrid<D>& grid, const WallVelocities<D>& walls,
                                                    : FaceKind::open;
       if (face == FaceKind::open) continue;
       for (int d = 0; d < D; ++d)
-        if (d == a || face == FaceKind::no_slip) {
+        if ((D > 1 && d == a) || face == FaceKind::no_slip) {
           fixed[i * D + d] = 1;
           v[i][d] = walls.v[a][axis.on_low_wall(j) ? 0 : 1][d];
         }
       if (face == FaceKind::wall_law)
-        terms.push_back(term_at(i, a, axis.h, walls.v[a][axis.on_low_wall(j) ? 0 : 1]));
+        terms.push_back(term_at(i, D > 1 ? a : -1, axis.h, walls.v[a][axis.on_low_wall(j) ? 0 : 1]));
     }
   }
 }

@@ -71,9 +71,10 @@ void set_wall_stresses(const WallLaw& law, double tau_0, YieldProblem<Geometry>&
   if (!stress || problem.wall_nodes.empty()) return;
   const NodeAreas<Geometry::dim> areas = wetted_areas(problem.grid, problem.quadrature);
   for (auto& t : problem.wall_nodes) {
-    t.limit = stress->yield * areas[t.node][t.normal_axis];
-    t.scale = std::max(tau_0, no_stress) * areas[t.node][t.normal_axis];
-    t.viscous = stress->viscous * areas[t.node][t.normal_axis];
+    const double area = areas[t.node][std::max(0, t.normal_axis)];
+    t.limit = stress->yield * area;
+    t.scale = std::max(tau_0, no_stress) * area;
+    t.viscous = stress->viscous * area;
   }
 }
 

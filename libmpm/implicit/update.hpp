@@ -7,8 +7,21 @@
 
 namespace tremie::detail {
 
-/// Forces of the flat walls, which balance what is left of every prescribed component, and the dissipated
-/// power.
+/// Adds what the wall law along flat walls takes from the concrete to their forces and to the dissipated power. Side walls
+/// of a section are no flat walls of its grid.
+template <class Geometry>
+void keep_wall_law_forces(const YieldProblem<Geometry>& problem, ImplicitBody<Geometry>& body) {
+  constexpr int D = Geometry::dim;
+  for (const NodeTerm<D>& t : problem.wall_nodes) {
+    if (D > 1 && t.normal_axis < 0) continue;
+    const Vec<D> w = slip_velocity(t, body.v), force = t.force + t.viscous * w;
+    body.wall_force[t.node] -= force;
+    body.dissipation += force.dot(w);
+  }
+}
+
+/// Forces of the flat walls, which balance what is left of every prescribed component and are the wall law's along it, and
+/// the dissipated power.
 template <class Form, class Geometry>
 void keep_forces(const YieldProblem<Geometry>& problem, const YieldLaw& law, ImplicitBody<Geometry>& body) {
   constexpr int D = Geometry::dim;
@@ -24,6 +37,7 @@ void keep_forces(const YieldProblem<Geometry>& problem, const YieldLaw& law, Imp
   for (int i = 0; i < problem.grid.n_nodes(); ++i)
     for (int d = 0; d < D; ++d)
       if (problem.fixed[i * D + d]) body.wall_force[i][d] = -R[i * D + d];
+  keep_wall_law_forces(problem, body);
 }
 
 /// ln J of the points from the mean divergence of their cells, the same that the step's pressure used.

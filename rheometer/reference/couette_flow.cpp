@@ -27,17 +27,27 @@ double speed_under(double T, const YieldLaw& law, double tau_y, double mu, const
   return sum;
 }
 
+/// What a wall slides under the torque T, over its radius [rad/s].
+double sliding_under(double T, const SlidingWall& wall, const Instrument& in) {
+  const double tau = T / (2.0 * std::numbers::pi * wall.radius * wall.radius * in.vane_height);
+  if (!(tau > wall.tau_i)) return 0.0;
+  return (tau - wall.tau_i) / (wall.k_i * wall.radius);  // without end where nothing is viscous
+}
+
 }  // namespace
 
 double couette_torque(const YieldLaw& law, double tau_y, double mu, double omega,
-                      const Instrument& instrument) {
+                      const Instrument& instrument, const SlidingWall& wall) {
   check(instrument);
   if (!(omega > 0.0)) throw std::invalid_argument("the cylinder must turn");
+  const auto speed = [&](double T) {
+    return speed_under(T, law, tau_y, mu, instrument) + sliding_under(T, wall, instrument);
+  };
   double low = 0.0, high = 1e-6;
-  while (speed_under(high, law, tau_y, mu, instrument) < omega) low = high, high *= 2.0;
+  while (speed(high) < omega) low = high, high *= 2.0;
   while (high - low > 1e-11 * high) {
     const double middle = 0.5 * (low + high);
-    (speed_under(middle, law, tau_y, mu, instrument) < omega ? low : high) = middle;
+    (speed(middle) < omega ? low : high) = middle;
   }
   return 0.5 * (low + high);
 }

@@ -1,9 +1,19 @@
 #pragma once
 
+#include <limits>
+
 #include "libmpm/constitutive/laws/yield_law.hpp"
 #include "rheometer/reference/instrument.hpp"
 
 namespace tremie {
+
+/// A wall along which the concrete slides at the speed u where it takes tau_i + k_i u: the cylinder's or the container's.
+/// The default holds.
+struct SlidingWall {
+  double radius = 1.0;                                     ///< [m]
+  double tau_i = std::numeric_limits<double>::infinity();  ///< [Pa]
+  double k_i = 0.0;                                        ///< [Pa s/m]
+};
 
 /// Torque [N m] that turns the inner cylinder at omega [rad/s] in a fluid of any yield law, steady and without inertia:
 /// the T with
@@ -11,9 +21,10 @@ namespace tremie {
 ///   omega = int_{R_i}^{R_o} gamma_dot(tau)/r dr,   tau(r) = T/(2 pi h r^2),   mu gamma_dot + f(gamma_dot) = tau,
 ///
 /// to 1e-10 of it, for the yield stress tau_y [Pa] and the plastic viscosity mu [Pa s]. What is below its yield stress
-/// does not turn. Throws std::invalid_argument unless omega > 0.
+/// does not turn. A wall of radius R that slides adds to omega what it turns against the concrete, u/R with
+/// T = 2 pi h R^2 (tau_i + k_i u). Throws std::invalid_argument unless omega > 0.
 double couette_torque(const YieldLaw& law, double tau_y, double mu, double omega,
-                      const Instrument& instrument);
+                      const Instrument& instrument, const SlidingWall& wall = {});
 
 /// tau = tau_0 + k gamma_dot^n beyond tau_0.
 struct HerschelBulkleyFluid {

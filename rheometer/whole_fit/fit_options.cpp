@@ -107,7 +107,10 @@ const std::vector<FitOption>& fit_options() {
            "A smooth cylinder in place of the vane: the wall's interface law, for [walls] of a scene"),
       text("fill_height", &O::fill_height,
            "Tribometer: height of concrete along the cylinder in each record: \"100 mm; 150 mm\"",
-           {20, "fill_height"})};
+           {20, "fill_height"}),
+      word("smooth_wall", &O::smooth_wall, {"cylinder", "container"},
+           "Tribometer: the wall along which the concrete slides; the other one is rough (default: cylinder)",
+           {})};
   return all;
 }
 
@@ -162,6 +165,8 @@ void check(const FitOptions& o) {
     throw std::invalid_argument("--elastic is of the start-ups of a protocol: --protocol");
   if (!o.fill_height.empty() && !o.tribometer)
     throw std::invalid_argument("--fill-height is a tribometer's: --tribometer");
+  if (o.smooth_wall != FitOptions{}.smooth_wall && !o.tribometer)
+    throw std::invalid_argument("--smooth-wall is a tribometer's: --tribometer");
   if (o.blades != "none" && law_of(o) != flow_laws().front().name)
     throw std::invalid_argument(
         "--blades computed is for Bingham's law, of which its table is; not with --law " + o.law);

@@ -33,6 +33,8 @@ struct FitOptions {
   std::optional<double> torque_per_degree, full_scale_torque;  ///< of a dial, of readings in % [N m]
   bool tribometer = false;  ///< the records are a smooth cylinder's (tribometer.hpp)
   std::string fill_height;  ///< of each record of a tribometer; empty: the vane's height
+  std::string smooth_wall =
+      "cylinder";  ///< of a tribometer; or "container", about a vane or a rough cylinder
 };
 
 /// The law of flow curves: the one that is given, else Bingham's; in a protocol without blades all are compared.

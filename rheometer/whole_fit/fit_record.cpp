@@ -297,7 +297,8 @@ FitResult fit_tribometer_records(const Fitting& f, const std::vector<RecordSourc
   std::vector<TribometerSeries> series;
   for (std::size_t i = 0; i < sources.size(); ++i)
     series.push_back({heights[i], named(sources[i].name, [&] { return read(f, sources[i]); })});
-  FitResult result = named(sources.front().name, [&] { return fit_tribometer(series, in); });
+  const SmoothWall wall = f.options.smooth_wall == "container" ? SmoothWall::container : SmoothWall::cylinder;
+  FitResult result = named(sources.front().name, [&] { return fit_tribometer(series, in, wall); });
   result.notes.insert(result.notes.begin(), "geometry: " + geometry_words(f.reading, f.options, false));
   return result;
 }

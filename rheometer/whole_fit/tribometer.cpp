@@ -24,6 +24,13 @@ enum : std::size_t { at_tau_i, at_k_i, at_end_torque, at_end_viscosity };
 constexpr std::size_t parameter_count = 4, of_interface = 2;
 using Parameters = std::array<double, parameter_count>;
 
+/// The wall that slides, in its instrument.
+struct SmoothSide {
+  Instrument instrument;
+  std::optional<double> tau_0, mu;  ///< of the concrete [Pa], [Pa s]
+  double radius = 0.0;              ///< of the wall [m]
+};
+
 /// Readings of all series in their order, each with its fill height.
 struct Rows {
   Readings readings;
@@ -59,9 +66,9 @@ Rows rows_of(const std::vector<TribometerSeries>& series, FitResult& result) {
   return rows;
 }
 
-/// Shear stress at the cylinder that turns at omega: by slip, and by the concrete's own shear where it is known.
-double wall_stress(double tau_i, double k_i, double omega, const FitInput& in) {
-  const double R = in.instrument.vane_radius, slipping = tau_i + k_i * R * omega;
+/// Shear stress at the wall at the speed omega: by slip, and by the concrete's own shear where it is known.
+double wall_stress(double tau_i, double k_i, double omega, const SmoothSide& in) {
+  const double R = in.radius, slipping = tau_i + k_i * R * omega;
   if (!in.tau_0) return slipping;
   const auto speed = [&](double tau) {
     const double torque = two_pi * R * R * in.instrument.vane_height * tau;
@@ -76,15 +83,15 @@ double wall_stress(double tau_i, double k_i, double omega, const FitInput& in) {
   return 0.5 * (low + high);
 }
 
-double torque_of(const Parameters& p, double omega, double height, const FitInput& in) {
-  const double R = in.instrument.vane_radius;
+double torque_of(const Parameters& p, double omega, double height, const SmoothSide& in) {
+  const double R = in.radius;
   return two_pi * R * R * height * wall_stress(p[at_tau_i], p[at_k_i], omega, in) + p[at_end_torque] +
          p[at_end_viscosity] * omega;
 }
 
 /// A line through the stresses, as if the side carried all.
-Parameters start_of(const Rows& rows, const FitInput& in) {
-  const double R = in.instrument.vane_radius;
+Parameters start_of(const Rows& rows, const SmoothSide& in) {
+  const double R = in.radius;
   std::vector<double> slip, stress;
   for (std::size_t i = 0; i < rows.height.size(); ++i) {
     slip.push_back(R * rows.readings.x[i]);
@@ -94,7 +101,7 @@ Parameters start_of(const Rows& rows, const FitInput& in) {
   return {std::max(0.1 * line.mean_y, line.at(0.0)), std::max(1e-3 * line.mean_y, line.slope), 0.0, 0.0};
 }
 
-LeastSquaresFit least_squares(const Rows& rows, const FitInput& in) {
+LeastSquaresFit least_squares(const Rows& rows, const SmoothSide& in) {
   const Parameters start = start_of(rows, in);
   const std::size_t free = rows.several_heights ? parameter_count : of_interface;
   LeastSquaresProblem problem;
@@ -126,8 +133,8 @@ LeastSquaresFit least_squares(const Rows& rows, const FitInput& in) {
   return fit_least_squares(problem, options);
 }
 
-/// Of the stress at the cylinder, by the delta method.
-double error_of_stress(const LeastSquaresFit& fit, const Parameters& p, double omega, const FitInput& in) {
+/// Of the stress at the wall, by the delta method.
+double error_of_stress(const LeastSquaresFit& fit, const Parameters& p, double omega, const SmoothSide& in) {
   const double stress = wall_stress(p[at_tau_i], p[at_k_i], omega, in);
   const double step_tau = 1e-3 * std::max(p[at_tau_i], 1e-3 * stress),
                step_k = 1e-3 * std::max(p[at_k_i], 1e-9);
@@ -142,9 +149,8 @@ double error_of_stress(const LeastSquaresFit& fit, const Parameters& p, double o
 
 /// The torque of the side at the first fill height, over the speed.
 FittedCurve curve_of_side(const Rows& rows, const LeastSquaresFit& fit, const Parameters& p,
-                          const FitInput& in) {
-  const double area_times_radius =
-      two_pi * in.instrument.vane_radius * in.instrument.vane_radius * rows.height.front();
+                          const SmoothSide& in) {
+  const double area_times_radius = two_pi * in.radius * in.radius * rows.height.front();
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < rows.height.size(); ++i)
     if (!fit.outlier[i]) order.push_back(i);
@@ -162,9 +168,8 @@ FittedCurve curve_of_side(const Rows& rows, const LeastSquaresFit& fit, const Pa
   return curve;
 }
 
-void note_what_is_assumed(const Rows& rows, const Parameters& p, const FitInput& in, FitResult& result) {
-  const double R = in.instrument.vane_radius,
-               fastest = *std::max_element(rows.readings.x.begin(), rows.readings.x.end());
+void note_what_is_assumed(const Rows& rows, const Parameters& p, const SmoothSide& in, FitResult& result) {
+  const double R = in.radius, fastest = *std::max_element(rows.readings.x.begin(), rows.readings.x.end());
   const double stress = wall_stress(p[at_tau_i], p[at_k_i], fastest, in);
   if (rows.several_heights)
     result.notes.push_back(
@@ -174,7 +179,7 @@ void note_what_is_assumed(const Rows& rows, const Parameters& p, const FitInput&
                 p[at_end_torque], p[at_end_torque] + p[at_end_viscosity] * fastest));
   else
     result.notes.push_back(
-        "ends: one fill height; the torque of the cylinder's bottom counts as its side's, so that both "
+        "ends: one fill height; the torque of the bottom counts as the side's, so that both "
         "parameters read "
         "high. Records at several fill heights, --fill-height \"100 mm; 200 mm\", tell them apart");
   if (!in.tau_0) {
@@ -204,8 +209,12 @@ void judge(const Rows& rows, const LeastSquaresFit& fit, const Parameters& p, Fi
 
 }  // namespace
 
-FitResult fit_tribometer(const std::vector<TribometerSeries>& series, const FitInput& input) {
+FitResult fit_tribometer(const std::vector<TribometerSeries>& series, const FitInput& input,
+                         SmoothWall wall) {
   check(input.instrument);
+  const bool container = wall == SmoothWall::container;
+  const SmoothSide side{input.instrument, input.tau_0, input.mu,
+                        container ? input.instrument.container_radius : input.instrument.vane_radius};
   if (input.tau_0.has_value() != input.mu.has_value())
     throw std::invalid_argument(
         "a tribometer's fit takes both the yield stress and the plastic viscosity of the concrete, or "
@@ -214,16 +223,17 @@ FitResult fit_tribometer(const std::vector<TribometerSeries>& series, const FitI
   result.kind = RecordKind::flow_curve;
   result.model = interface_model;
   const Rows rows = rows_of(series, result);
-  const LeastSquaresFit fit = least_squares(rows, input);
+  const LeastSquaresFit fit = least_squares(rows, side);
   Parameters p{};
   std::copy(fit.parameters.begin(), fit.parameters.end(), p.begin());
   fitting::report(rows.readings, fit, result);
-  result.curve = curve_of_side(rows, fit, p, input);
+  result.curve = curve_of_side(rows, fit, p, side);
   result.effective_readings = fit.independent;
   judge(rows, fit, p, result);
-  note_what_is_assumed(rows, p, input, result);
-  const double largest = *std::max_element(fit.fitted.begin(), fit.fitted.end()),
-               R = input.instrument.vane_radius;
+  if (container)
+    result.notes.push_back("wall: the container's; what turns in it is rough and holds the concrete");
+  note_what_is_assumed(rows, p, side, result);
+  const double largest = *std::max_element(fit.fitted.begin(), fit.fitted.end()), R = side.radius;
   const double stress = largest / (two_pi * R * R * series.front().fill_height);
   for (std::size_t k = 0; k < 2 && result.reasons.empty(); ++k) {
     const FitParameter& row = interface_parameters()[k];

@@ -81,8 +81,40 @@ TEST(IcarVaneScene, FaultsNameTheKey) {
   EXPECT_TRUE(says(complaint(mix_a, {"model.space=full"}), {"model.space", "\"couette\", \"plane\""}));
 }
 
+const std::string slides =
+    mix_a +
+    "[walls]\ncontact = \"interface\"\ninterface_yield_stress = \"27 Pa\"\ninterface_viscosity = "
+    "\"300 Pa.s/m\"\n";
+
+TEST(IcarVaneScene, WallsHoldOrSlide) {
+  EXPECT_TRUE(std::holds_alternative<NoSlip>(vane_of(mix_a).walls));
+  for (const char* space : {"couette", "plane"}) {
+    const auto s = vane_of(slides, {std::string("model.space=") + space});
+    EXPECT_EQ(std::get<Interface>(s.walls).tau_i, 27.0);
+    EXPECT_EQ(std::get<Interface>(s.walls).k_i, 300.0);
+    EXPECT_EQ(container_face(s), FaceKind::wall_law);
+    EXPECT_EQ(cylinder_face(s), FaceKind::no_slip);
+  }
+  const auto tribometer = vane_of(slides, {"walls.surface=cylinder"});
+  EXPECT_EQ(container_face(tribometer), FaceKind::no_slip);
+  EXPECT_EQ(cylinder_face(tribometer), FaceKind::wall_law);
+  EXPECT_TRUE(std::holds_alternative<Interface>(
+      vane_of(slides, {"model.space=cylindrical", "mix.thixotropy=false"}).walls));
+}
+
+TEST(IcarVaneScene, WallsThatCannotBeAreRefused) {
+  EXPECT_TRUE(says(complaint(slides, {"walls.surface=cylinder", "model.space=plane"}),
+                   {"walls.surface", "blades", "\"couette\""}));
+  EXPECT_TRUE(
+      says(complaint(slides, {"walls.interface_yield_stress=0 Pa", "walls.interface_viscosity=0 Pa.s/m"}),
+           {"walls.interface_viscosity", "no torque"}));
+  EXPECT_TRUE(
+      says(complaint(slides, {"walls.contact=free_slip"}), {"walls.contact", "\"no_slip\", \"interface\""}));
+  EXPECT_TRUE(says(complaint(slides, {"walls.contact=friction"}), {"walls.contact"}));
+}
+
 TEST(IcarVaneScene, AResolvedSceneReadsBack) {
-  for (const auto& text : {mix_a, curve}) {
+  for (const auto& text : {mix_a, curve, slides}) {
     const Scene first = read_text(text, "a.toml", {"model.space=plane"});
     const Scene second = read_text(first.resolved, "a.toml");
     EXPECT_EQ(read_text(second.resolved, "a.toml").resolved, second.resolved);

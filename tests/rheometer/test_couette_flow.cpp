@@ -31,5 +31,22 @@ TEST(CouetteTorque, OfAPowerLaw) {
   }
 }
 
+// A container that slides and a Newtonian fluid: omega = T/(4 pi h mu)(R_i^-2 - R_o^-2) + (T/(2 pi h R_o^2) - tau_i)/(k R_o).
+// The same for the cylinder with R_i. tau_i beyond the stress holds; k = 0 lets no more through than tau_i.
+TEST(CouetteTorque, OfAWallThatSlides) {
+  const Instrument in;
+  const double mu = 35.8, omega = 1.5, Ri = in.vane_radius, Ro = in.container_radius, h = in.vane_height;
+  const double holds = couette_torque(ExactBingham{}, 0.0, mu, omega, in);
+  for (const double R : {Ri, Ro}) {
+    const SlidingWall wall{R, 10.0, 300.0};
+    const double own = (1.0 / (Ri * Ri) - 1.0 / (Ro * Ro)) / (4.0 * M_PI * h * mu),
+                 area = 2.0 * M_PI * h * R * R;
+    const double T = (omega + wall.tau_i / (wall.k_i * R)) / (own + 1.0 / (area * wall.k_i * R));
+    EXPECT_NEAR(couette_torque(ExactBingham{}, 0.0, mu, omega, in, wall) / T, 1.0, 1e-6);
+    EXPECT_EQ(couette_torque(ExactBingham{}, 0.0, mu, omega, in, {R, 1e6, 0.0}), holds);
+    EXPECT_NEAR(couette_torque(ExactBingham{}, 0.0, mu, omega, in, {R, 5.0, 0.0}) / (area * 5.0), 1.0, 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace tremie

@@ -11,63 +11,86 @@ constexpr double penalty = 3.0;     // r over the viscosity at the typical rate
 
 /// r over the viscosity that scales the problem: as stiff as the concrete is at the typical rate. A multiple of the
 /// plastic viscosity alone would leave a yield stress that dwarfs it unconverged.
-double penalty_at(const SteadyBody& body, double eta, double rate) {
-  return penalty * (1.0 + body.mix.tau_0 / (rate * eta));
+double penalty_at(const Mix& mix, double eta, double rate) {
+  return penalty * (1.0 + mix.tau_0 / (rate * eta));
+}
+
+/// The middles of all cells that no block fills.
+template <int D>
+std::vector<Vec<D>> free_middles(const ActiveGrid<D>& grid) {
+  IndexMap<D> cells;
+  Index<D> last{};
+  for (int d = 0; d < D; ++d) last[d] = grid.axes[d].n_cells - 1;
+  cells.reset({}, last);
+  std::vector<Vec<D>> middles;
+  detail::for_each_index(cells, [&](const Index<D>& cell, std::size_t) {
+    if (!block_of_cell<D>(grid, cell))
+      middles.push_back(position_in_cell<D>(grid.axes, cell, Vec<D>(Vec<D>::Constant(0.5))));
+  });
+  return middles;
 }
 
 }  // namespace
 
-void lay_out_steady_flow(SteadyBody& body) {
+template <class Geometry>
+void lay_out_steady_flow(ImplicitBody<Geometry>& body) {
+  constexpr int D = Geometry::dim, n = power(2, D);
   auto& grid = body.grid;
-  std::vector<Vec<3>> middles;
-  for (int i = 0; i < grid.axes[0].n_cells; ++i)
-    for (int j = 0; j < grid.axes[1].n_cells; ++j)
-      for (int k = 0; k < grid.axes[2].n_cells; ++k)
-        if (const Index<3> cell{i, j, k}; !block_of_cell<3>(grid, cell))
-          middles.push_back(position_in_cell<3>(grid.axes, cell, Vec<3>::Constant(0.5)));
-  activate(grid, middles);
-  const auto n = grid.cell_index.size();
+  activate<D>(grid, free_middles<D>(grid));
+  const auto cells = grid.cell_index.size();
   auto& quad = body.quadrature;
-  quad.resize(n);
+  quad.resize(cells);
   std::fill(quad.p.begin(), quad.p.end(), 0.0);
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < grid.n_cells(); ++c) {
-    const Index<3>& cell = grid.cell_index[c];
-    std::array<Vec<3>, 8> x;
-    std::array<Stencil<3>, 8> st;
-    for (int k = 0; k < 8; ++k) {
-      x[k] = position_in_cell<3>(grid.axes, cell, quadrature_point<3>(k));
-      st[k] = stencil<3>(grid.axes, cell, quadrature_point<3>(k));
+    const Index<D>& cell = grid.cell_index[c];
+    std::array<Vec<D>, n> x;
+    std::array<Stencil<D>, n> st;
+    for (int k = 0; k < n; ++k) {
+      quad.place[c][k] = quadrature_point<D>(k);
+      x[k] = position_in_cell<D>(grid.axes, cell, quadrature_point<D>(k));
+      st[k] = stencil<D>(grid.axes, cell, quadrature_point<D>(k));
     }
-    quad.V[c] = detail::full_volumes<Cylindrical>(grid.axes, x);
+    quad.V[c] = detail::full_volumes<Geometry>(grid.axes, x);
     quad.V_cell[c] = std::accumulate(quad.V[c].begin(), quad.V[c].end(), 0.0);
     quad.tau_y[c].fill(body.mix.tau_0);
-    detail::lay_out_rows<Cylindrical>(st, x, c, quad);
+    detail::lay_out_rows<Geometry>(st, x, c, quad);
   }
   body.nodes.mass.assign(grid.node_index.size(), no_mass);
-  body.nodes.v.assign(grid.node_index.size(), Vec<3>::Zero());
+  body.nodes.v.assign(grid.node_index.size(), Vec<D>::Zero());
   body.v = body.nodes.v;
-  body.admm_state.resize(n);
+  body.admm_state.resize(cells);
 }
 
-SolveReport solve_steady_flow(SteadyBody& body, const YieldLaw& law, double rate, int max_iterations) {
+template <class Geometry>
+SolveReport solve_steady_flow(ImplicitBody<Geometry>& body, const YieldLaw& law, const WallLaw& wall_law,
+                              double rate, int max_iterations) {
   constexpr double dt = 1.0;
   body.dt = dt;
   body.shear_rate = rate;
-  std::optional<YieldProblem<Cylindrical>> problem;
-  const std::vector<Vec<3>> v = body.v;
-  detail::pose<Cylindrical>(body, law, {}, {}, v, {}, dt, problem);
+  StepSettings step;
+  step.wall_law = wall_law;
+  std::optional<YieldProblem<Geometry>> problem;
+  const std::vector<Vec<Geometry::dim>> v = body.v;
+  detail::pose<Geometry>(body, law, step, {}, v, {}, dt, problem);
   AdmmSettings settings;
   settings.tolerance = tolerance;
   settings.max_iterations = max_iterations;
-  settings.penalty = penalty_at(body, problem->eta, rate);
+  settings.penalty = penalty_at(body.mix, problem->eta, rate);
   problem->K = body.mix.K = bulk_stiffness * (problem->eta + body.mix.tau_0 / rate) / dt;
   body.system.set_pattern(body.grid);
-  FactorisedAdmm<Cylindrical> form{*problem, law, settings, body.system, body.admm_state};
+  FactorisedAdmm<Geometry> form{*problem, law, settings, body.system, body.admm_state};
   const SolveReport report = solve_admm(*problem, settings, form, body.v);
   detail::keep_forces<detail::ByFactors>(*problem, law, body);
   return report;
 }
+
+#define TREMIE_STEADY_IN(Geometry)                                                                         \
+  template void lay_out_steady_flow(ImplicitBody<Geometry>&);                                              \
+  template SolveReport solve_steady_flow(ImplicitBody<Geometry>&, const YieldLaw&, const WallLaw&, double, \
+                                         int);
+TREMIE_STEADY_IN(Polar)
+TREMIE_STEADY_IN(Cylindrical)
 
 double steady_pressure(const SteadyBody& body, int c) {
   double divergence = 0.0;
