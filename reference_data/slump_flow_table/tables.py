@@ -60,6 +60,14 @@ def number(row, column):
     return float(row[column]) if row and row["exit_code"] == "0" and row[column] else math.nan
 
 
+def to_finer_cells(mould, tau_0):
+    """Spread on half the cells over that on the default ones. Measured for the Abrams cone on 25 runs of 7 to 60 Pa: 1.0 to
+    1.1 % below 20 Pa, 0.4 % at 26 to 38 Pa, 0.2 % at 50 to 60 Pa, scatter 0.3 %."""
+    if mould != "abrams":
+        return 1.0
+    return 1.0 + min(0.011, 0.011 * max(0.0, math.log(75.0 / tau_0)) / math.log(75.0 / 15.0))
+
+
 def filled(line):
     """Values over the viscosity, those that are missing from the nearest on both sides."""
     known = [j for j, value in enumerate(line) if not math.isnan(value)]
@@ -83,6 +91,7 @@ def main():
         for x in tau_0:
             at = {c: [number(rows.get((x, y)), c) for y in mu] for c in COLUMNS}
             at = {c: line if c == "t500_s" else filled(line) for c, line in at.items()}
+            at["spread_mm"] = [spread * to_finer_cells(mould, x) for spread in at["spread_mm"]]
             for j, y in enumerate(mu):
                 cells = ["" if math.isnan(at[c][j]) else f"{at[c][j]:.{3 if c == 't500_s' else 2}f}" for c in COLUMNS]
                 lines.append(f"{x:g},{y:g}," + ",".join(cells))
