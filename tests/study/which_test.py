@@ -4,7 +4,7 @@
 Runs each test of a mix, and of mixes a sixth more and less in each parameter, for the sensitivities of its readings. A usual
 error of each reading makes them an information matrix (Fisher); that of a pair of tests is the sum. Prints the standard errors
 of both parameters, in per cent, by each test and by each pair, with walls that hold and with a layer that slides. Half an hour
-of one core. The table and the chart of docs/guide/which_test.md are this script's."""
+of one core."""
 
 import itertools
 import json
