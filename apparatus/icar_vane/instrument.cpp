@@ -281,10 +281,8 @@ std::vector<std::string> localisation_use(const Scene& scene) {
                   1e3 * *width, *width / cell)};
   lines.push_back(layer > 0.0 ? fmt::format("breakdown: by the mean shear rate over {:g} mm, {:.2g} cells",
                                             1e3 * layer, layer / cell)
-                              : fmt::format("breakdown: by the shear rate at the point; below {:g} cells of "
-                                            "sheared width the torque's fall hangs on them "
-                                            "(mix.thixotropy.layer)",
-                                            cells_of_width));
+                              : "breakdown: by the shear rate at the point; below one cell of sheared width "
+                                "the torque's fall hangs on the cells (mix.thixotropy.layer)");
   return lines;
 }
 
