@@ -46,6 +46,7 @@ struct Scene {
   double rate = 27.0 / 3600.0;    ///< of the pour [m^3/s]
   double workable = 14400.0;      ///< age up to which the concrete is [s]
   std::vector<Load> loads;
+  std::vector<Mix> mixes = {};  ///< of the loads; empty: mix
   std::optional<Cage> cage = {};
   WallLaw walls = NoSlip{};
   Model model;
@@ -93,6 +94,10 @@ struct Results {
 };
 
 using Record = experiment::Record<Results, Sample>;
+
+inline const Mix& mix_of(const Scene& scene, std::size_t load) {
+  return scene.mixes.empty() ? scene.mix : scene.mixes[load];
+}
 
 /// Depth of the cover [m]: what lies outside the cage, or 75 mm where there is none.
 inline double cover_depth(const Scene& scene) {

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <numbers>
 
 #include "apparatus/bored_pile/bored_pile.hpp"
@@ -75,7 +76,22 @@ Schema pile_sections() {
                  .dimension = Dimension::time,
                  .range = not_negative,
                  .fallback = "0 min",
-                 .help = "of the pour, before it"}},
+                 .help = "of the pour, before it"},
+                {.name = "yield_stress",
+                 .dimension = Dimension::pressure,
+                 .range = not_negative,
+                 .example = "80 Pa",
+                 .help = "of this load's mix; left out: as in [mix]"},
+                {.name = "plastic_viscosity",
+                 .dimension = Dimension::viscosity,
+                 .range = positive,
+                 .example = "50 Pa.s",
+                 .help = "likewise"},
+                {.name = "structuration_rate",
+                 .dimension = Dimension::structuration,
+                 .range = not_negative,
+                 .example = "0.5 Pa/s",
+                 .help = "likewise, beside [mix.thixotropy]"}},
        .repeated = true},
       {.name = "walls",
        .help = "Of the bore; its base and the pipe's outside hold the concrete.",
@@ -178,6 +194,41 @@ std::optional<Cage> read_cage(const Values& values) {
               values.number("cage.hoop_diameter")};
 }
 
+/// The mix of load i: what the load leaves out is the scene's.
+Mix read_mix_of_load(const Values& values, const Scene& scene, std::size_t i) {
+  Mix mix = scene.mix;
+  const auto key = [i](const char* name) { return fmt::format("load[{}].{}", i, name); };
+  const auto read = [&](const char* name, double& number) {
+    if (values.has(key(name))) number = values.number(key(name));
+  };
+  if (values.has(key("plastic_viscosity")) && is_viscous(scene.model.law))
+    values.fail(key("plastic_viscosity"),
+                "has no meaning beside mix.consistency, which holds for all loads; allowed here: yield_stress, "
+                "structuration_rate");
+  if (values.has(key("structuration_rate")) && !mix.thixotropy)
+    values.fail(key("structuration_rate"), "needs [mix.thixotropy], whose kinetics hold for all loads");
+  read("yield_stress", mix.tau_0), read("plastic_viscosity", mix.mu);
+  if (!mix.thixotropy) return mix;
+  read("structuration_rate", mix.thixotropy->A_thix);
+  if (mix.tau_0 == 0.0)
+    values.fail(key("yield_stress"), "is 0 with [mix.thixotropy]; allowed: greater than 0 Pa");
+  return mix;
+}
+
+/// The mixes of the loads; empty where all are the scene's.
+std::vector<Mix> read_mixes(const Values& values, const Scene& scene) {
+  const auto is_scenes = [&](const Mix& mix) {
+    return mix.tau_0 == scene.mix.tau_0 && mix.mu == scene.mix.mu &&
+           (!mix.thixotropy || mix.thixotropy->A_thix == scene.mix.thixotropy->A_thix);
+  };
+  std::vector<Mix> mixes;
+  for (std::size_t i = 0; i < values.count("load"); ++i) mixes.push_back(read_mix_of_load(values, scene, i));
+  if (std::all_of(mixes.begin(), mixes.end(), is_scenes)) return {};
+  if (scene.model.method == MethodKind::newton)
+    values.fail("model.method", "\"newton\" knows one mix for all loads; allowed: \"auto\", \"admm\"");
+  return mixes;
+}
+
 std::vector<Load> read_loads(const Values& values) {
   std::vector<Load> loads;
   for (std::size_t i = 0; i < values.count("load"); ++i) {
@@ -234,6 +285,7 @@ Scene read_scene(const Values& values) {
   scene.model = read_model(values);
   scene.frame_interval = read_output(values).frame_interval;
   scene.cage = read_cage(values);
+  scene.mixes = read_mixes(values, scene);
   check_pile(values, scene);
   if (scene.cage) check_cage(values, scene);
   return scene;

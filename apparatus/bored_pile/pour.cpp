@@ -21,6 +21,19 @@ Axis across(const Scene& scene) {
   return {.h = scene.radius / best, .low = FaceKind::free_slip, .high = face(scene.walls), .n_cells = best};
 }
 
+/// Gives the points, which are the first load's, and those to come the mix of their load; what scales a step's tolerances is the
+/// mean of the loads.
+void tell_mixes_apart(const Scene& scene, ImplicitBody<Section>& body) {
+  body.mixes = scene.mixes;
+  body.points.mix.assign(body.points.size(), 0);
+  double volume = 0.0, tau_0 = 0.0, mu = 0.0;
+  for (std::size_t i = 0; i < scene.loads.size(); ++i) {
+    const double V = scene.loads[i].volume;
+    volume += V, tau_0 += V * scene.mixes[i].tau_0, mu += V * scene.mixes[i].mu;
+  }
+  body.mix.tau_0 = tau_0 / volume, body.mix.mu = mu / volume;
+}
+
 /// Adds a point of the concrete that leaves the pipe.
 void add_concrete(const Scene& scene, Pour& pour, const Vec<2>& x, double V, double speed) {
   auto& points = pour.body.points;
@@ -30,6 +43,7 @@ void add_concrete(const Scene& scene, Pour& pour, const Vec<2>& x, double V, dou
   add_point<2>(points, x, mix.density * V, V * std::exp(-ln_J), ln_J);
   points.v.back()[1] = -speed;
   const std::size_t load = load_at(scene, pour.placed);
+  if (!scene.mixes.empty()) points.mix.push_back(static_cast<int>(load));
   pour.load.push_back(static_cast<double>(load + 1));
   pour.batched.push_back(pour.body.time - scene.loads[load].age);
   if (!mix.thixotropy) return;
@@ -121,15 +135,16 @@ std::size_t load_at(const Scene& scene, double volume) {
 }
 
 double flocculation_at_mouth(const Scene& scene, const Pour& pour) {
-  const Thixotropy& t = *scene.mix.thixotropy;
   const std::size_t load = load_at(scene, pour.placed);
+  const Mix& mix = mix_of(scene, load);
+  const Thixotropy& t = *mix.thixotropy;
   double before = 0.0;
   for (std::size_t i = 0; i < load; ++i) before += scene.loads[i].volume;
   // A pipe's filling stood still in the pause before its load.
   const double r = scene.pipe.inner_radius;
   const double filling = std::numbers::pi * r * r * std::max(0.0, mean_level(scene, pour) - mouth_of(pour));
   const bool stood = before > pour.first_charge && pour.placed < before + filling;
-  return flocculation_after_rest(t.initial_flocculation, t, scene.mix.tau_0,
+  return flocculation_after_rest(t.initial_flocculation, t, mix.tau_0,
                                  scene.loads[load].rest + (stood ? scene.loads[load].pause : 0.0));
 }
 
@@ -137,7 +152,7 @@ Pour start_of(const Scene& scene) {
   Pour pour;
   auto& body = pour.body;
   const auto [n, n_up] = scene.model.points_per_cell;
-  body.mix = scene.mix;
+  body.mix = mix_of(scene, 0);
   body.gravity[1] = -gravity * (1.0 - scene.fluid_density / scene.mix.density);
   body.grid.axes[0] = across(scene);
   const double h = body.grid.axes[0].h, h_up = scene.model.cell[1];
@@ -153,6 +168,7 @@ Pour start_of(const Scene& scene) {
       [&](const Vec<2>& x) { return x[0] > r || x[1] < mouth; },
       [&](const Vec<2>& x) { return scene.mix.density * -body.gravity[1] * (top - x[1]); }, body.points);
   experiment::rest(body, scene.loads[0].rest);
+  if (!scene.mixes.empty()) tell_mixes_apart(scene, body);
   pour.load.assign(body.points.size(), 1.0);
   pour.batched.assign(body.points.size(), -scene.loads[0].age);
   pour.phases = phases_of(scene, pour.first_charge);

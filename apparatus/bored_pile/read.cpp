@@ -94,9 +94,9 @@ double pressure_at_mouth(const Scene& scene, const Pour& pour) {
   return std::max(0.0, own.value_or(0.0)) + fluid_pressure(scene, mouth);
 }
 
-/// Height of concrete in the pipe above its mouth that the flow needs [m].
+/// Height of concrete in the pipe above its mouth that the flow needs [m]. All of it is of the load that leaves the mouth.
 double head_needed(const Scene& scene, const Pour& pour, double at_mouth) {
-  const Mix& mix = scene.mix;
+  const Mix& mix = mix_of(scene, load_at(scene, pour.placed));
   const double tau_y =
       static_yield_stress(mix.thixotropy ? flocculation_at_mouth(scene, pour) : 0.0, mix.tau_0);
   const double left = mix.density * gravity - pipe_pressure_gradient(pour.inlet.flow, scene.pipe.inner_radius,
@@ -107,11 +107,12 @@ double head_needed(const Scene& scene, const Pour& pour, double at_mouth) {
 /// Largest static yield stress of the points within a cell of the surface [Pa].
 double stress_of_surface(const Scene& scene, const Pour& pour, double surface) {
   const double from = surface - pour.body.grid.axes[1].h;
-  double largest = scene.mix.tau_0;
   const auto& points = pour.body.points;
-  for (std::size_t p = 0; p < points.lambda.size(); ++p)
+  double largest = 0.0;
+  for (std::size_t p = 0; p < points.size(); ++p)
     if (points.x[p][1] > from)
-      largest = std::max(largest, static_yield_stress(points.lambda[p], scene.mix.tau_0));
+      largest = std::max(largest, static_yield_stress(points.thixotropic() ? points.lambda[p] : 0.0,
+                                                      pour.body.mix_of(p).tau_0));
   return largest;
 }
 

@@ -203,7 +203,8 @@ scene::Outcome run_and_read(const Scene& scene, const RunOptions& options, const
 std::vector<std::string> uses(const Scene& scene) {
   std::vector<std::string> lines{flocculation_use(scene.mix)};
   lines.push_back("pipe: its inside by its head alone, its outside a wall that holds");
-  lines.push_back(fmt::format("loads: {}, told apart point by point", scene.loads.size()));
+  lines.push_back(fmt::format("loads: {} of {}, told apart point by point", scene.loads.size(),
+                              scene.mixes.empty() ? "one mix" : "their own mixes"));
   lines.push_back("fluid: by its buoyancy and its pressure; no mixing");
   lines.push_back("walls: " + word(scene.walls));
   lines.push_back(scene.cage

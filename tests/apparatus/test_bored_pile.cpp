@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <any>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <string>
 #include <variant>
@@ -144,6 +146,76 @@ TEST(BoredPile, StandsHigherInsideACage) {
   EXPECT_GT(step("25 mm"), step("0.1 mm") + 5.0);
 }
 
+/// Head and pressure at the mouth, row by row while this load is placed and flows.
+std::vector<std::array<double, 2>> heads(const scene::Outcome& outcome, double load) {
+  const auto of = [&](const char* name) { return scene::find_column(outcome.series, name)->values; };
+  const auto loads = of("load"), head = of("head_needed_m"), mouth = of("pressure_at_mouth_Pa");
+  std::vector<std::array<double, 2>> rows;
+  for (std::size_t i = 0; i < loads.size(); ++i)
+    if (loads[i] == load && std::isfinite(head[i])) rows.push_back({head[i], mouth[i]});
+  return rows;
+}
+
+/// Buckingham and Reiner: the pressure gradient that drives the flow Q through a pipe, by bisection of the plug's share phi.
+double buckingham_reiner(double Q, double R, double tau_0, double mu) {
+  double low = 1e-6, high = 1.0 - 1e-12;
+  for (int i = 0; i < 100; ++i) {
+    const double phi = 0.5 * (low + high), G = 2.0 * tau_0 / (phi * R);
+    const double flow = std::numbers::pi * std::pow(R, 4) * G / (8.0 * mu) *
+                        (1.0 - 4.0 / 3.0 * phi + std::pow(phi, 4) / 3.0);
+    (flow > Q ? low : high) = phi;
+  }
+  return 2.0 * tau_0 / (low * R);
+}
+
+// A stiffer second load: while it leaves the mouth the head carries the pressure there and its own friction in the pipe, while the
+// others do theirs. Both are closed forms, and the head is what was written.
+TEST(BoredPile, TheHeadIsThatOfTheLoadInThePipe) {
+  const scene::Outcome outcome = run({"load[1].yield_stress=200 Pa", "load[1].plastic_viscosity=60 Pa.s"});
+  EXPECT_TRUE(outcome.checks.reasons.empty()) << outcome.checks.reasons.front();
+  EXPECT_LE(std::abs(result(outcome, "volume_error")), 1e-2);
+  for (const auto& [load, tau_0, mu] : {std::array{1.0, 50.0, 30.0}, {2.0, 200.0, 60.0}, {3.0, 50.0, 30.0}}) {
+    const double G = buckingham_reiner(8.0 / 3600.0, 0.075, tau_0, mu);
+    const auto rows = heads(outcome, load);
+    EXPECT_GT(rows.size(), 5u) << load;
+    for (const auto& [head, mouth] : rows)
+      EXPECT_NEAR(head * (2400.0 * 9.80665 - G), mouth, 1e-6 * mouth) << load;
+  }
+}
+
+// A load that repeats the scene's mix is the same pour. One that differs is told from the others point by point: until it
+// enters, nothing differs but by rounding.
+TEST(BoredPile, ALoadOfTheSameMixChangesNothing) {
+  const auto one = run(), same = run({"load[1].yield_stress=50 Pa", "load[2].plastic_viscosity=30 Pa.s"}),
+             other = run({"load[2].yield_stress=150 Pa"});
+  const auto& levels = scene::find_column(one.series, "level_at_pipe_m")->values;
+  EXPECT_EQ(scene::find_column(same.series, "level_at_pipe_m")->values, levels);
+  EXPECT_EQ(heads(same, 3.0), heads(one, 3.0));
+  const auto before = heads(one, 2.0), beside = heads(other, 2.0);
+  ASSERT_EQ(beside.size(), before.size());
+  for (std::size_t i = 0; i < before.size(); ++i)
+    EXPECT_NEAR(beside[i][1], before[i][1], 1e-3 * before[i][1]) << i;
+  EXPECT_GT(heads(other, 3.0).back()[0], heads(one, 3.0).back()[0]);
+}
+
+// Stiffer concrete pushes the first load up before it, weaker concrete breaks through it: the mean height of the first load at the
+// end.
+TEST(BoredPile, AWeakerLoadOvertakesTheFirst) {
+  const auto height_of_first = [](const char* yield_stress) {
+    std::vector<std::string> overrides;
+    for (const int load : {1, 2}) overrides.push_back(fmt::format("load[{}].yield_stress={}", load, yield_stress));
+    const Frame end = bored_pile::run(bored_pile_scene(overrides)).final_frame;
+    double sum = 0.0, volume = 0.0;
+    for (std::size_t p = 0; p < end.load.size(); ++p)
+      if (end.load[p] == 1.0) sum += end.volume[p] * end.position[p][2], volume += end.volume[p];
+    return sum / volume;
+  };
+  const double weaker = height_of_first("5 Pa"), stiffer = height_of_first("300 Pa");
+  std::printf("mean height of the first load: %.3f m under weaker loads, %.3f m under stiffer ones\n", weaker,
+              stiffer);
+  EXPECT_GT(stiffer, weaker + 0.05);
+}
+
 // Alternating pressures, the larger the higher, on a straight line: what is left is the line.
 TEST(BoredPile, ReadsPressuresWithoutStripes) {
   std::vector<double> line, stripes;
@@ -163,6 +235,17 @@ TEST(BoredPile, RefusesWhatCannotBePoured) {
         "fluid.density=2500 kg/m3", "cage.radius=0.28 m", "model.scheme=explicit", "model.cell=0.2 m",
         "cage.bars=60", "load[3].pause=1 s", "load[x].pause=1 s", "load[].pause=1 s", "pile[0].radius=1 m"})
     EXPECT_THROW(run({set}), scene::InputError) << set;
+}
+
+// What a load may not have of its own, with what it lacks beside it.
+TEST(BoredPile, RefusesWhatAllLoadsShare) {
+  for (const auto& set : std::vector<std::vector<std::string>>{
+           {"load[1].density=2300 kg/m3"},
+           {"load[1].structuration_rate=1 Pa/s"},
+           {"load[1].yield_stress=60 Pa", "model.method=newton"},
+           {"load[1].yield_stress=0 Pa", "mix.thixotropy.structuration_rate=1 Pa/s"},
+           {"load[1].plastic_viscosity=20 Pa.s", "mix.consistency=12 Pa.s^n", "mix.flow_index=1.2"}})
+    EXPECT_THROW(run(set), scene::InputError) << set.front();
 }
 
 }  // namespace
