@@ -30,8 +30,8 @@ void lay_out_mixes(const ActiveGrid<Geometry::dim>& grid, const Points<Geometry:
     for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
       const auto p = static_cast<std::size_t>(grid.order[i]);
       const Mix& mix = mixes[static_cast<std::size_t>(points.mix[p])];
-      const auto share = detail::place_shares<D>(
-          local_coordinates<D>(grid.axes, grid.cell_index[c], points.x[p]));
+      const auto share =
+          detail::place_shares<D>(local_coordinates<D>(grid.axes, grid.cell_index[c], points.x[p]));
       const double section = points.volume(p) / Geometry::measure(points.x[p]),
                    structure = points.thixotropic() ? 1.0 + points.lambda[p] : 1.0;
       all.add(mix, structure, section);
