@@ -1,7 +1,7 @@
 #pragma once
 
-// The pour of a bored pile through a tremie pipe: a section of the pile, the concrete entering at the pipe's mouth load after
-// load, the pipe withdrawn in pieces.
+// The pour of a bored pile or of a panel of a diaphragm wall through a tremie pipe: a section of it, the concrete entering at the
+// pipe's mouth load after load, the pipe withdrawn in pieces.
 
 #include <numbers>
 #include <optional>
@@ -40,12 +40,14 @@ struct Cage {
 /// A checked scene, SI units.
 struct Scene {
   Mix mix;
-  double radius = 0.75, depth = 16.0;  ///< of the pile [m]
+  double radius = 0.75, depth = 16.0;  ///< of the pile; half the length of a panel [m]
+  double width = 0.0;                  ///< of a panel, whose section is a plane [m]; 0: a pile
   Pipe pipe;
   double fluid_density = 1100.0;  ///< [kg/m^3]
   double rate = 27.0 / 3600.0;    ///< of the pour [m^3/s]
   double workable = 14400.0;      ///< age up to which the concrete is [s]
   std::vector<Load> loads;
+  std::vector<Mix> mixes = {};  ///< of the loads; empty: mix
   std::optional<Cage> cage = {};
   WallLaw walls = NoSlip{};
   Model model;
@@ -94,9 +96,25 @@ struct Results {
 
 using Record = experiment::Record<Results, Sample>;
 
+inline const Mix& mix_of(const Scene& scene, std::size_t load) {
+  return scene.mixes.empty() ? scene.mix : scene.mixes[load];
+}
+
 /// Depth of the cover [m]: what lies outside the cage, or 75 mm where there is none.
 inline double cover_depth(const Scene& scene) {
   return scene.cage ? scene.radius - scene.cage->radius - 0.5 * scene.cage->bar_diameter : 0.075;
+}
+
+/// Area of the bore within x of its middle [m^2].
+inline double area_within(const Scene& scene, double x) {
+  return scene.width > 0.0 ? 2.0 * scene.width * x : std::numbers::pi * x * x;
+}
+/// Volume of the bore over that of the section: a panel's is one half of it, a metre wide.
+inline double whole(const Scene& scene) { return scene.width > 0.0 ? 2.0 * scene.width : 1.0; }
+/// How far the pipe's outside reaches from the middle [m]. In a panel the pipe is a slot of its area, across the whole width.
+inline double pipe_reach(const Scene& scene) {
+  const double r = scene.pipe.outer_radius;
+  return scene.width > 0.0 ? std::numbers::pi * r * r / (2.0 * scene.width) : r;
 }
 
 /// Volume that the pile holds with the pipe out of it [m^3].

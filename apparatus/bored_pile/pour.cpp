@@ -2,6 +2,7 @@
 
 #include "apparatus/run/body_readings.hpp"
 #include "apparatus/run/step_settings.hpp"
+#include "libmpm/geometry/spaces.hpp"
 #include "libmpm/particles/seeding.hpp"
 
 namespace tremie::bored_pile {
@@ -10,7 +11,7 @@ namespace {
 /// The axis from the middle to the wall, of cells of about `cell`: of the numbers of cells within a quarter of that the one of
 /// which a face is nearest to the pipe's outside.
 Axis across(const Scene& scene) {
-  const double wanted = scene.radius / scene.model.cell[0], share = scene.pipe.outer_radius / scene.radius;
+  const double wanted = scene.radius / scene.model.cell[0], share = pipe_reach(scene) / scene.radius;
   const auto cost = [&](int n) {
     const double faces = std::max(1.0, std::round(n * share));
     return std::abs(n * share / faces - 1.0) + 0.1 * std::abs(n - wanted) / wanted;
@@ -21,8 +22,23 @@ Axis across(const Scene& scene) {
   return {.h = scene.radius / best, .low = FaceKind::free_slip, .high = face(scene.walls), .n_cells = best};
 }
 
+/// Gives the points, which are the first load's, and those to come the mix of their load; what scales a step's tolerances is the
+/// mean of the loads.
+template <class Section>
+void tell_mixes_apart(const Scene& scene, ImplicitBody<Section>& body) {
+  body.mixes = scene.mixes;
+  body.points.mix.assign(body.points.size(), 0);
+  double volume = 0.0, tau_0 = 0.0, mu = 0.0;
+  for (std::size_t i = 0; i < scene.loads.size(); ++i) {
+    const double V = scene.loads[i].volume;
+    volume += V, tau_0 += V * scene.mixes[i].tau_0, mu += V * scene.mixes[i].mu;
+  }
+  body.mix.tau_0 = tau_0 / volume, body.mix.mu = mu / volume;
+}
+
 /// Adds a point of the concrete that leaves the pipe.
-void add_concrete(const Scene& scene, Pour& pour, const Vec<2>& x, double V, double speed) {
+template <class Section>
+void add_concrete(const Scene& scene, Pour<Section>& pour, const Vec<2>& x, double V, double speed) {
   auto& points = pour.body.points;
   const Mix& mix = scene.mix;
   const double under = std::max(0.0, mean_level(scene, pour) - x[1]);
@@ -30,6 +46,7 @@ void add_concrete(const Scene& scene, Pour& pour, const Vec<2>& x, double V, dou
   add_point<2>(points, x, mix.density * V, V * std::exp(-ln_J), ln_J);
   points.v.back()[1] = -speed;
   const std::size_t load = load_at(scene, pour.placed);
+  if (!scene.mixes.empty()) points.mix.push_back(static_cast<int>(load));
   pour.load.push_back(static_cast<double>(load + 1));
   pour.batched.push_back(pour.body.time - scene.loads[load].age);
   if (!mix.thixotropy) return;
@@ -57,7 +74,8 @@ std::vector<Phase> phases_of(const Scene& scene, double first_charge) {
 /// Shifts the points upwards or down, layer by layer of cells, so that each layer below the surface holds what it has room for:
 /// a share of what is missing or too much in a step. Points crowd on their way through the pile by several per cent, and what
 /// evens them out from cell to cell (particle_shifting.hpp) mends little where the concrete rises as a plug.
-void even_layers(Pour& pour) {
+template <class Section>
+void even_layers(Pour<Section>& pour) {
   constexpr double share = 0.1;
   const auto& grid = pour.body.grid;
   const Axis &across = grid.axes[0], &up = grid.axes[1];
@@ -75,8 +93,10 @@ void even_layers(Pour& pour) {
   const int layers = *std::min_element(top.begin() + pour.inlet.cells, top.end()) - 1;
   if (layers <= pour.inlet.face) return;
   volume[static_cast<std::size_t>(pour.inlet.face - 1)] += volume_waiting(pour.inlet);
-  const double pile = std::numbers::pi * across.length() * across.length(),
-               beside = pile - std::numbers::pi * std::pow(pipe_radius(pour), 2);
+  const double R = across.length(), r = pipe_radius(pour);
+  constexpr bool ring = std::is_same_v<Section, Axisymmetric>;
+  const double pile = ring ? std::numbers::pi * R * R : R,
+               beside = pile - (ring ? std::numbers::pi * std::pow(r, 2) : r);
   std::vector<double> shift{0.0};
   for (int k = 0; k < layers; ++k) {
     const double room = (k < pour.inlet.face ? pile : beside) * up.h;
@@ -93,13 +113,14 @@ void even_layers(Pour& pour) {
 }
 
 /// Pulls the pipe by as many cells as leave it the least embedment.
-void pull(const Scene& scene, Pour& pour) {
+template <class Section>
+void pull(const Scene& scene, Pour<Section>& pour) {
   const Axis& up = pour.body.grid.axes[1];
   const double level = mean_level(scene, pour), embedment = level - mouth_of(pour);
   const Phase& last = pour.phases.back();
   const double to_come = last.before + last.rate * (last.end - last.begin) - pour.placed;
-  const double length = std::min({scene.pipe.pull, embedment - scene.pipe.least,
-                                  to_come / (std::numbers::pi * std::pow(pipe_radius(pour), 2))});
+  const double length = std::min(
+      {scene.pipe.pull, embedment - scene.pipe.least, to_come / area_within(scene, pipe_radius(pour))});
   const int cells = static_cast<int>(std::floor(length / up.h + 1e-9));
   if (cells < 1) return;
   double stays = 0.0;
@@ -107,7 +128,7 @@ void pull(const Scene& scene, Pour& pour) {
     add_concrete(scene, pour, x, V, speed);
     stays += V;
   });
-  pour.placed += stays;
+  pour.placed += whole(scene) * stays;
   pour.body.wall_nodes.clear();
 }
 
@@ -120,39 +141,43 @@ std::size_t load_at(const Scene& scene, double volume) {
   return i;
 }
 
-double flocculation_at_mouth(const Scene& scene, const Pour& pour) {
-  const Thixotropy& t = *scene.mix.thixotropy;
+template <class Section>
+double flocculation_at_mouth(const Scene& scene, const Pour<Section>& pour) {
   const std::size_t load = load_at(scene, pour.placed);
+  const Mix& mix = mix_of(scene, load);
+  const Thixotropy& t = *mix.thixotropy;
   double before = 0.0;
   for (std::size_t i = 0; i < load; ++i) before += scene.loads[i].volume;
   // A pipe's filling stood still in the pause before its load.
   const double r = scene.pipe.inner_radius;
   const double filling = std::numbers::pi * r * r * std::max(0.0, mean_level(scene, pour) - mouth_of(pour));
   const bool stood = before > pour.first_charge && pour.placed < before + filling;
-  return flocculation_after_rest(t.initial_flocculation, t, scene.mix.tau_0,
+  return flocculation_after_rest(t.initial_flocculation, t, mix.tau_0,
                                  scene.loads[load].rest + (stood ? scene.loads[load].pause : 0.0));
 }
 
-Pour start_of(const Scene& scene) {
-  Pour pour;
+template <class Section>
+Pour<Section> start_of(const Scene& scene) {
+  Pour<Section> pour;
   auto& body = pour.body;
   const auto [n, n_up] = scene.model.points_per_cell;
-  body.mix = scene.mix;
+  body.mix = mix_of(scene, 0);
   body.gravity[1] = -gravity * (1.0 - scene.fluid_density / scene.mix.density);
   body.grid.axes[0] = across(scene);
   const double h = body.grid.axes[0].h, h_up = scene.model.cell[1];
   body.grid.axes[1] = {.h = h_up, .low = FaceKind::no_slip};
-  const int cells = std::max(1, static_cast<int>(std::lround(scene.pipe.outer_radius / h)));
+  const int cells = std::max(1, static_cast<int>(std::lround(pipe_reach(scene) / h)));
   const int face = std::max(1, static_cast<int>(std::lround(scene.pipe.start / h_up)));
   pour.inlet = make_inlet<Section>(body.grid.axes, cells, face, n * cells, h_up / n_up);
   const double mouth = mouth_of(pour), top = mouth + 2.0 * h_up, r = cells * h;
-  pour.placed = pour.first_charge = section_of(scene, pour) * top + std::numbers::pi * r * r * mouth;
+  pour.placed = pour.first_charge = section_of(scene, pour) * top + area_within(scene, r) * mouth;
   const int rows = (face + 2) * n_up;
   seed_box<Section>(
       {0.0, 0.0}, {scene.radius, top}, {body.grid.axes[0].n_cells * n, rows}, scene.mix.density, scene.mix.K,
       [&](const Vec<2>& x) { return x[0] > r || x[1] < mouth; },
       [&](const Vec<2>& x) { return scene.mix.density * -body.gravity[1] * (top - x[1]); }, body.points);
   experiment::rest(body, scene.loads[0].rest);
+  if (!scene.mixes.empty()) tell_mixes_apart(scene, body);
   pour.load.assign(body.points.size(), 1.0);
   pour.batched.assign(body.points.size(), -scene.loads[0].age);
   pour.phases = phases_of(scene, pour.first_charge);
@@ -161,7 +186,8 @@ Pour start_of(const Scene& scene) {
   return pour;
 }
 
-double prepare(const Scene& scene, double cfl, Pour& pour) {
+template <class Section>
+double prepare(const Scene& scene, double cfl, Pour<Section>& pour) {
   if (mean_level(scene, pour) - mouth_of(pour) > scene.pipe.most) pull(scene, pour);
   const double now = pour.body.time;
   const auto after = std::find_if(pour.phases.begin(), pour.phases.end(),
@@ -170,7 +196,7 @@ double prepare(const Scene& scene, double cfl, Pour& pour) {
   const double due = phase.before + phase.rate * (now - phase.begin), ahead = pour.placed - due;
   const bool waits =
       ahead > 1e-9 * pour.placed;  // a pulled pipe's concrete is there before the pump has brought it
-  pour.inlet.flow = waits ? 0.0 : phase.rate;
+  pour.inlet.flow = waits ? 0.0 : phase.rate / whole(scene);
   place_pipe(pour.inlet, pour.body.grid);
   double left = phase.end - now;
   if (waits && phase.rate > 0.0) left = std::min(left, ahead / phase.rate);
@@ -179,13 +205,21 @@ double prepare(const Scene& scene, double cfl, Pour& pour) {
   return fastest > 0.0 ? std::min(left, cfl * pour.body.grid.axes[1].h / fastest) : left;
 }
 
-void let_in(const Scene& scene, Pour& pour) {
+template <class Section>
+void let_in(const Scene& scene, Pour<Section>& pour) {
   const double dt = pour.body.dt;
   bend_paths(pour.body.grid, dt, pour.body.points);
   tremie::let_in(pour.inlet, pour.body.grid.axes[1], dt,
                  [&](const Vec<2>& x, double V, double speed) { add_concrete(scene, pour, x, V, speed); });
-  pour.placed += pour.inlet.flow * dt;
+  pour.placed += whole(scene) * pour.inlet.flow * dt;
   even_layers(pour);
 }
+
+#define TREMIE_POUR_IN(Section)                                  \
+  template Pour<Section> start_of(const Scene&);                 \
+  template double prepare(const Scene&, double, Pour<Section>&); \
+  template void let_in(const Scene&, Pour<Section>&);            \
+  template double flocculation_at_mouth(const Scene&, const Pour<Section>&);
+TREMIE_IN_SECTIONS(TREMIE_POUR_IN)
 
 }  // namespace tremie::bored_pile

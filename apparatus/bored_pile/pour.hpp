@@ -14,8 +14,6 @@
 
 namespace tremie::bored_pile {
 
-using Section = Axisymmetric;
-
 /// A stretch of the schedule.
 struct Phase {
   double begin = 0.0, end = 0.0;  ///< [s]
@@ -23,6 +21,8 @@ struct Phase {
   double before = 0.0;            ///< volume placed when it begins [m^3]
 };
 
+/// Of a pile, Axisymmetric, or a panel, PlaneStrain.
+template <class Section>
 struct Pour {
   ImplicitBody<Section> body;
   std::vector<double> load, batched;  ///< of each point: its load from 1; when it was batched [s]
@@ -41,18 +41,33 @@ struct Pour {
 std::vector<BarPoint<2>> screen_of(const Cage& cage, double height, double cell);
 
 /// The pile filled to just above the pipe's mouth.
-Pour start_of(const Scene& scene);
+template <class Section>
+Pour<Section> start_of(const Scene& scene);
 
-inline double mouth_of(const Pour& pour) { return pour.inlet.face * pour.body.grid.axes[1].h; }
-inline double pipe_radius(const Pour& pour) { return pour.inlet.cells * pour.body.grid.axes[0].h; }
-/// Section of the pile beside the pipe [m^2].
-inline double section_of(const Scene& scene, const Pour& pour) {
-  return std::numbers::pi * (scene.radius * scene.radius - pipe_radius(pour) * pipe_radius(pour));
+template <class Section>
+double mouth_of(const Pour<Section>& pour) {
+  return pour.inlet.face * pour.body.grid.axes[1].h;
+}
+/// How far the pipe reaches from the middle on the grid [m].
+template <class Section>
+double pipe_radius(const Pour<Section>& pour) {
+  return pour.inlet.cells * pour.body.grid.axes[0].h;
+}
+/// Area of the bore beside the pipe [m^2].
+template <class Section>
+double section_of(const Scene& scene, const Pour<Section>& pour) {
+  const double R = scene.radius, r = pipe_radius(pour);
+  return scene.width > 0.0 ? area_within(scene, R - r) : std::numbers::pi * (R * R - r * r);
+}
+/// Volume that came in and holds no points yet [m^3].
+template <class Section>
+double waiting(const Scene& scene, const Pour<Section>& pour) {
+  return whole(scene) * volume_waiting(pour.inlet);
 }
 /// Mean level beside the pipe that the placed volume makes [m].
-inline double mean_level(const Scene& scene, const Pour& pour) {
-  const double r = pipe_radius(pour);
-  return (pour.placed - std::numbers::pi * r * r * mouth_of(pour)) / section_of(scene, pour);
+template <class Section>
+double mean_level(const Scene& scene, const Pour<Section>& pour) {
+  return (pour.placed - area_within(scene, pipe_radius(pour)) * mouth_of(pour)) / section_of(scene, pour);
 }
 /// Pressure of the displaced fluid [Pa].
 inline double fluid_pressure(const Scene& scene, double height) {
@@ -62,19 +77,25 @@ inline double fluid_pressure(const Scene& scene, double height) {
 /// The load of the next volume, from 0.
 std::size_t load_at(const Scene& scene, double volume);
 /// lambda of the concrete that leaves the pipe.
-double flocculation_at_mouth(const Scene& scene, const Pour& pour);
+template <class Section>
+double flocculation_at_mouth(const Scene& scene, const Pour<Section>& pour);
 
 /// Sets the flow for the step to come and returns how long it may be [s]. Pulls the pipe where it is due.
-double prepare(const Scene& scene, double cfl, Pour& pour);
+template <class Section>
+double prepare(const Scene& scene, double cfl, Pour<Section>& pour);
 /// What came in over the last step.
-void let_in(const Scene& scene, Pour& pour);
+template <class Section>
+void let_in(const Scene& scene, Pour<Section>& pour);
 
 /// Pressures of a column of cells without what alternates from one to the next; a straight line stays as it is. With one
 /// pressure a cell, alternating pressures push quadratic splines nowhere (docs/theory/bored_pile.md).
 std::vector<double> without_stripes(const std::vector<double>& of_cells);
 
 /// Readings of the concrete as it stands.
-Sample read(const Scene& scene, const StepReport& step, Pour& pour);
-void read_results(const Scene& scene, const Pour& pour, const std::vector<Sample>& series, Results& results);
+template <class Section>
+Sample read(const Scene& scene, const StepReport& step, Pour<Section>& pour);
+template <class Section>
+void read_results(const Scene& scene, const Pour<Section>& pour, const std::vector<Sample>& series,
+                  Results& results);
 
 }  // namespace tremie::bored_pile

@@ -5,13 +5,15 @@
 #include "apparatus/bored_pile/pour.hpp"
 #include "apparatus/parts/pipe_flow.hpp"
 #include "apparatus/run/body_readings.hpp"
+#include "libmpm/geometry/spaces.hpp"
 #include "libmpm/implicit/step_size.hpp"
 
 namespace tremie::bored_pile {
 namespace {
 
 /// Volume fractions of the cells, column by column from the axis and from the base up.
-std::vector<std::vector<double>> fills(const Pour& pour) {
+template <class Section>
+std::vector<std::vector<double>> fills(const Pour<Section>& pour) {
   const auto& axes = pour.body.grid.axes;
   std::vector<std::vector<double>> fill(static_cast<std::size_t>(axes[0].n_cells));
   const auto& points = pour.body.points;
@@ -42,16 +44,17 @@ struct Levels {
   double inside = 0.0, outside = 0.0;                         ///< means about the cage [m]
 };
 
-Levels levels(const Scene& scene, const Pour& pour) {
+template <class Section>
+Levels levels(const Scene& scene, const Pour<Section>& pour) {
   const auto fill = fills(pour);
   const double h = pour.body.grid.axes[0].h, h_up = pour.body.grid.axes[1].h, r = pipe_radius(pour);
   const auto first = static_cast<std::size_t>(pour.inlet.cells);
   const auto at = [&](std::size_t c) { return level_of(fill[c], h_up); };
   Levels levels{at(first), at((first + fill.size()) / 2), at(fill.size() - 1),
-                std::numbers::pi * r * r * mouth_of(pour) - volume_waiting(pour.inlet)};
+                area_within(scene, r) * mouth_of(pour) - waiting(scene, pour)};
   double area_inside = 0.0, area_outside = 0.0;
   for (std::size_t c = first; c < fill.size(); ++c) {
-    const double x = (static_cast<double>(c) + 0.5) * h, area = h * Section::measure({x, 0.0}),
+    const double x = (static_cast<double>(c) + 0.5) * h, area = whole(scene) * h * Section::measure({x, 0.0}),
                  under = at(c) * area;
     levels.volume += under;
     if (!scene.cage) continue;
@@ -63,15 +66,15 @@ Levels levels(const Scene& scene, const Pour& pour) {
 }
 
 /// Mean height of the surface beside the pipe [m].
-double surface_of(const Scene& scene, const Pour& pour, const Levels& levels) {
-  const double r = pipe_radius(pour);
-  return (levels.volume + volume_waiting(pour.inlet) - std::numbers::pi * r * r * mouth_of(pour)) /
+template <class Section>
+double surface_of(const Scene& scene, const Pour<Section>& pour, const Levels& levels) {
+  return (levels.volume + waiting(scene, pour) - area_within(scene, pipe_radius(pour)) * mouth_of(pour)) /
          section_of(scene, pour);
 }
 
 /// Mean of a number of the points that are chosen, by volume; empty where none is.
-template <class Chosen, class Number>
-std::optional<double> mean_over(const Pour& pour, Chosen chosen, Number number) {
+template <class Section, class Chosen, class Number>
+std::optional<double> mean_over(const Pour<Section>& pour, Chosen chosen, Number number) {
   const auto& points = pour.body.points;
   double sum = 0.0, volume = 0.0;
   for (std::size_t p = 0; p < points.size(); ++p)
@@ -79,12 +82,14 @@ std::optional<double> mean_over(const Pour& pour, Chosen chosen, Number number) 
   return volume > 0.0 ? std::optional(sum / volume) : std::nullopt;
 }
 
-double own_pressure(const Pour& pour, std::size_t p) {
+template <class Section>
+double own_pressure(const Pour<Section>& pour, std::size_t p) {
   return pressure(pour.body.points.ln_J[p], pour.body.mix.K);
 }
 
 /// Pressure at the pipe's mouth [Pa], by two layers of cells below it: without_stripes() says why.
-double pressure_at_mouth(const Scene& scene, const Pour& pour) {
+template <class Section>
+double pressure_at_mouth(const Scene& scene, const Pour<Section>& pour) {
   const double mouth = mouth_of(pour), h = pour.body.grid.axes[1].h,
                weight = pour.body.mix.density * pour.body.gravity[1];
   const auto own = mean_over(
@@ -94,29 +99,34 @@ double pressure_at_mouth(const Scene& scene, const Pour& pour) {
   return std::max(0.0, own.value_or(0.0)) + fluid_pressure(scene, mouth);
 }
 
-/// Height of concrete in the pipe above its mouth that the flow needs [m].
-double head_needed(const Scene& scene, const Pour& pour, double at_mouth) {
-  const Mix& mix = scene.mix;
+/// Height of concrete in the pipe above its mouth that the flow needs [m]. All of it is of the load that leaves the mouth.
+template <class Section>
+double head_needed(const Scene& scene, const Pour<Section>& pour, double at_mouth) {
+  const Mix& mix = mix_of(scene, load_at(scene, pour.placed));
   const double tau_y =
       static_yield_stress(mix.thixotropy ? flocculation_at_mouth(scene, pour) : 0.0, mix.tau_0);
-  const double left = mix.density * gravity - pipe_pressure_gradient(pour.inlet.flow, scene.pipe.inner_radius,
-                                                                     scene.model.law, mix.mu, tau_y);
+  const double left =
+      mix.density * gravity - pipe_pressure_gradient(whole(scene) * pour.inlet.flow, scene.pipe.inner_radius,
+                                                     scene.model.law, mix.mu, tau_y);
   return left > 0.0 ? at_mouth / left : std::numeric_limits<double>::infinity();
 }
 
 /// Largest static yield stress of the points within a cell of the surface [Pa].
-double stress_of_surface(const Scene& scene, const Pour& pour, double surface) {
+template <class Section>
+double stress_of_surface(const Pour<Section>& pour, double surface) {
   const double from = surface - pour.body.grid.axes[1].h;
-  double largest = scene.mix.tau_0;
   const auto& points = pour.body.points;
-  for (std::size_t p = 0; p < points.lambda.size(); ++p)
+  double largest = 0.0;
+  for (std::size_t p = 0; p < points.size(); ++p)
     if (points.x[p][1] > from)
-      largest = std::max(largest, static_yield_stress(points.lambda[p], scene.mix.tau_0));
+      largest = std::max(largest, static_yield_stress(points.thixotropic() ? points.lambda[p] : 0.0,
+                                                      pour.body.mix_of(p).tau_0));
   return largest;
 }
 
 /// The concrete along the wall, cell by cell.
-std::vector<AtWall> along_wall(const Scene& scene, const Pour& pour) {
+template <class Section>
+std::vector<AtWall> along_wall(const Scene& scene, const Pour<Section>& pour) {
   const auto& axes = pour.body.grid.axes;
   const auto& points = pour.body.points;
   std::vector<AtWall> wall(pour.wall_max.size());
@@ -166,7 +176,8 @@ std::vector<double> without_stripes(const std::vector<double>& of_cells) {
   return smooth;
 }
 
-Sample read(const Scene& scene, const StepReport& step, Pour& pour) {
+template <class Section>
+Sample read(const Scene& scene, const StepReport& step, Pour<Section>& pour) {
   const auto& body = pour.body;
   const Levels level = levels(scene, pour);
   // What moves to other cells brings velocities that change volume. The step takes that back by an impulse, a blow of pressure in
@@ -189,7 +200,7 @@ Sample read(const Scene& scene, const StepReport& step, Pour& pour) {
   now.mouth = mouth_of(pour), now.pressure_mouth = pour.mouth_mean;
   if (pour.inlet.flow > 0.0) now.head = head_needed(scene, pour, now.pressure_mouth);
   now.load = static_cast<double>(load_at(scene, pour.placed) + 1);
-  now.surface_stress = stress_of_surface(scene, pour, surface_of(scene, pour, level));
+  now.surface_stress = stress_of_surface(pour, surface_of(scene, pour, level));
   now.max_speed = step.max_speed, now.shear_rate_mean = step.shear_rate_mean;
   now.flocculation_mean = experiment::mean_flocculation(body.points);
   now.volume_change = experiment::volume_change(body.points);
@@ -201,13 +212,15 @@ Sample read(const Scene& scene, const StepReport& step, Pour& pour) {
   return now;
 }
 
-void read_results(const Scene& scene, const Pour& pour, const std::vector<Sample>& series, Results& r) {
+template <class Section>
+void read_results(const Scene& scene, const Pour<Section>& pour, const std::vector<Sample>& series,
+                  Results& r) {
   const auto& points = pour.body.points;
   const double level = mean_level(scene, pour);
   r.level_end = level, r.placed = pour.placed;
   const Levels under = levels(scene, pour);
   const double surface = surface_of(scene, pour, under);
-  r.volume_error = under.volume / (pour.placed - volume_waiting(pour.inlet)) - 1.0;
+  r.volume_error = under.volume / (pour.placed - waiting(scene, pour)) - 1.0;
   double head = 0.0, step = 0.0, placing = 0.0;
   for (const Sample& s : series) {
     head = std::max(head, s.head.value_or(0.0));
@@ -236,5 +249,10 @@ void read_results(const Scene& scene, const Pour& pour, const std::vector<Sample
     r.pressure_max = std::max(r.pressure_max, r.wall[k].pressure_max);
   }
 }
+
+#define TREMIE_READ_POUR_IN(Section)                                     \
+  template Sample read(const Scene&, const StepReport&, Pour<Section>&); \
+  template void read_results(const Scene&, const Pour<Section>&, const std::vector<Sample>&, Results&);
+TREMIE_IN_SECTIONS(TREMIE_READ_POUR_IN)
 
 }  // namespace tremie::bored_pile

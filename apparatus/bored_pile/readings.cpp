@@ -158,6 +158,10 @@ std::vector<std::string> remarks_of(const View& v) {
   for (const Load& load : v.scene.loads) volume += load.volume;
   if (v.r.placed < 0.999 * volume && !v.r.stopped_at && !ended_early(v.status))
     remarks.push_back(fmt::format("The pile is full: {:.2f} of {:.2f} m³ were placed.", v.r.placed, volume));
+  if (v.scene.width > 0.0)
+    remarks.push_back(
+        "A panel as a plane: the pipe is a slot across its width" +
+        std::string(v.scene.model.space == SpaceKind::plane ? ", and its long walls are left out." : "."));
   remarks.push_back("No stones, no bleeding, no mixing with the fluid; not validated by a pour.");
   return remarks;
 }
@@ -165,6 +169,7 @@ std::vector<std::string> remarks_of(const View& v) {
 Stage stage_of(const Scene& scene) {
   Stage stage;
   stage.mirrored = true;
+  if (scene.width > 0.0) stage.up = 1, stage.depth = 2;
   stage.walls = {{{scene.radius, scene.depth}, {scene.radius, 0.0}, {0.0, 0.0}}};
   stage.point_size = scene.model.cell[1] / scene.model.points_per_cell[1];
   return stage;
@@ -177,7 +182,7 @@ scene::Outcome run_and_read(const Scene& scene, const RunOptions& options, const
   add_reasons<View>({washed, crowded, too_old}, view, outcome.checks.reasons);
   outcome.remarks = remarks_of(view);
   outcome.stage = stage_of(scene);
-  outcome.axisymmetric = true;
+  outcome.axisymmetric = scene.width == 0.0;
   outcome.pictured = false;
   outcome.tables = {{"wall.csv", columns_from(wall_columns, raw.results.wall)}};
   outcome.charts = {
@@ -202,8 +207,13 @@ scene::Outcome run_and_read(const Scene& scene, const RunOptions& options, const
 
 std::vector<std::string> uses(const Scene& scene) {
   std::vector<std::string> lines{flocculation_use(scene.mix)};
+  if (scene.width > 0.0)
+    lines.push_back(scene.model.space == SpaceKind::plane
+                        ? "long walls: left out (model.space = \"plane\")"
+                        : "long walls: their drag, averaged over the width");
   lines.push_back("pipe: its inside by its head alone, its outside a wall that holds");
-  lines.push_back(fmt::format("loads: {}, told apart point by point", scene.loads.size()));
+  lines.push_back(fmt::format("loads: {} of {}, told apart point by point", scene.loads.size(),
+                              scene.mixes.empty() ? "one mix" : "their own mixes"));
   lines.push_back("fluid: by its buoyancy and its pressure; no mixing");
   lines.push_back("walls: " + word(scene.walls));
   lines.push_back(scene.cage

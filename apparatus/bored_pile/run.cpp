@@ -21,6 +21,7 @@ StepSettings step_settings(const Scene& scene) {
   settings.moving_surface = true;
   settings.alternating_viscosity = alternating_viscosity;
   settings.wall_law = scene.walls;
+  if (scene.model.space == SpaceKind::plane_with_side_walls) settings.side_wall_distance = scene.width;
   // Newton's method would leave the pressure of stiff concrete where it was.
   if (settings.method == YieldMethod::automatic) settings.method = YieldMethod::admm;
   settings.time_error = 0.002 * scene.model.step_scale * scene.model.step_scale;
@@ -28,19 +29,17 @@ StepSettings step_settings(const Scene& scene) {
   return settings;
 }
 
-Frame frame_of(const Pour& pour) {
+template <class Section>
+Frame frame_of(const Pour<Section>& pour) {
   Frame frame = experiment::frame_of(pour.body);
   frame.load = pour.load;
   for (const double batched : pour.batched) frame.age.push_back(pour.body.time - batched);
   return frame;
 }
 
-}  // namespace
-
-Record run(const Scene& scene, const scene::Observer& observer) {
-  experiment::refuse_what_has_no_engine(scene.model, "bored pile");
-  omp_set_num_threads(scene.threads);
-  Pour pour = start_of(scene);
+template <class Section>
+Record run_section(const Scene& scene, const scene::Observer& observer) {
+  Pour<Section> pour = start_of<Section>(scene);
   auto& body = pour.body;
   StepSettings settings = step_settings(scene);
   Record record;
@@ -82,30 +81,44 @@ Record run(const Scene& scene, const scene::Observer& observer) {
       observer, [&](const StepReport& step) { return read(scene, step, pour); },
       [&](std::optional<double>) {
         read_results(scene, pour, record.series, record.results);
-        const double in_points = pour.placed - volume_waiting(pour.inlet);
+        const double in_points = pour.placed - waiting(scene, pour);
         record.checks.mass_error =
-            experiment::total_mass(body.points) / (scene.mix.density * in_points) - 1.0;
+            whole(scene) * experiment::total_mass(body.points) / (scene.mix.density * in_points) - 1.0;
       },
       record);
   return record;
 }
 
-scene::SizeEstimate estimate(const Scene& scene) {
-  experiment::refuse_what_has_no_engine(scene.model, "bored pile");
-  const Pour pour = start_of(scene);
+template <class Section>
+scene::SizeEstimate estimate_section(const Scene& scene) {
+  const Pour<Section> pour = start_of<Section>(scene);
   const auto& axes = pour.body.grid.axes;
   scene::SizeEstimate e;
   e.cells_active = experiment::whole_steps(axes[0].n_cells * scene.depth / axes[1].h);
   const Inlet::Column& column = pour.inlet.columns.back();
-  e.points = experiment::whole_steps(pile_volume(scene) / (column.area * pour.inlet.row));
+  e.points = experiment::whole_steps(pile_volume(scene) / whole(scene) / (column.area * pour.inlet.row));
   e.bytes_per_point = bytes_per_point<2>(scene.mix.thixotropy.has_value());
-  const double step = StepSettings{}.cfl * axes[1].h / (scene.rate * pour.inlet.node_speed);
+  const double step = StepSettings{}.cfl * axes[1].h / (scene.rate / whole(scene) * pour.inlet.node_speed);
   e.time_expected = pour_time(scene);
   e.steps = e.steps_expected =
       experiment::whole_steps(scene.model.time_step ? e.time_expected / *scene.model.time_step
                                                     : 1.5 * pile_volume(scene) / scene.rate / step);
   e.point_step = 0.5e-6;  // of the points at the end, of which half are there in the mean
   return e;
+}
+
+}  // namespace
+
+Record run(const Scene& scene, const scene::Observer& observer) {
+  experiment::refuse_what_has_no_engine(scene.model, "bored pile");
+  omp_set_num_threads(scene.threads);
+  return scene.width > 0.0 ? run_section<PlaneStrain>(scene, observer)
+                           : run_section<Axisymmetric>(scene, observer);
+}
+
+scene::SizeEstimate estimate(const Scene& scene) {
+  experiment::refuse_what_has_no_engine(scene.model, "bored pile");
+  return scene.width > 0.0 ? estimate_section<PlaneStrain>(scene) : estimate_section<Axisymmetric>(scene);
 }
 
 }  // namespace tremie::bored_pile

@@ -12,11 +12,12 @@
 
 namespace tremie {
 
-/// A body of one mix on its grid: everything that a step reads and writes.
+/// A body of concrete on its grid: everything that a step reads and writes.
 template <class Geometry>
 struct Body {
   static constexpr int D = Geometry::dim;
-  Mix mix;
+  Mix mix;                          ///< where points differ in theirs: density, K and what scales tolerances
+  std::vector<Mix> mixes{};         ///< by Points::mix, of one density, K and kinetics; empty: mix
   Vec<D> gravity = Vec<D>::Zero();  ///< [m/s^2]
   Points<D> points;
   ActiveGrid<D> grid;
@@ -30,6 +31,10 @@ struct Body {
   std::vector<Vec<D>> v;           ///< nodal velocities at the end of the last step [m/s]
   double dissipation = 0.0;        ///< power of the stresses in the last step [W], if asked for
   std::vector<Vec<D>> wall_force;  ///< of the flat walls on each node in the last step [N], if asked for
+
+  const Mix& mix_of(std::size_t p) const {
+    return mixes.empty() ? mix : mixes[static_cast<std::size_t>(points.mix[p])];
+  }
 };
 
 }  // namespace tremie

@@ -13,7 +13,8 @@ inline constexpr bool stored_plainly<PackedAdmmState::Batch> = true;
 
 template <int D>
 void visit(Archive& archive, Points<D>& points) {
-  archive(points.x, points.v, points.C, points.mass, points.V0, points.ln_J, points.lambda, points.gamma_dot);
+  archive(points.x, points.v, points.C, points.mass, points.V0, points.ln_J, points.lambda, points.gamma_dot,
+          points.mix);
   for (std::vector<double>& part : points.lambda_parts) archive(part);
 }
 

@@ -18,8 +18,9 @@ void add_bar_point(const ImplicitBody<Geometry>& body, const YieldLaw& law, int 
   PointTerm<D> term;
   term.cell = c, term.source = source;
   term.N = stencil<D>(grid.axes, cell, local_coordinates<D>(grid.axes, cell, bar.x)).N;
-  double tau_y = 0.0, full = Geometry::measure(bar.x);
-  for (double at_point : problem.quadrature.tau_y[c]) tau_y += at_point / power(2, D);
+  double tau_y = 0.0, mu = 0.0, full = Geometry::measure(bar.x);
+  for (int k = 0; k < power(2, D); ++k)
+    tau_y += problem.quadrature.tau_y[c][k] / power(2, D), mu += problem.mu_at(c, k) / power(2, D);
   for (const Axis& axis : grid.axes) full *= axis.h;
   term.scale += (bar_drag_along - 1.0) * bar.axis * bar.axis.transpose();
   term.velocity = bar.velocity;
@@ -28,7 +29,7 @@ void add_bar_point(const ImplicitBody<Geometry>& body, const YieldLaw& law, int 
   term.reach = length / bar.mobility;
   const double rate = slip_velocity(term, grid.cell_nodes, body.v).norm() / bar.diameter;
   term.viscous =
-      (problem.mu +
+      (mu +
        viscosity(law, std::clamp(rate, viscosity_scale_rates[0], viscosity_scale_rates[1]), tau_y)) *
       term.reach;
   problem.bars.push_back(term);

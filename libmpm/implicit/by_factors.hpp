@@ -68,18 +68,19 @@ struct ByFactors {
     return admm_state.stress[c][k];
   }
 
-  /// Solves with the chosen method; `automatic` is ADMM, and Newton where ADMM does not converge. With bars it is ADMM
-  /// alone.
+  /// Solves with the chosen method; `automatic` is ADMM, and Newton where ADMM does not converge. With bars or several
+  /// viscosities it is ADMM alone.
   template <class Geometry>
   static SolveReport solve(YieldProblem<Geometry>& problem, const YieldLaw& law, const StepSettings& settings,
                            ImplicitBody<Geometry>& body) {
     const double scale = force_scale(body, problem.dt);
     body.system.set_pattern(body.grid);
-    if (settings.method == YieldMethod::newton && problem.bars.empty())
+    const bool newton = problem.bars.empty() && problem.quadrature.mu.empty();
+    if (settings.method == YieldMethod::newton && newton)
       return solve_newton(problem, law, settings.newton, scale, body.system, body.v, body.admm_state);
     FactorisedAdmm<Geometry> form{problem, law, settings.admm, body.system, body.admm_state};
     SolveReport report = solve_admm(problem, settings.admm, form, body.v);
-    if (report.converged || settings.method == YieldMethod::admm || !problem.bars.empty()) return report;
+    if (report.converged || settings.method == YieldMethod::admm || !newton) return report;
     const int before = report.iterations;
     start_again_if_lost(body);
     report = solve_newton(problem, law, settings.newton, scale, body.system, body.v, body.admm_state);

@@ -33,7 +33,9 @@ void add_side_walls(double W, const YieldLaw& law, const WallLaw& wall_law,
                     const std::vector<Vec<Geometry::dim>>& v, YieldProblem<Geometry>& problem) {
   constexpr int D = Geometry::dim;
   const auto& grid = problem.grid;
-  std::vector<double> V(grid.node_index.size(), 0.0), limit(grid.node_index.size(), 0.0);
+  std::vector<double> V(grid.node_index.size(), 0.0), limit = V;
+  std::vector<double> mu_V(problem.quadrature.mu.empty() ? 0 : V.size(),
+                           0.0);  // where it is not one everywhere
   for (int c = 0; c < grid.n_cells(); ++c)
     for (int k = 0; k < power(2, D); ++k) {
       const Stencil<D> st = stencil<D>(grid.axes, grid.cell_index[c], problem.quadrature.place[c][k]);
@@ -41,14 +43,18 @@ void add_side_walls(double W, const YieldLaw& law, const WallLaw& wall_law,
         V[grid.cell_nodes[c][i]] += st.N[i] * problem.quadrature.V[c][k];
         limit[grid.cell_nodes[c][i]] +=
             st.N[i] * problem.quadrature.V[c][k] * problem.quadrature.tau_y[c][k] * 2.0 / W;
+        if (!mu_V.empty())
+          mu_V[grid.cell_nodes[c][i]] += st.N[i] * problem.quadrature.V[c][k] * problem.quadrature.mu[c][k];
       }
     }
   fold_mirrors<D>(grid, V);
   fold_mirrors<D>(grid, limit);
+  if (!mu_V.empty()) fold_mirrors<D>(grid, mu_V);
   const std::optional<WallStress> layer = wall_stress(wall_law);
   for (std::size_t i = 0; i < V.size(); ++i) {
     const double tau_y = V[i] > 0.0 ? 0.5 * W * limit[i] / V[i] : 0.0;
-    const double mu = problem.mu + viscosity(law, 6.0 * v[i].norm() / W, tau_y);
+    const double own = mu_V.empty() || !(V[i] > 0.0) ? problem.mu : mu_V[i] / V[i],
+                 mu = own + viscosity(law, 6.0 * v[i].norm() / W, tau_y);
     NodeTerm<D> held;
     held.node = static_cast<int>(i);
     held.normal_axis = -1;

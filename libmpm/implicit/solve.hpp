@@ -13,7 +13,7 @@ template <class Form, class Geometry>
 auto stress_in(const YieldProblem<Geometry>& problem, const YieldLaw& law,
                const ImplicitBody<Geometry>& body) {
   return [&](int c, int k, const Vec<Geometry::n_strain>& q) -> Vec<Geometry::n_strain> {
-    return problem.mu * q + Form::stress(law, body.admm_state, c, k);
+    return problem.mu_at(c, k) * q + Form::stress(law, body.admm_state, c, k);
   };
 }
 

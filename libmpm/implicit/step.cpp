@@ -8,6 +8,7 @@
 #include "libmpm/geometry/spaces.hpp"
 #include "libmpm/implicit/detached_particles.hpp"
 #include "libmpm/implicit/pose.hpp"
+#include "libmpm/implicit/problem/mixes.hpp"
 #include "libmpm/implicit/solve.hpp"
 #include "libmpm/implicit/step_size.hpp"
 #include "libmpm/implicit/update.hpp"
@@ -29,6 +30,7 @@ StepReport step_from_grid(ImplicitBody<Geometry>& body, const YieldLaw& law, con
   old_cells = {};
   lay_out_quadrature<Geometry>(body.grid, body.points, body.mix.tau_0, body.mix.K, body.quadrature,
                                settings.cut_cell_rule, settings.settle_on_floor);
+  if (!body.mixes.empty()) lay_out_mixes<Geometry>(body.grid, body.points, body.mixes, body.quadrature);
   if constexpr (std::is_same_v<Geometry, Axisymmetric>)
     if (settings.alternating_viscosity > 0.0) lay_out_excess<Geometry>(body.grid, body.quadrature);
 
@@ -110,7 +112,7 @@ StepReport implicit_step(ImplicitBody<Geometry>& body, const YieldLaw& law, cons
   point_to_grid(body.grid, body.points, body.nodes);
   if constexpr (Geometry::dim == 3) {
     release(body.points.C);  // the grid has it now, and gives another one back
-    if (detail::by_iteration(body, settings))
+    if (body.mixes.empty() && detail::by_iteration(body, settings))
       return detail::step_from_grid<detail::ByIteration>(body, law, settings, wall, std::move(old_cells),
                                                          old_nodes);
   }

@@ -68,7 +68,7 @@ void clear_rigid_cells(const YieldProblem<Geometry>& problem, const YieldLaw& la
   }
 }
 
-/// lambda of every point, by the kinetics of the mix.
+/// lambda of every point, by the kinetics of its mix.
 template <class Form, class Geometry>
 void update_flocculation(const YieldProblem<Geometry>& problem, const YieldLaw& law,
                          const ImplicitBody<Geometry>& body, double dt, Points<Geometry::dim>& points) {
@@ -80,7 +80,7 @@ void update_flocculation(const YieldProblem<Geometry>& problem, const YieldLaw& 
     gamma_dot = layer_means<Geometry>(body.grid, points, gamma_dot, layer);
 #pragma omp parallel for schedule(static)
   for (std::size_t p = 0; p < points.size(); ++p)
-    points.lambda[p] = flocculation_step(points.lambda[p], *body.mix.thixotropy, body.mix.tau_0,
+    points.lambda[p] = flocculation_step(points.lambda[p], *body.mix_of(p).thixotropy, body.mix_of(p).tau_0,
                                          points.gamma_dot[p], gamma_dot[p], dt,
                                          [&](std::size_t i) -> double& { return points.lambda_parts[i][p]; });
   points.gamma_dot.swap(gamma_dot);

@@ -75,6 +75,7 @@ struct Quadrature {
   std::vector<char> full;  ///< in 3D: whether the cell lies inside the body and counts as full
   std::vector<std::array<double, n_places>> V;      ///< concrete volume of each place [m^3]
   std::vector<std::array<double, n_places>> tau_y;  ///< yield stress there [Pa]
+  std::vector<std::array<double, n_places>> mu;     ///< plastic viscosity there [Pa s]; empty: one everywhere
   std::vector<double> V_cell;                       ///< sum of V [m^3]
   std::vector<double> p;                            ///< pressure at the start of the step [Pa]
   std::vector<std::array<Vec<D>, n_places>> place;  ///< local coordinates of the places, in a section

@@ -56,7 +56,8 @@ struct YieldProblem {
   const ActiveGrid<D>& grid;
   const Quadrature<Geometry>& quadrature;
   const NodalState<D>& nodes;  ///< masses, and v* with gravity already in it
-  double dt, mu;
+  double dt;
+  double mu;                ///< where it is not one everywhere: of the scale of the stresses
   double K;                 ///< of the systems: the mix's, or as much as they can bear (admm_matrix_free.hpp)
   std::vector<char> fixed;  ///< a flag a component: prescribed by a wall
   std::vector<ContactPoint<D>> contact;  ///< moving rigid walls
@@ -73,6 +74,8 @@ struct YieldProblem {
 
   /// Pressure of cell c without divergence.
   double offset(int c) const { return p_offset.empty() ? quadrature.p[c] : p_offset[c]; }
+  /// Plastic viscosity at quadrature point k of cell c [Pa s].
+  double mu_at(int c, int k) const { return quadrature.mu.empty() ? mu : quadrature.mu[c][k]; }
   /// All terms at points, in the order in which they are added up.
   std::array<std::span<const PointTerm<D>>, 3> points() const { return {bound, surface, bars}; }
 };

@@ -61,7 +61,7 @@ struct FactorisedAdmm {
   bool prepare() {
     set_point_stiffness_admm(problem.mu + r, problem.bars);
     assemble(
-        problem, [&](int, int) { return problem.mu + r; }, system);
+        problem, [&](int c, int k) { return problem.mu_at(c, k) + r; }, system);
     if (!problem.wall_nodes.empty())
       add_node_stiffness_admm<D>(volumes_around_nodes(problem), problem.mu + r, problem.wall_nodes, system);
     system.fix(problem.fixed);
@@ -71,7 +71,7 @@ struct FactorisedAdmm {
 
   double solve(double, std::vector<Vec<D>>& v) {
     const auto stress = [&](int c, int k, const Strain& q) -> Strain {
-      return problem.mu * q + state.stress[c][k] + r * (q - state.rate[c][k]);
+      return problem.mu_at(c, k) * q + state.stress[c][k] + r * (q - state.rate[c][k]);
     };
     Eigen::VectorXd R = residual(problem, v, stress);
     add_node_forces_admm<D>(problem.wall_nodes, v, R);
