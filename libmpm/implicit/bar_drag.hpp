@@ -29,8 +29,7 @@ void add_bar_point(const ImplicitBody<Geometry>& body, const YieldLaw& law, int 
   term.reach = length / bar.mobility;
   const double rate = slip_velocity(term, grid.cell_nodes, body.v).norm() / bar.diameter;
   term.viscous =
-      (mu +
-       viscosity(law, std::clamp(rate, viscosity_scale_rates[0], viscosity_scale_rates[1]), tau_y)) *
+      (mu + viscosity(law, std::clamp(rate, viscosity_scale_rates[0], viscosity_scale_rates[1]), tau_y)) *
       term.reach;
   problem.bars.push_back(term);
 }

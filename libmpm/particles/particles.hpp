@@ -20,7 +20,7 @@ struct Points {
   std::vector<double> lambda;     ///< flocculation state; empty without thixotropy
   std::vector<double> gamma_dot;  ///< shear rate of the last step [1/s]; empty where nothing needs it
   std::vector<std::vector<double>> lambda_parts;  ///< whose sum lambda is; none where it is one number
-  std::vector<int> mix;  ///< of Body::mixes; empty where all are of one
+  std::vector<int> mix;                           ///< of Body::mixes; empty where all are of one
 
   std::size_t size() const { return x.size(); }
   bool thixotropic() const { return !lambda.empty(); }

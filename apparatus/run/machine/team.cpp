@@ -12,7 +12,7 @@ constexpr double stretch = 0.5;         ///< a pace is taken over so long at lea
 constexpr double between = 10.0;        ///< trials [s]: one that loses costs a twentieth of the run
 constexpr double put_off_often = 20.0;  ///< [1/s]; on an idle machine it is one or two
 constexpr double gain = 0.95;           ///< more threads must bring the clock down to this share
-constexpr double loss = 1.05;           ///< fewer may lengthen it to this: their pace depends less on who else runs
+constexpr double loss = 1.05;  ///< fewer may lengthen it to this: their pace depends less on who else runs
 
 }  // namespace
 
