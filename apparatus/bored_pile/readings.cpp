@@ -5,6 +5,7 @@
 
 #include "apparatus/bored_pile/bored_pile.hpp"
 #include "apparatus/common/flow_readings.hpp"
+#include "apparatus/run/run_checks.hpp"
 
 namespace tremie::bored_pile {
 
@@ -136,6 +137,8 @@ std::string crowded(const View& v) {
       100.0 * v.r.volume_error, 100.0 * most);
 }
 
+std::string few_points(const View& v) { return experiment::one_point_a_cell(v.scene.model); }
+
 std::string too_old(const View& v) {
   double oldest = v.r.oldest_at_surface;
   for (const Load& load : v.scene.loads) oldest = std::max(oldest, load.age + load.pause);
@@ -179,7 +182,7 @@ scene::Outcome run_and_read(const Scene& scene, const RunOptions& options, const
   const Record raw = run(scene, observer);
   const View view{scene, raw};
   scene::Outcome outcome = outcome_of(readings(), view, options.measured.name, "bored pile");
-  add_reasons<View>({washed, crowded, too_old}, view, outcome.checks.reasons);
+  add_reasons<View>({washed, crowded, few_points, too_old}, view, outcome.checks.reasons);
   outcome.remarks = remarks_of(view);
   outcome.stage = stage_of(scene);
   outcome.axisymmetric = scene.width == 0.0;

@@ -119,6 +119,12 @@ std::string update_is_off(const View& v) {
       *error);
 }
 
+/// A reason where there is no reference.
+std::string reference_gave_up(const View& v) {
+  if (v.r.reference_failed.empty()) return {};
+  return fmt::format("the flocculation's update cannot be checked: {}", v.r.reference_failed);
+}
+
 /// A reason where the elastic cell's stress is off its reference.
 std::string stress_is_off(const View& v) {
   const auto& error = v.r.stress_error_max;
@@ -156,7 +162,7 @@ scene::Outcome outcome(const Scene& scene, const CellResult& result) {
   read_into(readings(), view, o);
   o.asked = scene.name + ", one material cell";
   o.has_points = false;
-  scene::add_reasons<View>({update_is_off, stress_is_off}, view, o.checks.reasons);
+  scene::add_reasons<View>({update_is_off, reference_gave_up, stress_is_off}, view, o.checks.reasons);
   o.cost.steps = result.steps;
   o.cost.points = 1;
   o.cost.simulated = result.samples.back().time;

@@ -204,6 +204,19 @@ void check_torques_agree(const Scene& scene, Outcome& outcome) {
                              : "the flow is not steady, or the cells are too large"));
 }
 
+/// Adds a reason where the steps of a flow curve are as long as what its torques are averaged over: a torque is then read
+/// while the concrete is still being accelerated.
+void check_curve_steps(const Scene& scene, Outcome& outcome) {
+  constexpr double most = 0.25;
+  if (scene.speeds.empty() || !scene.model.time_step) return;
+  const double share = *scene.model.time_step / scene.average_time;
+  if (share <= most * (1.0 + 1e-9)) return;
+  outcome.checks.reasons.push_back(
+      fmt::format("model.time_step is {:.2g} of test.average_time, more than {:g}: the torques are not those "
+                  "of a steady flow; use a shorter model.time_step",
+                  share, most));
+}
+
 /// Adds a reason where breakdown that hardly depends on the rate narrows the sheared width to a cell.
 void check_localisation(const Scene& scene, Outcome& outcome) {
   const auto width = sheared_width(scene);
@@ -293,6 +306,7 @@ void read_and_check(const Scene& scene, Outcome& outcome) {
   check_torques_agree(scene, outcome);
   check_against_reference(scene, outcome);
   check_localisation(scene, outcome);
+  check_curve_steps(scene, outcome);
 }
 
 }  // namespace tremie::icar_vane

@@ -106,6 +106,16 @@ TREMIE_CHECKS_IN(Polar)
 TREMIE_CHECKS_IN(ThreeD)
 #endif
 
+std::string one_point_a_cell(const Model& model) {
+  constexpr int least = 2;
+  const auto [across, up] = model.points_per_cell;
+  if (std::min(across, up) >= least) return {};
+  return fmt::format(
+      "one point a cell leaves gaps as soon as the concrete is stretched: use {} or more "
+      "model.points_per_cell",
+      least);
+}
+
 std::string inertia_on_a_cell(const Mix& mix, const YieldLaw& law, double speed, double h) {
   constexpr double most = 10.0;
   const double viscous = mix.mu + viscosity(law, std::max(speed, 1e-9) / h, 0.0);

@@ -47,10 +47,15 @@ class Run {
     }
     if (is_elastic()) {
       result_.peak = {elastic_.largest_stress, elastic_.strain_at_largest_stress};
-      if (has_integrated_references()) compare_elastic();
-    } else if (cell_.mix.thixotropy && has_integrated_references()) {
-      compare();
     }
+    if (has_integrated_references()) try {
+        if (is_elastic())
+          compare_elastic();
+        else if (cell_.mix.thixotropy)
+          compare();
+      } catch (const std::runtime_error& error) {  // the integrator gave up: no reason to lose the run
+        result_.reference_failed = error.what();
+      }
     find_area();
     return std::move(result_);
   }

@@ -55,6 +55,7 @@ struct CellResult {
   std::optional<double> hysteresis_area;
   std::optional<StressPeak> peak = {};          ///< elastic alone
   std::optional<double> stress_error_max = {};  ///< largest difference from CVODE [Pa]; elastic alone
+  std::string reference_failed = {};            ///< why CVODE gave up; empty where it did not
 };
 
 /// Runs the cell. Throws std::invalid_argument for an empty history, values out of range, or an elastic cell whose law flows

@@ -53,6 +53,8 @@ std::string few_cells(const View& j) {
   return {};
 }
 
+std::string few_points(const View& j) { return experiment::one_point_a_cell(j.scene.model); }
+
 std::string inertia(const View& j) {
   return experiment::inertia_on_a_cell(j.scene.mix, j.scene.model.law, fastest_front(j.series),
                                        j.scene.model.cell[1]);
@@ -129,8 +131,8 @@ std::optional<double> ratio_change(const std::vector<Sample>& series) {
 }
 
 void add_reasons(const Scene& scene, Outcome& outcome) {
-  scene::add_reasons<View>({inertia_at_the_bars, wide_cells_at_the_bars, few_cells, went_through_the_wall,
-                            narrow_opening, gate_beside_its_place, inertia, no_number},
+  scene::add_reasons<View>({inertia_at_the_bars, wide_cells_at_the_bars, few_cells, few_points,
+                            went_through_the_wall, narrow_opening, gate_beside_its_place, inertia, no_number},
                            {scene, outcome}, outcome.checks.reasons);
 }
 

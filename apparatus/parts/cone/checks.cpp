@@ -69,6 +69,8 @@ std::string few_points_across(const View& j) {
       across, static_cast<int>(std::ceil(1.5 * least * stretch)));
 }
 
+std::string few_points(const View& j) { return experiment::one_point_a_cell(j.scene.model); }
+
 /// Slow lifts are verified down to 5 mm/s (lift.md). At 1 mm/s the section has holes and the spread jumps by 50 mm.
 std::string slow_lift_unverified(const View& j) {
   constexpr double least = 5e-3;
@@ -158,7 +160,7 @@ std::string went_through_the_cone(const View& j) {
 
 void add_reasons(const Scene& scene, Outcome& outcome) {
   scene::add_reasons<View>(
-      {too_thin, few_cells, few_points_across, went_through_the_cone, slow_lift_unverified,
+      {too_thin, few_cells, few_points, few_points_across, went_through_the_cone, slow_lift_unverified,
        slow_lift_over_a_slippery_floor, narrow_opening, lifted_by_the_cone, inertia, no_number},
       {scene, outcome}, outcome.checks.reasons);
 }

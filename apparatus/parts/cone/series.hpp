@@ -143,6 +143,19 @@ inline double gain_left(const Scene& scene, const std::vector<Sample>& series, d
   return front_over_mean(*now, *early) * std::abs(now->reach / half->reach - 1.0) / shrunk;
 }
 
+/// Whether the reach grows more slowly than it did a half of the time ago. As t^-n comes to its end its rate falls to
+/// 2^-(n + 1) of that; what sets out goes on as fast or faster, however little it has moved yet.
+inline bool slows_down(const std::vector<Sample>& series, double time) {
+  const Sample *now = line_at(series, time), *half = line_at(series, 0.5 * time),
+               *quarter = line_at(series, 0.25 * time);
+  if (!quarter || now == half || half == quarter) return true;
+  const auto rate = [](const Sample& a, const Sample& b) {
+    return std::abs(a.reach - b.reach) / (a.time - b.time);
+  };
+  const double late = rate(*now, *half);
+  return late * time < 1e-5 * now->reach || late < 0.75 * rate(*half, *quarter);
+}
+
 /// A flow is not looked at before, in free falls from the cone's height, of which 0.25 s is the Abrams cone's.
 inline constexpr double first_look = 2.0;
 
@@ -156,6 +169,7 @@ inline std::optional<double> rests_since(const Scene& scene, const std::vector<S
   if (now.time < first_look * free_fall_time(scene) || !clear_of_the_cone(scene, now)) return std::nullopt;
   const double left = gain_left(scene, series, now.time);
   if (left > tolerance || gain_left(scene, series, 0.8 * now.time) > 2.0 * tolerance) return std::nullopt;
+  if (!slows_down(series, now.time)) return std::nullopt;
   const double within = (1.0 - tolerance) * (1.0 + left) * now.reach;
   for (std::size_t i = 0; i < series.size(); ++i) {
     if (series[i].reach < within) continue;

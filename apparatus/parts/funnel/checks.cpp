@@ -29,17 +29,19 @@ std::string inertia(const View& v) {
 /// Measured: five cells to the half of the mouth make the inverted cone 15 % too fast with walls that hold and 5 % with walls
 /// along which a layer slides, ten 1.3 and 2.5 %; the V-funnel is 13 % too slow with three, 3 % with five.
 std::string few_cells_in_the_mouth(const View& v) {
-  if (!v.r.flow_time) return {};
+  if (v.r.stopped_at) return {};  // where the yield stress holds it the cells do not matter
   const Shape& s = v.scene.shape;
   const double least = s.depth == 0.0 ? 8.0 : 6.0;
   const double cells = 0.5 * s.mouth / std::max(v.scene.model.cell[0], v.scene.model.cell[1]);
   if (cells > least * (1.0 - 1e-6)) return {};
   return fmt::format(
-      "half of the mouth is {:.2g} cells wide, fewer than {:g}: the flow time may be off by more than 3 %; "
+      "half of the mouth is {:.2g} cells wide, fewer than {:g}: the discharge may be off by more than 3 %; "
       "use a "
       "smaller model.cell",
       cells, least);
 }
+
+std::string few_points(const View& j) { return experiment::one_point_a_cell(j.scene.model); }
 
 std::string lost_volume(const View& v) {
   constexpr double most = 0.01;
@@ -60,8 +62,8 @@ std::string no_number(const View& v) {
 }  // namespace
 
 void add_reasons(const Scene& scene, Outcome& outcome) {
-  scene::add_reasons<View>({inertia, few_cells_in_the_mouth, lost_volume, no_number}, {scene, outcome},
-                           outcome.checks.reasons);
+  scene::add_reasons<View>({inertia, few_cells_in_the_mouth, few_points, lost_volume, no_number},
+                           {scene, outcome}, outcome.checks.reasons);
 }
 
 }  // namespace tremie::funnel
