@@ -2,8 +2,8 @@
 
 // After the solve: what the new velocities make of the state of the points, and what a step tells of itself.
 
-#include "libmpm/particles/layer_mean.hpp"
 #include "libmpm/implicit/solve.hpp"
+#include "libmpm/particles/layer_mean.hpp"
 
 namespace tremie::detail {
 

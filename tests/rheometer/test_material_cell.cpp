@@ -5,8 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "rheometer/records/torque_record.hpp"
 #include "rheometer/cell/material_cell.hpp"
+#include "rheometer/records/torque_record.hpp"
 
 namespace tremie {
 namespace {
