@@ -108,10 +108,9 @@ TREMIE_CHECKS_IN(ThreeD)
 
 std::string one_point_a_cell(const Model& model) {
   constexpr int least = 2;
-  const auto [across, up] = model.points_per_cell;
-  if (std::min(across, up) >= least) return {};
+  if (model.points_per_cell[0] >= least) return {};
   return fmt::format(
-      "one point a cell leaves gaps as soon as the concrete is stretched: use {} or more "
+      "one point a cell across leaves gaps as soon as the concrete is stretched: use {} or more "
       "model.points_per_cell",
       least);
 }

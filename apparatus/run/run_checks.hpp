@@ -56,7 +56,7 @@ void judge_squeeze(const Squeeze& squeeze, const Mix& mix, double height, Checks
 /// Empty where there is nothing to say.
 std::string inertia_on_a_cell(const Mix& mix, const YieldLaw& law, double speed, double h);
 
-/// A reason where a direction has one point a cell, which leaves gaps as soon as it is stretched; else empty.
+/// A reason where cells have one point across, which leaves gaps as soon as the concrete is stretched; else empty.
 std::string one_point_a_cell(const Model& model);
 
 }  // namespace tremie::experiment

@@ -186,17 +186,19 @@ class Reader {
           "cylinder, the exponent the same");
   }
 
-  /// A start-up without a rise of its own has the mean compliance of the others.
+  /// A start-up without a rise of its own turns elastically by the mean angle of the others' peaks: stiffness grows with
+  /// the peak.
   void add_compliance(std::vector<Fall>& falls) const {
-    double sum = 0.0, n = 0.0;
+    double angles = 0.0, n = 0.0;
     const auto rise_of = [&](const Fall& f) {
       const auto& start_up = result_.sections[f.section - 1].start_up;
       return start_up ? start_up->rise : std::nullopt;
     };
     for (const Fall& f : falls)
-      if (const auto rise = rise_of(f)) sum += 1.0 / *rise, n += 1.0;
+      if (const auto rise = rise_of(f)) angles += f.torque.front() / *rise, n += 1.0;
     for (Fall& f : falls)
-      if (f.start_up && n > 0.0) f.compliance = rise_of(f) ? 1.0 / *rise_of(f) : sum / n;
+      if (f.start_up && n > 0.0)
+        f.compliance = rise_of(f) ? 1.0 / *rise_of(f) : angles / n / f.torque.front();
   }
 
   const ProtocolRecord& record_;

@@ -99,6 +99,14 @@ TEST(Funnel, SlipperyWallsLeaveNothingBehind) {
   EXPECT_LT(*scene::find_number(slips, "flow_time_s"), *scene::find_number(holds, "flow_time_s"));
 }
 
+// Cells that are too large for the mouth are so from the start, whether it empties or not.
+TEST(Funnel, ACoarseMouthIsMarkedBeforeItHasEmptied) {
+  const scene::Outcome outcome = run_cone({"model.cell=25 mm", "test.duration=0.2 s"});
+  ASSERT_FALSE(outcome.checks.reasons.empty());
+  EXPECT_NE(outcome.checks.reasons[0].find("half of the mouth"), std::string::npos)
+      << outcome.checks.reasons[0];
+}
+
 // The defaults are what reference_data/funnels says.
 TEST(Funnel, TheDefaultsAreThoseOfTheirFiles) {
   for (const std::string name : {"inverted_cone", "orimet", "v_funnel"}) {

@@ -57,6 +57,17 @@ TEST(IcarVaneScene, AFlowCurveHasItsOwnSchedule) {
   EXPECT_EQ(vane_of(curve + "pre_shear_time = \"0 s\"\n").pre_shear_time, 0.0);
 }
 
+// Steps as long as the torques' means read each torque while the concrete is still being accelerated: 212 Pa for 54 Pa.
+TEST(IcarVaneScene, ACurveWhoseStepsAreAsLongAsItsMeansIsMarked) {
+  const auto outcome = scene::run(scene::read_text(
+      curve, "a.toml",
+      {"model.time_step=2 s", "model.cell=8 mm", "test.pre_shear_time=0 s", "test.hold_time=2 s"}));
+  bool marked = false;
+  for (const auto& reason : outcome.checks.reasons)
+    marked = marked || reason.find("test.average_time") != std::string::npos;
+  EXPECT_TRUE(marked);
+}
+
 TEST(IcarVaneScene, OneProtocolOrTheOther) {
   EXPECT_TRUE(says(complaint(curve + "duration = \"3 s\"\n"), {"bad.toml:5: test.duration", "test.speeds"}));
   EXPECT_TRUE(says(complaint(mix_a + "[test]\nhold_time = \"3 s\"\n"),

@@ -17,7 +17,8 @@ const std::string slump = "apparatus = \"slump_flow\"\nmix = \"mix_a\"\n";
 TEST(MixAbilities, TheVaneAveragesOverALayer) {
   const Scene scene = read_text(vane, "a.toml", {"mix.thixotropy.layer=5 mm"});
   EXPECT_DOUBLE_EQ(std::any_cast<const icar_vane::Scene&>(scene.test).mix.thixotropy->layer, 0.005);
-  EXPECT_EQ(read_text(scene.resolved, "a.toml").resolved, scene.resolved);
+  const Scene again = read_text(scene.resolved, "a.toml");
+  EXPECT_DOUBLE_EQ(std::any_cast<const icar_vane::Scene&>(again.test).mix.thixotropy->layer, 0.005);
   EXPECT_TRUE(says(complaint(slump, {"mix.thixotropy.layer=5 mm"}), {"mix.thixotropy.layer", "icar_vane"}));
   EXPECT_TRUE(
       says(complaint(vane, {"mix.thixotropy.layer=0 mm"}), {"mix.thixotropy.layer", "greater than 0"}));

@@ -52,6 +52,14 @@ TEST(Rest, ABodyThatDoesNotMoveHasNoSlump) {
   EXPECT_LT(outcome.cost.simulated, 5.0);
 }
 
+// Concrete of 90 kPa.s sets out so slowly that it gains next to nothing in the first half second, and in the next minute a third
+// of its height: at 5 Pa its weight is a thousand times what it bears.
+TEST(Rest, ABodyThatSetsOutSlowlyIsNotAtRest) {
+  const auto outcome = outcome_of({"mix.yield_stress=5 Pa", "mix.plastic_viscosity=90000 Pa.s",
+                                   "test.lift_speed=instant", "model.cell=20 mm", "test.duration=5 s"});
+  EXPECT_EQ(number_of(outcome, "stopped_at_s"), -1.0);
+}
+
 // A looser tolerance ends the run sooner, at a smaller spread.
 TEST(Rest, TheSceneMayChooseItsTolerance) {
   const auto loose = outcome_of({"test.rest_tolerance=0.05"}), close = outcome_of({});

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -87,7 +88,8 @@ TEST(CouetteLayer, TheVanesTorqueFollowsCvodeAtTheMeanRate) {
   }
 }
 
-// Three grids: peak and half time agree within 1 % with the layer. Without it the peak does as well, but the half time
+// Three grids: the peak agrees within 1 %, and with the layer the half time within 2 and 1 %, at half of the intervals with
+// less than half of the difference. Without it the half time
 // moves as the rate in the first interval does: structure that is gone at the vane and whole one interval of h behind it
 // makes the stress fall as 1/h there, so that the rate grows as h^-1/2 and its power as h^(-a/2), 19 % at half of h and a =
 // 0.5, 3.5 % at a = 0.1.
@@ -103,8 +105,9 @@ TEST(CouetteLayer, AStartUpConvergesWithIt) {
   }
   EXPECT_NEAR(peak[0] / peak[2], 1.0, 0.01);
   EXPECT_NEAR(peak[1] / peak[2], 1.0, 0.01);
-  EXPECT_NEAR(with[0] / with[2], 1.0, 0.01);
-  EXPECT_NEAR(with[1] / with[2], 1.0, 0.005);
+  EXPECT_NEAR(with[0] / with[2], 1.0, 0.02);
+  EXPECT_NEAR(with[1] / with[2], 1.0, 0.01);
+  EXPECT_LT(std::abs(with[1] - with[2]), 0.5 * std::abs(with[0] - with[2]));
   EXPECT_GT(without[0] / without[1], 1.05);
   EXPECT_GT(without[1] / without[2], 1.05);
 }
