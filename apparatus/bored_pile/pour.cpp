@@ -1,5 +1,7 @@
 #include "apparatus/bored_pile/pour.hpp"
 
+#include <type_traits>
+
 #include "apparatus/run/body_readings.hpp"
 #include "apparatus/run/step_settings.hpp"
 #include "libmpm/geometry/spaces.hpp"
