@@ -39,7 +39,7 @@ def funnel_scene(setting, case):
     keys = {"top": "top_diameter", "mouth": "mouth_diameter", "pipe": "pipe", "taper": "taper", "throat": "throat"}
     funnel = "".join(f'{key} = "{shape[name]} m"\n' for key, name in keys.items())
     return (f'apparatus = "inverted_cone"\n{mix_of(setting, case)}[funnel]\n{funnel}[test]\nduration = "{setting["boundary"]["end"]} s"\n'
-            f'[model]\ncell = "4 mm"\n[output]\nframes = false\n')
+            f'[model]\ncell = "2.5 mm"\n[output]\nframes = false\n')
 
 
 def pile_scene(setting, case):
@@ -47,7 +47,7 @@ def pile_scene(setting, case):
     return (f'apparatus = "bored_pile"\n{mix_of(setting, case)}[pile]\nradius = "{pile["pile_radius"]} m"\ndepth = "{pile["pile_depth"]} m"\n'
             f'[pipe]\ninner_radius = "{pile["pipe_inner_radius"]} m"\nouter_radius = "{pile["pipe_outer_radius"]} m"\nstart = "{pile["mouth"]} m"\n'
             f'embedment = ["0.1 m", "{pile["pile_depth"] - 0.1} m"]\npull = "0.1 m"\n[fluid]\ndensity = "{flow["fluid"]} kg/m3"\n'
-            f'[test]\nrate = "{flow["inflow"]} m3/s"\n[[load]]\nvolume = "{flow["inflow"] * flow["end"]} m3"\n'
+            f'[test]\nrate = "{flow["inflow"]} m3/s"\n[[load]]\nvolume = "{flow["inflow"] * (flow["end"] + 120)} m3"\n'
             f'[model]\ncell = "27 mm"\npoints_per_cell = 3\n[output]\nframes = false\n')
 
 
