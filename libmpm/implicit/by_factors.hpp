@@ -2,7 +2,6 @@
 
 // A step whose linear systems are solved by a factor of the matrix: any geometry, any solver.
 
-#include <algorithm>
 #include <optional>
 
 #include "libmpm/implicit/state.hpp"
@@ -30,14 +29,6 @@ double force_scale(const ImplicitBody<Geometry>& body, double dt) {
   for (int i = 0; i < body.grid.n_nodes(); ++i)
     scale += body.nodes.mass[i] * (body.gravity.norm() + 1e-3 * body.nodes.v[i].norm() / dt);
   return scale;
-}
-
-/// Velocities that are no numbers any more are no guess: the next solver starts from a body that stands, without stress.
-template <class Geometry>
-void start_again_if_lost(ImplicitBody<Geometry>& body) {
-  if (std::all_of(body.v.begin(), body.v.end(), [](const auto& v) { return v.allFinite(); })) return;
-  for (auto& v : body.v) v.setZero();
-  body.admm_state.resize(body.grid.cell_index.size());
 }
 
 struct ByFactors {
@@ -82,7 +73,6 @@ struct ByFactors {
     SolveReport report = solve_admm(problem, settings.admm, form, body.v);
     if (report.converged || settings.method == YieldMethod::admm || !newton) return report;
     const int before = report.iterations;
-    start_again_if_lost(body);
     report = solve_newton(problem, law, settings.newton, scale, body.system, body.v, body.admm_state);
     report.iterations += before;
     return report;

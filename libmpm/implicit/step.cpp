@@ -15,8 +15,8 @@
 
 namespace tremie {
 
-/// How often a step that does not converge is tried, each time over half the time; and one that runs away.
-inline constexpr int most_attempts = 4, most_attempts_away = 14;
+/// How often a step that does not converge is tried, each time over half the time.
+inline constexpr int most_attempts = 4;
 
 namespace detail {
 
@@ -36,7 +36,7 @@ StepReport step_from_grid(ImplicitBody<Geometry>& body, const YieldLaw& law, con
 
   // The step's convex problem and its solution, the velocities at the end of the step. One that does not
   // converge is tried again over half the time; so is a long one in which something starts to fall. The last try is
-  // kept, unless it runs away: then it is tried on.
+  // kept, unless it runs away.
   const std::vector<Vec<D>> v_old = body.nodes.v;
   const int attempts = settings.fixed_dt ? 1 : most_attempts;
   std::optional<AdmmState<Geometry>> guess;
@@ -44,18 +44,17 @@ StepReport step_from_grid(ImplicitBody<Geometry>& body, const YieldLaw& law, con
   std::optional<YieldProblem<Geometry>> posed;
   SolveReport solve;
   double dt = choose_dt(body, settings);
-  bool good = false, away = false;
-  for (int attempt = 0; !good && (attempt < attempts || (away && attempt < most_attempts_away)); ++attempt) {
+  bool good = false;
+  for (int attempt = 0; attempt < attempts && !good; ++attempt) {
     if (attempt > 0) Form::guess_again(guess, settings, dt, body), dt *= 0.5;
     pose(body, law, settings, wall, v_old, old_nodes, dt, posed);
     solve = solve_step<Form>(*posed, law, settings, body);
     const bool falls = !settings.fixed_dt && dt > settings.dt_max && starts_to_fall(body, settings, dt);
     good = solve.converged && !falls;
-    away = !good && attempts > 1 && runs_away(body, settings.detached, dt);
   }
   guess.reset();
   const YieldProblem<Geometry>& problem = *posed;
-  if (runs_away(body, settings.detached, dt)) {  // a step that converged may, too
+  if (runs_away(body, settings.detached, dt)) {
     body.v = v_old;
     if constexpr (D == 3) affine_from_grid<D>(body.grid, v_old, body.points);
     return {.dt = dt, .converged = false, .failed = true, .iterations = solve.iterations};

@@ -11,8 +11,7 @@ namespace {
 constexpr double stretch = 0.5;         ///< a pace is taken over so long at least [s]
 constexpr double between = 10.0;        ///< trials [s]: one that loses costs a twentieth of the run
 constexpr double put_off_often = 20.0;  ///< [1/s]; on an idle machine it is one or two
-constexpr double gain = 0.95;           ///< more threads must bring the clock down to this share
-constexpr double loss = 1.05;  ///< fewer may lengthen it to this: their pace depends less on who else runs
+constexpr double gain = 0.95;           ///< other threads must bring the clock down to this share
 
 }  // namespace
 
@@ -31,7 +30,7 @@ int Team::after(double work, double clock, double put_off) {
   wait_ -= clock_;
   work_ = clock_ = put_off_ = 0.0;
   if (before_ > 0) {
-    if (pace > (more_ ? gain : loss) * pace_before_) now_ = before_;
+    if (pace > gain * pace_before_) now_ = before_;
     before_ = 0, wait_ = between;
     return now_;
   }
