@@ -97,7 +97,7 @@ scene::SizeEstimate estimate_section(const Scene& scene) {
   e.cells_active = experiment::whole_steps(axes[0].n_cells * scene.depth / axes[1].h);
   const Inlet::Column& column = pour.inlet.columns.back();
   e.points = experiment::whole_steps(pile_volume(scene) / whole(scene) / (column.area * pour.inlet.row));
-  e.bytes_per_point = bytes_per_point<2>(scene.mix.thixotropy.has_value());
+  e.bytes_per_point = bytes_per_point<2>(lambda_numbers(scene.mix));
   const double step = StepSettings{}.cfl * axes[1].h / (scene.rate / whole(scene) * pour.inlet.node_speed);
   e.time_expected = pour_time(scene);
   e.steps = e.steps_expected =

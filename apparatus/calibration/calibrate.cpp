@@ -139,8 +139,42 @@ bool emulators_suffice(const State& s) {
   });
 }
 
-/// Where the emulators are least sure, among points that the measurements leave likely.
+/// Whether a point lies `gap` from every run, and twice that from those chosen beside it.
+bool apart(const State& s, const std::vector<Point>& chosen, const Point& p, double gap) {
+  const auto far = [&](const Point& q, double least) { return distance(p, q) >= least; };
+  return std::all_of(chosen.begin(), chosen.end(), [&](const Point& q) { return far(q, 2.0 * gap); }) &&
+         std::all_of(s.result.trials.begin(), s.result.trials.end(),
+                     [&](const Trial& trial) { return far(trial.point, gap); });
+}
+
+/// A measured reading that too few runs have to be emulated, though some have it.
+const Emulated* scarce_reading(const State& s) {
+  const auto e = std::find_if(s.emulated.begin(), s.emulated.end(), [&](const Emulated& one) {
+    return is_measured(s, one) && !one.trained && !one.trials.empty();
+  });
+  return e == s.emulated.end() ? nullptr : &*e;
+}
+
+/// The points of the quadrature nearest to the runs that have a scarce reading.
+std::vector<Point> points_beside(const State& s, const Emulated& e, std::size_t count) {
+  std::vector<std::pair<double, std::size_t>> near;
+  for (std::size_t i = 0; i < s.points.size(); ++i) {
+    double nearest = INFINITY;
+    for (const std::size_t k : e.trials)
+      nearest = std::min(nearest, distance(s.result.trials[k].point, s.points[i]));
+    near.emplace_back(nearest, i);
+  }
+  std::sort(near.begin(), near.end());
+  std::vector<Point> chosen;
+  for (const auto& [distance_to_run, i] : near)
+    if (chosen.size() < count && apart(s, chosen, s.points[i], about)) chosen.push_back(s.points[i]);
+  return chosen;
+}
+
+/// Where the emulators are least sure, among points that the measurements leave likely; beside the runs that have it, where
+/// a measured reading is scarce.
 std::vector<Point> next_points(const State& s, std::size_t count) {
+  if (const Emulated* scarce = scarce_reading(s)) return points_beside(s, *scarce, count);
   const auto& posterior = s.result.posterior;
   std::vector<std::pair<double, std::size_t>> scored;
   for (std::size_t i = 0; i < s.points.size(); ++i) {
@@ -152,17 +186,11 @@ std::vector<Point> next_points(const State& s, std::size_t count) {
   }
   std::sort(scored.rbegin(), scored.rend());
   std::vector<Point> chosen;
-  const auto apart = [&](const Point& p, double gap) {
-    for (const Point& q : chosen)
-      if (distance(p, q) < 2.0 * gap) return false;
-    for (const Trial& trial : s.result.trials)
-      if (distance(p, trial.point) < gap) return false;
-    return true;
-  };
   for (double gap = 0.04; chosen.size() < count && gap > 1e-4; gap *= 0.5)
     for (const auto& [score, i] : scored) {
       if (chosen.size() == count) break;
-      if (posterior.weights[i] > 1e-4 * posterior.weights[posterior.best] && apart(s.points[i], gap))
+      if (posterior.weights[i] > 1e-4 * posterior.weights[posterior.best] &&
+          apart(s, chosen, s.points[i], gap))
         chosen.push_back(s.points[i]);
     }
   return chosen;
@@ -355,7 +383,7 @@ Calibration calibrate(const Lab& lab, const Settings& settings) {
     const auto points = next_points(s, std::min(batch, most - s.result.trials.size()));
     if (points.empty()) break;
     if (!run_more(s, points)) return s.result;
-    settled = emulators_suffice(s);
+    settled = !scarce_reading(s) && emulators_suffice(s);
   }
   report(s);
   return s.result;

@@ -199,7 +199,7 @@ scene::SizeEstimate estimate(const Scene& scene) {
     e.points = static_cast<std::int64_t>(body.points.size());
     e.cells_active = body.grid.n_cells();
     e.bytes_per_point =
-        bytes_per_point<std::decay_t<decltype(section)>::Geometry::dim>(scene.mix.thixotropy.has_value());
+        bytes_per_point<std::decay_t<decltype(section)>::Geometry::dim>(lambda_numbers(scene.mix));
     for (const Stage& stage : stages_of(scene)) {
       e.steps += experiment::whole_steps(stage.duration / largest_dt) + 15;
       e.time_expected += stage.duration;

@@ -72,7 +72,7 @@ void judge(const Body<Geometry>& body, double start_mass, Checks& checks, Cost& 
   checks.max_speed_end = detail::max_speed(body.points);
   tell_reasons(cost.steps, body.points.lambda, checks);
   cost.points = static_cast<std::int64_t>(body.points.size());
-  cost.bytes_per_point = bytes_per_point<Geometry::dim>(body.points.thixotropic());
+  cost.bytes_per_point = bytes_per_point<Geometry::dim>(body.points.lambda_numbers());
   cost.simulated = body.time;
 }
 

@@ -16,4 +16,9 @@ struct Mix {
   std::optional<Thixotropy> thixotropy;
 };
 
+/// Numbers of the flocculation state that a point of the mix stores: its value, and its parts where the kinetics has modes.
+inline std::size_t lambda_numbers(const Mix& mix) {
+  return mix.thixotropy ? 1 + part_shares(mix.thixotropy->kinetics).size() : 0;
+}
+
 }  // namespace tremie

@@ -45,7 +45,7 @@ struct SimdPair {
   requires(sizeof...(Numbers) == size && (std::is_arithmetic_v<Numbers> && ...))
       SimdPair(Numbers... numbers) {
     const Number all[] = {static_cast<Number>(numbers)...};
-    std::memcpy(this, all, sizeof all);
+    std::memcpy(static_cast<void*>(this), all, sizeof all);
   }
   template <std::integral Lane>
   [[gnu::always_inline]] Number& operator[](Lane lane) {

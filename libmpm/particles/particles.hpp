@@ -24,13 +24,15 @@ struct Points {
 
   std::size_t size() const { return x.size(); }
   bool thixotropic() const { return !lambda.empty(); }
+  /// Numbers of the flocculation state that a point stores: its value, and its parts where it has any.
+  std::size_t lambda_numbers() const { return thixotropic() ? 1 + lambda_parts.size() : 0; }
   double volume(std::size_t p) const { return V0[p] * std::exp(ln_J[p]); }
 };
 
-/// Bytes that one more point costs.
+/// Bytes that one more point costs, with so many numbers of the flocculation state and, if any, its shear rate.
 template <int D>
-std::int64_t bytes_per_point(bool thixotropic) {
-  const std::size_t doubles = 2 * D + D * D + 3 + (thixotropic ? 2 : 0);
+std::int64_t bytes_per_point(std::size_t lambda_numbers) {
+  const std::size_t doubles = 2 * D + D * D + 3 + (lambda_numbers > 0 ? lambda_numbers + 1 : 0);
   return static_cast<std::int64_t>(doubles * sizeof(double));
 }
 

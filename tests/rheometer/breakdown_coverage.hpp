@@ -2,6 +2,8 @@
 
 // How often the 95 % intervals of k and a hold the truth, over made records of different seeds.
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <vector>
 
@@ -27,7 +29,15 @@ inline std::vector<Case> cases() {
 
 struct Covered {
   int k = 0, a = 0, missing = 0;
-  double mean_a = 0.0;
+  std::vector<double> exponents;  ///< sorted
+  double quantile(double share) const {
+    return exponents[static_cast<std::size_t>(share * static_cast<double>(exponents.size() - 1))];
+  }
+  double median() const { return quantile(0.5); }
+  /// Standard error of the median: that of normal noise, whose quartiles lie 1.35 standard deviations apart.
+  double error_of_median() const {
+    return 1.25 * (quantile(0.75) - quantile(0.25)) / 1.35 / std::sqrt(static_cast<double>(exponents.size()));
+  }
 };
 
 inline Covered coverage_of(const Case& c, int seeds) {
@@ -45,11 +55,12 @@ inline Covered coverage_of(const Case& c, int seeds) {
     } else {
       covered.k += holds(*b.rate, c.material.k);
       covered.a += holds(*b.exponent, c.material.a);
-      covered.mean_a += b.exponent->value / seeds;
+      covered.exponents.push_back(b.exponent->value);
     }
   }
-  std::printf("%s: %d records, k in %d intervals, a in %d, mean a %.4f, none in %d\n", c.name, seeds,
-              covered.k, covered.a, covered.mean_a, covered.missing);
+  std::sort(covered.exponents.begin(), covered.exponents.end());
+  std::printf("%s: %d records, k in %d intervals, a in %d, median a %.4f ± %.4f, none in %d\n", c.name, seeds,
+              covered.k, covered.a, covered.median(), covered.error_of_median(), covered.missing);
   return covered;
 }
 

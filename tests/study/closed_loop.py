@@ -63,7 +63,8 @@ def measured_further(readings):
     for (apparatus, model, _, cell, _, name, error, unit), value in zip(FURTHER, readings):
         if value is not None:
             space = '"model.space" = "plane_with_side_walls"\n' if "space" in model else ""
-            lab += (f'[[measured]]\napparatus = "{apparatus}"\n{name} = "{value}{unit}"\n{name}_error = "{error}{unit}"\n'
+            number, half = (f'"{value}{unit}"', f'"{error}{unit}"') if unit else (value, error)
+            lab += (f'[[measured]]\napparatus = "{apparatus}"\n{name} = {number}\n{name}_error = {half}\n'
                     f'"model.cell" = "{cell}"\n{space}')
     return lab
 

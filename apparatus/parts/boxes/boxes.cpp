@@ -33,7 +33,7 @@ void count(const Scene& scene, scene::SizeEstimate& e) {
   if (scene.pour)
     e.cells_active = experiment::whole_steps(scene.pour->volume / scene.box.width / (h * h_up)),
     e.points = experiment::whole_steps(static_cast<double>(e.cells_active) * n * n_up);
-  e.bytes_per_point = bytes_per_point<Geometry::dim>(scene.mix.thixotropy.has_value());
+  e.bytes_per_point = bytes_per_point<Geometry::dim>(lambda_numbers(scene.mix));
 }
 
 template <class Geometry>

@@ -41,9 +41,9 @@ void count(const Scene& scene, scene::SizeEstimate& e) {
   const double cells = cells_of(scene), in_a_cell = std::pow(n, Geometry::dim - 1) * n_up;
   experiment::count_points(
       cells, in_a_cell, [&] { return filled_cone<Geometry>(scene); }, e);
-  const bool thixotropic = scene.mix.thixotropy.has_value();
-  e.bytes_per_point = is_explicit(scene.model) ? explicit_bytes_per_point<Geometry::dim>(thixotropic)
-                                               : bytes_per_point<Geometry::dim>(thixotropic);
+  const std::size_t numbers = lambda_numbers(scene.mix);
+  e.bytes_per_point = is_explicit(scene.model) ? explicit_bytes_per_point<Geometry::dim>(numbers)
+                                               : bytes_per_point<Geometry::dim>(numbers);
 }
 
 double static_yield_stress_at_start(const Scene& scene) {

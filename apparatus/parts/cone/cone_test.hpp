@@ -51,6 +51,9 @@ struct Scene {
   int threads = 1;
 };
 
+/// Height of a section's cells once the body creeps [m]. Cells of a scene's own are as flat, to the default, as they were.
+double film_cell_of(const Scene& scene);
+
 /// One line of timeseries.csv.
 struct Sample {
   double time = 0.0;                             ///< since the start of the lift [s]

@@ -45,10 +45,10 @@ Shape<Geometry::dim> shape_of(const Model& model) {
 /// Bytes that one more point costs: sorted with its shear rate and its number, and in a reading; neither has
 /// affine velocities.
 template <int D>
-std::int64_t explicit_bytes_per_point(bool thixotropic) {
+std::int64_t explicit_bytes_per_point(std::size_t lambda_numbers) {
   constexpr std::int64_t affine = D * D * sizeof(double), number = sizeof(std::int32_t);
-  const std::int64_t rate = thixotropic ? 0 : sizeof(double);
-  return 2 * (bytes_per_point<D>(thixotropic) + rate - affine) + number;
+  const std::int64_t rate = lambda_numbers > 0 ? 0 : sizeof(double);
+  return 2 * (bytes_per_point<D>(lambda_numbers) + rate - affine) + number;
 }
 
 /// The frame of a reading, which gives it its arrays: there is no room for both in a large body. Its shear
@@ -196,7 +196,7 @@ Outcome run_explicit_in(const Scene& scene, const Law& law, const scene::Observe
       [&](std::optional<double> stopped_at) {
         read_results(scene, stopped_at, outcome);
         add_reasons(scene, outcome);
-        outcome.cost.bytes_per_point = explicit_bytes_per_point<D>(body.points.thixotropic());
+        outcome.cost.bytes_per_point = explicit_bytes_per_point<D>(body.points.lambda_numbers());
       },
       outcome);
   return outcome;

@@ -58,12 +58,15 @@ double depth_at_rest(const Scene& scene) {
 
 constexpr double default_height = 0.005;  ///< of a section's cells, for the Abrams cone [m]
 
-/// Height of the cells once the body creeps. Cells of a scene's own are as flat, to the default, as they were.
+}  // namespace
+
 double film_cell_of(const Scene& scene) {
   const double up = scene.model.cell[1], to_default = up / (default_height * scale_of(scene.cone));
   if (scene.model.space != SpaceKind::axisymmetric || scene.model.scheme != SchemeKind::implicit) return up;
   return std::min(up, to_default * depth_at_rest(scene) / rows_at_rest);
 }
+
+namespace {
 
 /// Three dimensions start from cells and points that a desk computer carries; a scene that gives one of the
 /// two is taken at its word. The body stretches across and is pressed flat: four points across a cell become

@@ -208,7 +208,7 @@ void count(const Scene& scene, scene::SizeEstimate& e) {
   for (const Part& p : parts_of(scene.shape)) section += 0.5 * (p.half_low + p.half_high) * (p.to - p.from);
   experiment::count_points(
       section / (h * h_up), n * n_up, [&] { return filled_funnel<Geometry>(scene); }, e);
-  e.bytes_per_point = bytes_per_point<2>(scene.mix.thixotropy.has_value());
+  e.bytes_per_point = bytes_per_point<2>(lambda_numbers(scene.mix));
 }
 
 /// Speed in the mouth of a fluid of the mix's viscosity that fills the funnel, by lubrication; no more than free fall.

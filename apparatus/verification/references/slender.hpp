@@ -8,6 +8,7 @@
 #include "apparatus/parts/cone/set_up.hpp"
 #include "apparatus/parts/cone/spread.hpp"
 #include "apparatus/verification/references/bodies.hpp"
+#include "apparatus/verification/references/finite_elements.hpp"
 #include "apparatus/verification/references/lubrication.hpp"
 
 namespace tremie::verification {
@@ -45,29 +46,33 @@ struct SlenderFlow {
   int unconverged = 0;
 };
 
+/// The diameters of a scene's own run, whose cells become flat with the film.
 inline SlenderFlow slender_flow(double across, double up) {
-  cone::Scene scene;
-  scene.mix = bodies::concrete(10.0, 35.8);
-  scene.lift_speed.reset();
-  scene.model.cell = {across, up};
+  constexpr double start = 2.0;
   omp_set_num_threads(1);
+  cone::Scene scene = instant_release(10.0, 35.8, 120.0);
+  scene.mix = bodies::concrete(10.0, 35.8);
+  scene.model.cell = {across, up};
+  scene.film_cell = cone::film_cell_of(scene);
+
   ImplicitBody<Axisymmetric> body{cone::filled_cone<Axisymmetric>(scene)};
   StepSettings settings = cone::step_settings(scene);
   SlenderFlow flow;
-  const auto march = [&](double until) {
-    while (body.time < until - 1e-9) {
-      settings.time_left = until - body.time;
-      flow.unconverged += !implicit_step(body, ExactBingham{}, settings).converged;
-    }
-  };
-  march(2.0);
+  while (body.time < start - 1e-9) {
+    settings.time_left = start - body.time;
+    flow.unconverged += !implicit_step(body, ExactBingham{}, settings).converged;
+  }
   Layer layer = layer_of(body.points, 1e-3, 2.0 * across / scene.model.points_per_cell[0]);
   flow.layer_volume = layer.volume();
+
+  const cone::Outcome outcome = cone::run(scene);
+  flow.unconverged += outcome.checks.unconverged_steps;
   const Fluid fluid{2400.0, 9.81, 10.0, 35.8};
+  double time = body.time;
   for (const auto& [t, mm] : published_slender) {
-    spread_layer(fluid, t - body.time, layer);
-    march(t);
-    flow.samples.push_back({t, mm, cone::spread(body.points, across), 2.0 * layer.front()});
+    spread_layer(fluid, t - time, layer);
+    time = t;
+    flow.samples.push_back({t, mm, 1e-3 * spread_at(outcome, t), 2.0 * layer.front()});
   }
   return flow;
 }
