@@ -66,7 +66,7 @@ inline SlenderFlow slender_flow(double across, double up) {
   flow.layer_volume = layer.volume();
 
   const cone::Outcome outcome = cone::run(scene);
-  flow.unconverged += outcome.checks.unconverged_steps;
+  flow.unconverged += static_cast<int>(outcome.checks.unconverged_steps);
   const Fluid fluid{2400.0, 9.81, 10.0, 35.8};
   double time = body.time;
   for (const auto& [t, mm] : published_slender) {
