@@ -21,7 +21,7 @@ TRUTH, CALIBRATION = ("10 mm", "5 mm"), ("15 mm", "7.5 mm")  # cells, across and
 # Further tests: scene, cells of the truth and of the calibration, reading in results and in [[measured]], error.
 FURTHER = [
     ("l_box", '[model]\nspace = "plane_with_side_walls"\n', "20 mm", "25 mm", "passing_ratio", "passing_ratio", 0.03, ""),
-    ("inverted_cone", "[model]\n", "5 mm", "7 mm", "flow_time_s", "flow_time", 0.08, " s"),
+    ("inverted_cone", "[model]\n", "4.5 mm", "6 mm", "flow_time_s", "flow_time", 0.08, " s"),
 ]
 
 
