@@ -132,6 +132,7 @@ void pull(const Scene& scene, Pour<Section>& pour) {
   });
   pour.placed += whole(scene) * stays;
   pour.body.wall_nodes.clear();
+  pour.still_for = 0.0;
 }
 
 }  // namespace
@@ -199,6 +200,8 @@ double prepare(const Scene& scene, double cfl, Pour<Section>& pour) {
   const bool waits =
       ahead > 1e-9 * pour.placed;  // a pulled pipe's concrete is there before the pump has brought it
   pour.inlet.flow = waits ? 0.0 : phase.rate / whole(scene);
+  pour.pauses = phase.rate == 0.0;
+  if (!pour.pauses) pour.still_for = 0.0;
   place_pipe(pour.inlet, pour.body.grid);
   double left = phase.end - now;
   if (waits && phase.rate > 0.0) left = std::min(left, ahead / phase.rate);

@@ -28,14 +28,25 @@ struct Pour {
   std::vector<double> load, batched;  ///< of each point: its load from 1; when it was batched [s]
   Inlet inlet;
   std::vector<Phase> phases;
-  double placed = 0.0;                 ///< volume that left the pipe [m^3]
-  double first_charge = 0.0;           ///< of it, what stands in the pile at the start
-  double short_for = 0.0;              ///< how long the head has not sufficed [s]
-  bool stopped = false;                ///< the head does not suffice
+  double placed = 0.0;        ///< volume that left the pipe [m^3]
+  double first_charge = 0.0;  ///< of it, what stands in the pile at the start
+  double short_for = 0.0;     ///< how long the head has not sufficed [s]
+  bool stopped = false;       ///< the head does not suffice
+  bool pauses = false;        ///< nothing is to be placed now
+  double still_for = 0.0;     ///< how long the concrete has been below its yield stress in a pause [s]
   std::vector<double> wall_mean = {};  ///< pressure on the wall of late, by cell [Pa]
   std::vector<double> wall_max;        ///< the largest of it so far
   double mouth_mean = 0.0;             ///< pressure at the mouth of late [Pa]
 };
+
+/// In a pause the concrete stands after so long below its yield stress [s]: until then its pressure settles.
+inline constexpr double settles = 5.0;
+
+/// Whether nothing of it moves until the next load is placed.
+template <class Section>
+bool stands(const Pour<Section>& pour) {
+  return pour.still_for >= settles;
+}
 
 /// Points of a cage from the base up to `height` [m] on cells of this height [m].
 std::vector<BarPoint<2>> screen_of(const Cage& cage, double height, double cell);

@@ -6,6 +6,7 @@
 #include "apparatus/bored_pile/pour.hpp"
 #include "apparatus/run/experiment.hpp"
 #include "libmpm/implicit/archived_state.hpp"
+#include "libmpm/implicit/standstill.hpp"
 
 namespace tremie::bored_pile {
 namespace {
@@ -27,6 +28,29 @@ StepSettings step_settings(const Scene& scene) {
   settings.time_error = 0.002 * scene.model.step_scale * scene.model.step_scale;
   settings.dt_longest = longest_step * scene.model.step_scale;
   return settings;
+}
+
+/// In a pause what the solver leaves of velocities must not carry points far: less of it, the stresses where the points are, and
+/// weights that the pressures balance (docs/theory/bored_pile.md, Rest).
+void settle_in_pauses(bool pauses, StepSettings& settings) {
+  constexpr double resting_tolerance = 1e-4;
+  settings.admm.tolerance = pauses ? resting_tolerance : StepSettings{}.admm.tolerance;
+  settings.balanced_weight = settings.cut_cell_rule = pauses;
+}
+
+/// A step of the pour. In a pause the concrete comes to rest, and then stands until the next load is placed.
+template <class Section>
+StepReport advance(const Scene& scene, const StepSettings& settings, Pour<Section>& pour) {
+  constexpr double yields = 1e-3;  // share of the yield stress
+  if (stands(pour))
+    return stand_still(settings.fixed_dt.value_or(std::min(settings.time_left, settings.dt_longest)),
+                       pour.body);
+  const StepReport step = implicit_step(pour.body, scene.model.law, settings);
+  if (step.failed) return step;
+  if (!pour.pauses) let_in(scene, pour);
+  const bool still = pour.pauses && is_below_yield(pour.body, scene.model.law, yields);
+  pour.still_for = still ? pour.still_for + step.dt : 0.0;
+  return step;
 }
 
 template <class Section>
@@ -58,20 +82,20 @@ Record run_section(const Scene& scene, const scene::Observer& observer) {
           [&] {
             settings.time_left = prepare(scene, settings.cfl * scene.model.step_scale, pour);
             settings.fixed_dt = experiment::fixed_step(scene.model, settings.time_left);
+            settle_in_pauses(pour.pauses, settings);
           },
       .advance =
           [&](Checks& checks, Cost& cost) {
-            const StepReport step = implicit_step(body, scene.model.law, settings);
+            const StepReport step = advance(scene, settings, pour);
             experiment::count_step(body, step, checks, cost);
             experiment::watch_fixed_step(body, scene.model, step, checks);
-            if (!step.failed) let_in(scene, pour);
             return step;
           },
       .frame = [&] { return frame_of(pour); },
       .state =
           [&](Archive& archive) {
             archive(body, pour.load, pour.batched, pour.inlet.face, pour.placed, pour.short_for,
-                    pour.wall_mean, pour.wall_max, pour.mouth_mean, record.series);
+                    pour.still_for, pour.wall_mean, pour.wall_max, pour.mouth_mean, record.series);
             for (Inlet::Column& column : pour.inlet.columns) archive(column.waiting);
           }};
   experiment::run_experiment(
