@@ -3,14 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rheometer/records/ramps.hpp"
+#include "rheometer/records/rests.hpp"
 #include "rheometer/records/torque_record.hpp"
 
 namespace tremie {
 
 namespace {
 
-constexpr double same_speed = 0.03, drift = 0.015;
-constexpr std::size_t fewest_rows = 5;
+constexpr double drift = 0.015;
 
 /// A run of rows: of constant speed, or between such runs.
 struct Piece {
@@ -41,7 +42,16 @@ bool drifts(const std::vector<double>& omega, std::size_t begin, std::size_t end
   return std::abs(last - first) > drift * first || turns;
 }
 
-std::vector<Piece> pieces_of(const std::vector<double>& omega, std::size_t begin, std::size_t end) {
+/// Whether a step of the test begins at row i: the clock starts again, and the speed does not go on as it went.
+bool begins_a_step(const ProtocolRecord& r, std::size_t i) {
+  if (!std::binary_search(r.restarts.begin(), r.restarts.end(), i)) return false;
+  if (i < 2 || i + 1 >= r.omega.size()) return false;
+  const auto rises = [&](std::size_t k) { return r.omega[k] > r.omega[k - 1]; };
+  return rises(i - 1) != rises(i) || rises(i) != rises(i + 1);
+}
+
+std::vector<Piece> pieces_of(const ProtocolRecord& r, std::size_t begin, std::size_t end) {
+  const std::vector<double>& omega = r.omega;
   std::vector<Piece> pieces;
   for (std::size_t i = begin; i < end;) {
     const std::size_t stop = end_of_constant(omega, i, end);
@@ -49,7 +59,7 @@ std::vector<Piece> pieces_of(const std::vector<double>& omega, std::size_t begin
       pieces.push_back({i, stop, true});
       i = stop;
     } else {
-      if (pieces.empty() || pieces.back().constant) pieces.push_back({i, i, false});
+      if (pieces.empty() || pieces.back().constant || begins_a_step(r, i)) pieces.push_back({i, i, false});
       pieces.back().end = ++i;
     }
   }
@@ -91,31 +101,6 @@ double highest(const std::vector<double>& omega, std::size_t begin, std::size_t 
                            omega.begin() + static_cast<std::ptrdiff_t>(end));
 }
 
-Section flow_curve(const std::vector<double>& omega, std::size_t begin, std::size_t end, bool up,
-                   bool stepped) {
-  return {.kind = up ? SectionKind::flow_curve_up : SectionKind::flow_curve_down,
-          .begin = begin,
-          .end = end,
-          .omega = highest(omega, begin, end),
-          .stepped = stepped};
-}
-
-/// Rows that keep no speed: a ramp up, a ramp down, or both.
-void add_ramps(const std::vector<double>& omega, const Piece& p, std::vector<Section>& sections) {
-  const auto from = omega.begin() + static_cast<std::ptrdiff_t>(p.begin);
-  const auto top = static_cast<std::size_t>(
-      std::max_element(from, omega.begin() + static_cast<std::ptrdiff_t>(p.end)) - omega.begin());
-  const auto rows = [&](std::size_t a, std::size_t b) { return b - a >= fewest_rows; };
-  if (rows(p.begin, top + 1) && omega[top] > 1.3 * omega[p.begin])
-    sections.push_back(flow_curve(omega, p.begin, top + 1, true, false));
-  const std::size_t behind = sections.empty() || sections.back().end != top + 1 ? p.begin : top + 1;
-  if (rows(behind, p.end) && omega[p.end - 1] < 0.77 * highest(omega, behind, p.end)) {
-    sections.push_back(flow_curve(omega, behind, p.end, false, false));
-  } else if (behind < p.end) {
-    sections.push_back({.begin = behind, .end = p.end, .omega = highest(omega, behind, p.end)});
-  }
-}
-
 /// How many of the pieces from i on are steps of one flow curve, up or down; fewer than 3 are none. A first step that
 /// takes more than 2.5 times as many rows as the others is a pre-shear.
 std::size_t steps_from(const std::vector<Piece>& pieces, const std::vector<double>& speed, std::size_t i,
@@ -129,15 +114,15 @@ std::size_t steps_from(const std::vector<Piece>& pieces, const std::vector<doubl
 }
 
 /// Sections of rows in which the vane turns.
-void add_shear(const std::vector<double>& omega, std::size_t begin, std::size_t end,
-               std::vector<Section>& sections) {
-  const std::vector<Piece> pieces = without_transitions(pieces_of(omega, begin, end));
+void add_shear(const ProtocolRecord& r, std::size_t begin, std::size_t end, std::vector<Section>& sections) {
+  const std::vector<double>& omega = r.omega;
+  const std::vector<Piece> pieces = without_transitions(pieces_of(r, begin, end));
   std::vector<double> speed;
   for (const Piece& p : pieces) speed.push_back(median_speed(omega, p));
   for (std::size_t i = 0; i < pieces.size();) {
     const std::size_t up = steps_from(pieces, speed, i, true), down = steps_from(pieces, speed, i, false);
     if (const std::size_t n = std::max(up, down); n > 0) {
-      sections.push_back(flow_curve(omega, pieces[i].begin, pieces[i + n - 1].end, up > 0, true));
+      sections.push_back(flow_curve_section(omega, pieces[i].begin, pieces[i + n - 1].end, up > 0, true));
       i += n;
       continue;
     }
@@ -147,7 +132,7 @@ void add_shear(const std::vector<double>& omega, std::size_t begin, std::size_t 
                           .end = pieces[i].end,
                           .omega = speed[i]});
     } else {
-      add_ramps(omega, pieces[i], sections);
+      add_ramps(omega, pieces[i].begin, pieces[i].end, sections);
     }
     ++i;
   }
@@ -209,56 +194,20 @@ ProtocolRecord protocol_of(const NumberTable& table) {
   return r;
 }
 
-namespace {
-
-/// Rows that are slower than 5e-4 of the fastest one are a rest where the instrument stands still and nothing holds a
-/// torque. A sweep over decades passes there too, its speed in order, and a slow step or a creep test holds its speed or
-/// torque.
-bool is_rest(const ProtocolRecord& r, std::size_t begin, std::size_t end, double fastest, double largest) {
-  constexpr double standing = 1e-6, no_torque = 0.05, held = 0.05, high = 0.2;
-  const auto rows = static_cast<double>(end - begin);
-  double speed = 0.0, torque = 0.0, low = HUGE_VAL, top = -HUGE_VAL, slowest = HUGE_VAL, quickest = 0.0;
-  for (std::size_t i = begin; i < end; ++i) {
-    speed += r.omega[i] / rows, torque += r.torque[i] / rows;
-    low = std::min(low, r.torque[i]), top = std::max(top, r.torque[i]);
-    slowest = std::min(slowest, r.omega[i]), quickest = std::max(quickest, r.omega[i]);
-  }
-  if (torque <= no_torque * largest) return true;
-  if (speed <= standing * fastest)
-    return !(end - begin >= fewest_rows && torque > high * largest && top - low < held * torque);
-  std::size_t up = 0, down = 0;
-  for (std::size_t i = begin + (begin == 0); i < end; ++i)
-    (r.omega[i] > r.omega[i - 1] ? up : down) += r.omega[i] != r.omega[i - 1];
-  const bool in_order = std::max(up, down) >= 3 && 5 * std::min(up, down) <= up + down;
-  const bool constant = end - begin >= fewest_rows && quickest - slowest <= 2.0 * same_speed * speed;
-  return !in_order && !constant;
-}
-
-}  // namespace
-
 std::vector<Section> find_sections(const ProtocolRecord& r) {
   std::vector<Section> sections;
   if (r.omega.empty()) return sections;
   const std::size_t rows = r.omega.size();
-  const double fastest = highest(r.omega, 0, rows), largest = highest(r.torque, 0, rows);
-  std::vector<char> rests(rows, 0);
-  for (std::size_t begin = 0, end = 0; begin < rows; begin = end) {
-    const auto slow = [&](std::size_t i) { return !(r.omega[i] > 5e-4 * fastest); };
-    for (end = begin + 1; end < rows && slow(end) == slow(begin); ++end) {
-    }
-    if (slow(begin) && is_rest(r, begin, end, fastest, largest))
-      std::fill(rests.begin() + static_cast<std::ptrdiff_t>(begin),
-                rests.begin() + static_cast<std::ptrdiff_t>(end), 1);
-  }
+  const std::vector<char> rests = rests_of(r);
   for (std::size_t begin = 0, end = 0; begin < rows; begin = end) {
     for (end = begin + 1; end < rows && rests[end] == rests[begin]; ++end) {
     }
     if (rests[begin])
       sections.push_back({.kind = SectionKind::rest, .begin = begin, .end = end});
     else
-      add_shear(r.omega, begin, end, sections);
+      add_shear(r, begin, end, sections);
   }
-  name_by_neighbours(r, fastest, sections);
+  name_by_neighbours(r, highest(r.omega, 0, rows), sections);
   return sections;
 }
 

@@ -71,13 +71,15 @@ TorqueRecord one_section(const NumberTable& table, const std::string& name, bool
   one.is_section = true;
   for (const Section& s : sections)
     if (!curve && is_flow_curve(s)) one.flow_curves.push_back(flow_curve_of(record, s));
+  const std::size_t others = table.line.size() - (found->end - found->begin);
   one.understood = table.understood;
   one.understood.push_back(
       std::string(curve ? "first flow curve" : "first section of constant speed") + ": lines " +
       std::to_string(table.line[curve ? found->begin : peak_of(record, *found)]) + " to " +
       std::to_string(table.line[found->end - 1]) + ", " + (curve ? "up to " : "") + text_of("%.6g", speed) +
-      unit + "; the other " + std::to_string(table.line.size() - (found->end - found->begin)) +
-      " rows are not used (--protocol reads them all)");
+      unit +
+      (others > 0 ? "; the other " + std::to_string(others) + " rows are not used (--protocol reads them all)"
+                  : ""));
   if (!curve && peak_of(record, *found) > found->begin)
     one.understood.push_back("time: counted from the largest torque while the vane gathers speed, line " +
                              std::to_string(one.line.front()));
@@ -99,6 +101,36 @@ void take_shear(NumberTable& table) {
     table.column[to].swap(table.column[from]);
     table.position[to] = table.position[from];
   }
+}
+
+/// Shear stress as viscosity times shear rate, where the table has no stress.
+void stress_from_viscosity(NumberTable& table) {
+  if (table.position[q_viscosity] == 0) return;
+  table.column[q_shear_stress] = std::move(table.column[q_viscosity]);
+  for (std::size_t i = 0; i < table.column[q_shear_stress].size(); ++i)
+    table.column[q_shear_stress][i] *= table.column[q_shear_rate][i];
+  std::swap(table.position[q_shear_stress], table.position[q_viscosity]);
+  table.column[q_viscosity].clear();
+  table.understood.push_back("no shear stress in the header: it is taken as viscosity times shear rate");
+}
+
+/// A time that falls at two of five rows tells how long each reading took. It is no clock of the test.
+void drop_a_time_of_readings(NumberTable& table) {
+  const bool has_rate = table.position[q_speed] != 0 || table.position[q_shear_rate] != 0;
+  if (table.position[q_time] == 0 || !has_rate) return;
+  const std::vector<double>& time = table.column[q_time];
+  std::size_t falls = 0, pairs = 0;
+  for (std::size_t i = 1; i < time.size(); ++i) {
+    if (std::binary_search(table.starts.begin(), table.starts.end(), i)) continue;
+    ++pairs;
+    falls += time[i] < time[i - 1];
+  }
+  if (falls < 3 || 5 * falls < 2 * pairs) return;
+  table.understood.push_back("column " + std::to_string(table.position[q_time]) +
+                             " is no clock of the test: it falls at " + std::to_string(falls) + " of " +
+                             std::to_string(pairs) + " rows; the rows are read without a time");
+  table.column[q_time].clear();
+  table.position[q_time] = 0;
 }
 
 /// Keeps one of several tables.
@@ -130,8 +162,10 @@ void require_kinds(const NumberTable& table, const std::string& name) {
   const bool has_time = table.position[q_time] != 0, has_speed = table.position[q_speed] != 0;
   const std::string kinds =
       "; " + seen(table) +
-      "; a flow curve has speed_rev_per_s,torque_N_m or shear_rate_per_s,shear_stress_Pa, a torque decay "
-      "time_s,torque_N_m; another column is named by --column \"torque=2 [mN m]\"";
+      (table.of_oscillation ? "; a modulus is of an oscillation, and only a rotation is read" : "") +
+      "; a flow curve has speed_rev_per_s,torque_N_m or shear_rate_per_s with shear_stress_Pa or "
+      "viscosity_Pa_s, a torque decay time_s,torque_N_m; another column is named by --column \"torque=2 [mN "
+      "m]\"";
   if (table.position[q_torque] == 0)
     throw RecordError(at_position(name, table.header_line, 1, "no torque column in the header" + kinds));
   if (!has_time && !has_speed)
@@ -142,6 +176,8 @@ void require_kinds(const NumberTable& table, const std::string& name) {
 NumberTable torque_table(std::string_view text, const std::string& name, double torque_offset,
                          const ReadOptions& options, bool& sheared_evenly) {
   NumberTable table = parse_torque_table(text, name, options);
+  stress_from_viscosity(table);
+  drop_a_time_of_readings(table);
   keep_table(table, options.table, name);
   const bool shear = table.position[q_shear_stress] != 0 && table.position[q_torque] == 0;
   if (shear && torque_offset != 0.0)

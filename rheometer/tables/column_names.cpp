@@ -44,10 +44,13 @@ Name name_and_unit(std::string_view row) {
   return {row.substr(0, equals), row.substr(equals + 1)};
 }
 
-/// Blanks as single ones, underscores as blanks.
+/// Blanks as single ones, underscores as blanks, the wide brackets of Chinese and Japanese as ours.
 std::string spaced(std::string_view text) {
   std::string s;
-  for (const char c : trimmed(text)) {
+  for (text = trimmed(text); !text.empty(); text.remove_prefix(1)) {
+    const bool opens = text.starts_with("\uFF08"), closes = text.starts_with("\uFF09");
+    if (opens || closes) text.remove_prefix(2);
+    const char c = opens ? '(' : closes ? ')' : text.front();
     const bool blank = c == '_' || c == ' ' || c == '\n' || c == '\r' || c == '\t';
     if (!blank || (!s.empty() && s.back() != ' ')) s += blank ? ' ' : c;
   }
@@ -128,6 +131,27 @@ std::optional<NamedColumn> named_column(std::string_view header,
       longest = name.text.size();
     }
   return found;
+}
+
+bool is_of_oscillation(std::string_view header) {
+  static const std::string_view names[] = {"storage modulus",
+                                           "loss modulus",
+                                           "shear modulus (elastic",
+                                           "shear modulus (viscous",
+                                           "speichermodul",
+                                           "verlustmodul",
+                                           "module de conservation",
+                                           "module de perte",
+                                           "module de stockage",
+                                           "módulo de almacenamiento",
+                                           "módulo de pérdida",
+                                           "g'",
+                                           "g\"",
+                                           "g\u2032",
+                                           "g\u2033"};
+  const std::string text = lower(spaced(header));
+  return std::any_of(std::begin(names), std::end(names),
+                     [&](std::string_view name) { return text.starts_with(name); });
 }
 
 std::vector<GivenColumn> given_columns(const std::string& text,

@@ -29,6 +29,9 @@ struct NamedColumn {
 std::optional<NamedColumn> named_column(std::string_view header,
                                         const std::vector<ColumnQuantity>& quantities);
 
+/// Whether a header names a modulus, which an oscillation measures and a rotation does not.
+bool is_of_oscillation(std::string_view header);
+
 /// "torque=3", "torque=Kraft am Hebel [N m]" or "torque=mN.m": a column that the user names.
 struct GivenColumn {
   std::size_t quantity = 0;

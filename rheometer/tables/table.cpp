@@ -6,14 +6,16 @@
 #include "rheometer/tables/column_names.hpp"
 #include "rheometer/tables/fields.hpp"
 #include "rheometer/tables/number_column.hpp"
+#include "rheometer/tables/row_fields.hpp"
 #include "rheometer/tables/text.hpp"
 
 namespace tremie {
 
 using detail::clock_seconds, detail::factor_of, detail::fields_of, detail::given_columns, detail::GivenColumn,
-    detail::is_given, detail::lines_of, detail::looks_like_a_number, detail::lower, detail::named_column,
-    detail::NamedColumn, detail::normal_unit, detail::NumberCell, detail::numbers_of, detail::TextLine,
-    detail::trimmed, detail::wide_blanks;
+    detail::is_given, detail::is_of_oscillation, detail::lines_of, detail::looks_like_a_number, detail::lower,
+    detail::named_column, detail::NamedColumn, detail::normal_unit, detail::NumberCell, detail::numbers_of,
+    detail::TextLine, detail::all_empty, detail::count_numbers, detail::is_placeholder,
+    detail::measures_a_modulus, detail::row_fields, detail::trimmed, detail::wide_blanks;
 
 std::string at_position(const std::string& name, long line, std::size_t column, const std::string& what) {
   return name + ":" + std::to_string(line) + ":" + std::to_string(column) + ": " + what;
@@ -40,6 +42,7 @@ struct Header {
   std::size_t named = 0;                           ///< how many are there
   bool plain = true;                               ///< English names with units, which leave nothing to tell
   std::optional<std::size_t> doubled = {};  ///< field of a second column of a quantity, as good as the first
+  std::vector<std::size_t> moduli = {};     ///< fields that only an oscillation fills
 
   bool has(std::size_t q) const { return column[q].has_value(); }
 };
@@ -61,12 +64,18 @@ class Reader {
     std::optional<Header> header = first_header();
     if (!header) return without_header();
     table_.header_line = lines_[header->at].number;
+    table_.of_oscillation = !header->moduli.empty();
     for (const std::string& field : header->fields) table_.header.push_back(field);
     strict_ = is_first_text(header->at) && header->plain;
     while (header) header = read_table(*header);
     if (table_.position == std::vector<std::size_t>(quantities_.size(), 0)) return table_;
     convert();
-    if (!strict_) tell_counts();
+    if (table_.line.empty() && oscillating_ > 0)
+      fail(
+          name_, table_.header_line, 1,
+          "the rows are those of an oscillation (they have a storage or loss modulus); a rotation is needed: "
+          "a flow curve, a start-up or a decay");
+    if (!strict_ || oscillating_ + other_rows_ > 0) tell_counts();
     return table_;
   }
 
@@ -88,11 +97,13 @@ class Reader {
                        [](const TextLine& l) { return carries_nothing(l.text); });
   }
 
+  bool is_torque_table() const { return !sets_.empty(); }
+
   // --- headers
 
   /// The columns that the fields name, or that the user gives.
   Header columns_of(std::vector<std::string> fields, std::size_t at, char separator) const {
-    Header h{at, separator, std::move(fields), {}, {}, 0, true, {}};
+    Header h{at, separator, std::move(fields), {}, {}, 0, true, {}, {}};
     h.column.resize(quantities_.size()), h.index.resize(quantities_.size());
     for (std::size_t i = 0; i < h.fields.size(); ++i) {
       auto named = named_column(h.fields[i], quantities_);
@@ -105,7 +116,10 @@ class Reader {
         break;
       }
       if (named) take(h, *named, i);
+      if (is_of_oscillation(h.fields[i])) h.moduli.push_back(i);
     }
+    if (is_torque_table() && (h.has(q_shear_stress) || !h.has(q_shear_rate)))
+      h.column[q_viscosity].reset();  // it is of use with a shear rate, where there is no stress
     for (const auto& c : h.column) h.named += c.has_value();
     return h;
   }
@@ -122,6 +136,7 @@ class Reader {
   void take(Header& h, const NamedColumn& named, std::size_t i) const {
     auto& column = h.column[named.quantity];
     const std::string_view own = quantities_[named.quantity].name;
+    if (column && own == "viscosity") return;
     if (column) {
       const bool better = column->unknown_unit > named.unknown_unit ||
                           (column->unknown_unit == named.unknown_unit && named.rank < column->rank);
@@ -133,6 +148,7 @@ class Reader {
     }
     column = named;
     h.index[named.quantity] = i;
+    if (own == "viscosity") return;  // says nothing of a table that does not need it
     h.plain = h.plain && !named.unit.empty() && lower(h.fields[i]).starts_with(own.substr(0, 5));
   }
 
@@ -175,13 +191,19 @@ class Reader {
     });
   }
 
-  /// Whether one of the five lines below has a number in a column of the header.
-  bool has_rows(const Header& h) const {
+  /// Whether one of the five lines below has a number in the field.
+  bool has_numbers(const Header& h, std::size_t field) const {
     for (std::size_t i = h.at + 1; i <= h.at + 5 && i < lines_.size(); ++i) {
       const auto fields = fields_of(lines_[i].text, h.separator);
-      for (std::size_t q = 0; q < quantities_.size(); ++q)
-        if (h.has(q) && h.index[q] < fields.size() && looks_like_a_number(fields[h.index[q]])) return true;
+      if (field < fields.size() && looks_like_a_number(fields[field])) return true;
     }
+    return false;
+  }
+
+  /// Whether one of the five lines below has a number in a column of the header.
+  bool has_rows(const Header& h) const {
+    for (std::size_t q = 0; q < quantities_.size(); ++q)
+      if (h.has(q) && has_numbers(h, h.index[q])) return true;
     return false;
   }
 
@@ -240,6 +262,7 @@ class Reader {
                                                                                              : ',');
     table_.header_line = lines_[at].number;
     table_.header = h.fields;
+    table_.of_oscillation = std::any_of(h.fields.begin(), h.fields.end(), is_of_oscillation);
     for (std::size_t q = 0; q < h.column.size(); ++q)
       if (h.has(q)) table_.position[q] = h.index[q] + 1;
     return table_;
@@ -277,18 +300,28 @@ class Reader {
     return behind;
   }
 
+  /// "shear_rate=1 [unit]; shear_stress=2 [unit]": what is missing, for the user to fill in.
+  std::string columns_without_units(const Header& h) const {
+    std::string text;
+    for (std::size_t q = 0; q < quantities_.size(); ++q)
+      if (h.has(q) && !factor_of(quantities_[q], h.column[q]->unit))
+        text += (text.empty() ? "" : "; ") + std::string(quantities_[q].name) + "=" +
+                std::to_string(h.index[q] + 1) + " [unit]";
+    return text;
+  }
+
   double unit_factor(const Header& h, std::size_t q) const {
     const NamedColumn& c = *h.column[q];
     const std::string what = c.unit.empty() ? "the column has no unit in '" : "unknown unit in '";
     const long line = lines_[h.at].number;
-    const std::string quantity(quantities_[q].name), number = std::to_string(h.index[q] + 1);
     const auto factor = factor_of(quantities_[q], c.unit);
     if (!factor)
       fail(name_, line, h.index[q] + 1,
            what + h.fields[h.index[q]] + "'; allowed: " + std::string(quantities_[q].allowed) +
-               "; or say it: --column \"" + quantity + "=" + number + " [unit]\"");
+               "; or say it: --column \"" + columns_without_units(h) + "\"");
     if (!std::isnan(*factor)) return *factor;
-    const bool percent = normal_unit(c.unit) == "%";
+    const std::string unit = normal_unit(c.unit);
+    const bool percent = unit == "%" || unit == "/cent" || unit == "pct";
     const auto& spring = percent ? options_.full_scale_torque : options_.torque_per_degree;
     if (!spring)
       fail(name_, line, h.index[q] + 1,
@@ -298,6 +331,11 @@ class Reader {
                           "(Brookfield LV 0.06737, RV 0.7187, HA 1.4374, HB 5.7496 mN.m)"
                         : "degrees of a dial: give the instrument, --geometry fann_r1b1, or its spring, "
                           "--torque-per-degree \"0.036379 mN.m\""));
+    if (options_.shear_first)
+      fail(name_, line, h.index[q] + 1,
+           "'" + h.fields[h.index[q]] +
+               "' is the reading of an instrument with a spring, not of ICAR's vane: give its geometry, "
+               "--geometry \"cylinders, R_i, R_o, height\" or \"constants, Pa/(N.m), 1/s by rad/s\"");
     return *spring * (percent ? 0.01 : 1.0);
   }
 
@@ -305,7 +343,7 @@ class Reader {
 
   /// Reads the rows below the header; the header of the next table, if there is one.
   std::optional<Header> read_table(Header h) {
-    if (h.doubled && (!sets_.empty() || h.named >= 2)) fail_doubled(h);
+    if (h.doubled && (!sets_.empty() || h.named >= 2) && has_numbers(h, *h.doubled)) fail_doubled(h);
     keep_a_set(h);
     const std::size_t begin = find_units(h);
     if (h.has(0) && h.column[0]->unit.empty() && begin < lines_.size() && quantities_[0].name == "time")
@@ -316,13 +354,22 @@ class Reader {
     for (std::size_t q = 0; q < quantities_.size(); ++q)
       if (h.has(q)) factor[q] = unit_factor(h, q);
     std::optional<Header> next;
+    std::vector<std::size_t> gaps;  // rows in front of which a line of empty fields stands
     behind_a_gap_ = false;
+    bool other = false;  // below a header of columns that are not asked for
     for (std::size_t i = begin; i < lines_.size() && !next; ++i) {
       if (carries_nothing(lines_[i].text)) {
         behind_a_gap_ = true;
         continue;
       }
-      auto fields = fields_of(lines_[i].text, h.separator);
+      if (other) {
+        next = next_header(i);
+        other_rows_ += !next && count_numbers(fields_of(lines_[i].text, h.separator)) > 1;
+        continue;
+      }
+      auto fields = row_fields(lines_[i].text, h.separator, h.fields);
+      if (table_.line.size() > first_row && fields.size() > 1 && all_empty(fields))
+        gaps.push_back(table_.line.size());
       read_clock(h, fields);
       if (takes_row(h, fields, lines_[i].number)) {
         put_row(h, fields, factor, lines_[i].number);
@@ -334,14 +381,37 @@ class Reader {
           continue;
         }
         behind_a_gap_ = true;
-        if (next && !((sets_.empty() || has_a_set(*next)) && has_rows(*next))) next.reset();
+        next = next_header(i);
+        other = !next && heads_other_columns(h, fields, i);
       }
     }
-    if (table_.line.size() > first_row) tell_table(h, first_row);
+    if (table_.line.size() > first_row) tell_tables(h, first_row, gaps);
     if (first_row == 0)
       for (std::size_t q = 0; q < quantities_.size(); ++q)
         if (h.has(q)) table_.position[q] = h.index[q] + 1;
     return next;
+  }
+
+  /// The header of a further table, if the line is one.
+  std::optional<Header> next_header(std::size_t at) const {
+    auto next = header_at(at);
+    if (next && !((sets_.empty() || has_a_set(*next)) && has_rows(*next))) next.reset();
+    return next;
+  }
+
+  /// Whether a line that is no row begins a table of other columns, as a step of an oscillation does: it has texts alone,
+  /// half as many as the header or more, no units in the header's columns, and rows of numbers below.
+  bool heads_other_columns(const Header& h, const std::vector<std::string>& fields, std::size_t at) const {
+    const auto texts = static_cast<std::size_t>(
+        std::count_if(fields.begin(), fields.end(), [](const std::string& f) { return !f.empty(); }));
+    if (!is_torque_table() || texts < 3 || 2 * texts < h.fields.size() || count_numbers(fields) > 0)
+      return false;
+    for (std::size_t q = 0; q < quantities_.size(); ++q)
+      if (h.has(q) && h.index[q] < fields.size() && factor_of(quantities_[q], fields[h.index[q]]))
+        return false;
+    for (std::size_t i = at + 1; i <= at + 3 && i < lines_.size(); ++i)
+      if (count_numbers(fields_of(lines_[i].text, h.separator)) > 1) return true;
+    return false;
   }
 
   /// A clock's time as its seconds; whether it is one.
@@ -366,6 +436,10 @@ class Reader {
         ++texts, text_at = i;
     }
     if (numbers == 0) return false;
+    if (is_torque_table() && measures_a_modulus(fields, h.moduli)) {
+      ++oscillating_;
+      return false;
+    }
     const bool starts_with_text = !fields.front().empty() && !looks_like_a_number(fields.front());
     if (texts > 0 && behind_a_gap_ && starts_with_text)
       return false;  // "Yield stress, 54, Pa" below the table
@@ -391,13 +465,6 @@ class Reader {
     }
     left_out_ += empty > 0;
     return empty == 0;
-  }
-
-  static bool is_placeholder(const std::string& field) {
-    static const std::string_view known[] = {"",     "-",   "--",   "---", "n/a",
-                                             "#n/a", "nan", "n.a.", "*",   "invalid"};
-    const std::string text = lower(field);
-    return std::find(std::begin(known), std::end(known), text) != std::end(known);
   }
 
   void put_row(const Header& h, const std::vector<std::string>& fields, const std::vector<double>& factor,
@@ -432,10 +499,20 @@ class Reader {
 
   // --- what was understood
 
-  void tell_table(const Header& h, std::size_t first_row) {
-    table_.starts.push_back(first_row);
-    tables_.push_back("lines " + std::to_string(table_.line[first_row]) + " to " +
-                      std::to_string(table_.line.back()));
+  /// Rows under one header are one table, or several with lines of empty fields between three rows or more.
+  void tell_tables(const Header& h, std::size_t first_row, const std::vector<std::size_t>& gaps) {
+    constexpr std::size_t fewest = 3;
+    const std::size_t rows = table_.line.size();
+    std::size_t start = first_row;
+    const auto tell = [&](std::size_t end) {
+      table_.starts.push_back(start);
+      tables_.push_back("lines " + std::to_string(table_.line[start]) + " to " +
+                        std::to_string(table_.line[end - 1]));
+      start = end;
+    };
+    for (const std::size_t gap : gaps)
+      if (gap >= start + fewest && rows >= gap + fewest) tell(gap);
+    tell(rows);
     if (strict_ || first_row > 0) return;
     for (std::size_t q = 0; q < quantities_.size(); ++q)
       if (h.has(q))
@@ -454,6 +531,9 @@ class Reader {
       text += ", " + tables_.front();
     }
     if (left_out_ > 0) text += "; " + std::to_string(left_out_) + " rows without a value left out";
+    if (other_rows_ > 0)
+      text += "; " + std::to_string(other_rows_) + " rows of tables with other columns left out";
+    if (oscillating_ > 0) text += "; " + std::to_string(oscillating_) + " rows of an oscillation left out";
     table_.understood.push_back(text);
   }
 
@@ -467,7 +547,7 @@ class Reader {
   std::vector<std::vector<double>> factors_;
   std::vector<NumberCell> others_;
   std::vector<std::string> tables_;
-  std::size_t left_out_ = 0;
+  std::size_t left_out_ = 0, oscillating_ = 0, other_rows_ = 0;
   bool strict_ = false;
   bool behind_a_gap_ = false;  ///< the line before the one that is read is blank, or text behind a blank one
   NumberTable table_;
@@ -487,9 +567,13 @@ NumberTable parse_torque_table(std::string_view text, const std::string& name, c
                                        {q_speed, q_torque},
                                        {q_time, q_shear_rate, q_shear_stress},
                                        {q_shear_rate, q_shear_stress},
+                                       {q_time, q_shear_rate, q_viscosity},
+                                       {q_shear_rate, q_viscosity},
                                        {q_time, q_torque}},
       shear_first{{q_time, q_shear_rate, q_shear_stress},
                   {q_shear_rate, q_shear_stress},
+                  {q_time, q_shear_rate, q_viscosity},
+                  {q_shear_rate, q_viscosity},
                   {q_time, q_speed, q_torque},
                   {q_speed, q_torque},
                   {q_time, q_torque}};

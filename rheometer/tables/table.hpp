@@ -32,7 +32,8 @@ struct ReadOptions {
   std::string columns;           ///< "torque=3; speed=Drehzahl [rpm]"; empty: by their names
   std::string decimal = "auto";  ///< or "point", "comma"
   std::size_t table = 0;         ///< of a file with several, from 1; 0: see torque_table()
-  bool shear_first = false;      ///< shear rate and stress are taken where speed and torque are there too
+  bool shear_first = false;      ///< shear rate and stress are taken where speed and torque are there too: no
+                                 ///< geometry is given, and readings of a spring are refused
   std::optional<double> torque_per_degree;  ///< of a dial [N m]
   std::optional<double> full_scale_torque;  ///< of readings in % [N m]
   /// Of the geometry, in place of its radii: shear stress by torque [Pa/(N m)], shear rate by speed [1/s by rad/s].
@@ -47,6 +48,7 @@ struct NumberTable {
   std::vector<std::size_t> starts;          ///< first row of each table of the file
   long header_line = 0;
   std::vector<std::string> header;      ///< what stands there
+  bool of_oscillation = false;          ///< a column of the header is a modulus, as an oscillation measures
   std::vector<std::string> understood;  ///< a sentence each; none of a table that needs no word
 };
 
@@ -60,10 +62,10 @@ NumberTable parse_number_table(std::string_view text, const std::string& name,
                                const std::vector<ColumnQuantity>& quantities, const ReadOptions& options = {},
                                const ColumnSets& sets = {});
 
-enum TorqueQuantity : std::size_t { q_time, q_speed, q_torque, q_shear_rate, q_shear_stress };
+enum TorqueQuantity : std::size_t { q_time, q_speed, q_torque, q_shear_rate, q_shear_stress, q_viscosity };
 
-/// Time [s], speed [rad/s], torque [N m], shear rate [1/s] and shear stress [Pa], the columns of every torque record, in
-/// the order of TorqueQuantity.
+/// Time [s], speed [rad/s], torque [N m], shear rate [1/s], shear stress [Pa] and viscosity [Pa s], the columns of every
+/// torque record, in the order of TorqueQuantity.
 const std::vector<ColumnQuantity>& torque_quantities();
 
 /// The columns of a torque record, of its text as decoded_text() has it.

@@ -1,5 +1,6 @@
 // Names and units of the columns of rheometers: RheoCompass and Rheoplus in German, English and French, TRIOS, rSpace,
-// RheoWin, Rheocalc, Fann's dial, tables of ICAR, ConTec and workshops.
+// RheoWin, Rheocalc, Fann's dial, tables of ICAR, ConTec and workshops. Portuguese and Chinese names are those of public
+// programs that read the exports.
 
 #include <limits>
 
@@ -119,6 +120,9 @@ ColumnQuantity speed_quantity() {
            "velocità di rotazione",
            "velocità",
            "toerental",
+           "velocidade",
+           "rotação",
+           "转速",
            "rpm=rpm",
            "rps=rps",
            "u/min=rpm",
@@ -144,6 +148,8 @@ ColumnQuantity torque_quantity() {
            {"dyncm", 1e-7},
            {"gfcm", 9.80665e-5},
            {"%", unset},
+           {"/cent", unset},  // "percent"
+           {"pct", unset},
            {"deg", unset},
            {"degrees", unset},
            {"dial", unset},
@@ -159,6 +165,7 @@ ColumnQuantity torque_quantity() {
            "momento",
            "coppia",
            "koppel",
+           "扭矩",
            "% torque=%",
            "torque %=%",
            "%torque=%",
@@ -202,6 +209,8 @@ ColumnQuantity rate_quantity() {
            "gradiente di velocità",
            "velocità di taglio",
            "afschuifsnelheid",
+           "taxa de cisalhamento",
+           "剪切速率",
            "strain rate",
            "rate",
            "gamma dot",
@@ -231,14 +240,31 @@ ColumnQuantity stress_quantity() {
           "shear_stress_Pa, shear_stress_mPa or shear_stress_kPa",
           {"shearstress", "schubspannung", "scherspannung", "contrainte de cisaillement", "contrainte",
            "stress", "esfuerzo cortante", "esfuerzo de corte", "esfuerzo de cizalla", "tensione di taglio",
-           "sforzo di taglio", "schuifspanning", "tau", "τ"}};
+           "sforzo di taglio", "schuifspanning", "tensão de cisalhamento", "剪切应力", "tau", "τ"}};
+}
+
+/// Of a record that has no stress: stress is viscosity times shear rate.
+ColumnQuantity viscosity_quantity() {
+  return {"viscosity",
+          {{"pas", 1.0},
+           {"mpas", 1e-3},
+           {"kpas", 1e3},
+           {"ns/m2", 1.0},
+           {"cp", 1e-3},
+           {"cps", 1e-3},
+           {"p", 0.1},
+           {"poise", 0.1}},
+          "viscosity_Pa_s, viscosity_mPa_s or viscosity_cP",
+          {"shear viscosity", "apparent viscosity", "dynamic viscosity", "steady shear viscosity",
+           "viskosität", "scherviskosität", "viscosité", "viscosité apparente", "viscosidad", "viscosidade",
+           "viscosità", "viscositeit", "粘度", "eta", "η"}};
 }
 
 }  // namespace
 
 const std::vector<ColumnQuantity>& torque_quantities() {
-  static const std::vector<ColumnQuantity> all{time_quantity(), speed_quantity(), torque_quantity(),
-                                               rate_quantity(), stress_quantity()};
+  static const std::vector<ColumnQuantity> all{time_quantity(), speed_quantity(),  torque_quantity(),
+                                               rate_quantity(), stress_quantity(), viscosity_quantity()};
   return all;
 }
 

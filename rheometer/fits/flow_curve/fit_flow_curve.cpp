@@ -194,6 +194,23 @@ void require_flow_curve(const Readings& r, const FitInput& input) {
     throw std::invalid_argument("all rows have the same speed; a flow curve needs two speeds or more");
 }
 
+/// Neighbours at an end of the curve that miss to the same side are a part that the law does not describe.
+void note_end_left_out(const Readings& r, const FittedLaw& f, FitResult& result) {
+  constexpr std::size_t fewest = 3;
+  for (const bool fast : {true, false}) {
+    const auto misses = [&](std::size_t k) {
+      const std::size_t i = fast ? r.size() - 1 - k : k;
+      return f.fit.outlier[i] ? f.fit.residual[i] : 0.0;
+    };
+    std::size_t run = 0;
+    while (run < r.size() && misses(run) * misses(0) > 0.0) ++run;
+    if (run >= fewest)
+      result.notes.push_back(text_of(
+          "law: the %zu %s readings lie %s the curve and were left out; the values hold for the others", run,
+          fast ? "fastest" : "slowest", misses(0) > 0.0 ? "above" : "below"));
+  }
+}
+
 /// Why the law does not describe the readings.
 std::vector<std::string> reasons_of(const Readings& r, const FittedLaw& f) {
   std::vector<std::string> reasons;
@@ -227,6 +244,7 @@ FitResult fit_by_law(const TorqueRecord& record, const FitInput& input, std::opt
   const auto kept = static_cast<double>(result.curve.x.size());
   result.effective_readings = static_cast<double>(result.readings) * f.fit.independent / std::max(1.0, kept);
   report_parameters(r, f, input, result);
+  note_end_left_out(r, f, result);
   report_covariance(f, result);
   report_plug(r, f, input, result);
   report_band(f, input, result);
