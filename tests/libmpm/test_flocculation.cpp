@@ -5,7 +5,8 @@
 #include <cmath>
 #include <functional>
 
-#include "libmpm/constitutive/flocculation.hpp"
+#include "libmpm/constitutive/mix.hpp"
+#include "libmpm/particles/particles.hpp"
 
 namespace tremie {
 namespace {
@@ -111,6 +112,19 @@ TEST(Flocculation, GateCrossedOnARamp) {
     EXPECT_NEAR(march(gated, up, 1.0, 20.0, steps), exact_up, 1e-11) << steps;
     EXPECT_NEAR(march(gated, down, 1.0, 20.0, steps), exact_down, 1e-11) << steps;
   }
+}
+
+// A point stores position, velocity, affine velocity, mass, volume and ln J, eleven numbers in a section; with thixotropy
+// lambda and the shear rate; with four modes their four parts too.
+TEST(Flocculation, APointStoresWhatItsKineticsHas) {
+  Mix mix;
+  EXPECT_EQ(bytes_per_point<2>(lambda_numbers(mix)), 11 * 8);
+  mix.thixotropy = Thixotropy{1.3, RatePowerKinetics{0.3, 0.1}};
+  EXPECT_EQ(bytes_per_point<2>(lambda_numbers(mix)), 13 * 8);
+  mix.thixotropy = Thixotropy{
+      1.3, RatePowerKinetics{
+               .breakdown = 0.3, .rate_exponent = 0.1, .modes = std::vector<BreakdownMode>(4, {0.25, 1.0})}};
+  EXPECT_EQ(bytes_per_point<2>(lambda_numbers(mix)), 17 * 8);
 }
 
 }  // namespace

@@ -6,8 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "libmpm/constitutive/mix.hpp"
-#include "libmpm/particles/particles.hpp"
+#include "libmpm/constitutive/flocculation.hpp"
 #include "rheometer/reference/flocculation_ode.hpp"
 
 namespace tremie {
@@ -130,17 +129,6 @@ TEST(RatePowerKinetics, ModesAreASumOfTimes) {
       const Thixotropy t = rate_power(0.2, 1.0, none, 0.0, modes);
       EXPECT_NEAR(step_in_parts(t, 5.78, 3.0, dt) / by_cvode(t, 5.78, 3.0, dt), 1.0, 1e-9) << dt;
     }
-}
-
-// A point stores position, velocity, affine velocity, mass, volume and ln J, eleven numbers in a section; with thixotropy
-// lambda and the shear rate; with four modes their four parts too.
-TEST(RatePowerKinetics, APointStoresWhatItsKineticsHas) {
-  Mix mix;
-  EXPECT_EQ(bytes_per_point<2>(lambda_numbers(mix)), 11 * 8);
-  mix.thixotropy = rate_power(0.2);
-  EXPECT_EQ(bytes_per_point<2>(lambda_numbers(mix)), 13 * 8);
-  mix.thixotropy = rate_power(0.2, 1.0, none, 0.0, std::vector<BreakdownMode>(4, {0.25, 1.0}));
-  EXPECT_EQ(bytes_per_point<2>(lambda_numbers(mix)), 17 * 8);
 }
 
 }  // namespace
