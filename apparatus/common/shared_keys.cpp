@@ -236,7 +236,11 @@ Section model_section(const std::vector<std::string>& spaces, const ModelDefault
       .name = "model",
       .help = "How it is computed.",
       .keys = {
-          {.name = "space", .kind = Kind::choice, .words = spaces, .fallback = spaces.front()},
+          {.name = "space",
+           .kind = Kind::choice,
+           .words = spaces,
+           .fallback = spaces.front(),
+           .help = defaults.space_help},
           {.name = "scheme", .kind = Kind::choice, .words = names(scheme_words), .fallback = "implicit"},
           {.name = "method",
            .kind = Kind::choice,

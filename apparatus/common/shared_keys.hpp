@@ -67,6 +67,7 @@ struct ModelDefaults {
   std::string points_per_cell = "[4, 4]";
   std::string cell_help = "[across, up], or one length; [\"14 mm\", \"7 mm\"] in three dimensions";
   std::string points_help = "[across, up], or one number for each direction; [4, 2] in three dimensions";
+  std::string space_help = {};
 };
 
 /// [model], with the spaces that an apparatus has; the first is its default.

@@ -43,6 +43,10 @@ Section test_section() {
                     .range = {.low = 0.05},
                     .fallback = "100 mm",
                     .help = "it lands between 20 mm and this from the end wall"},
+                   {.name = "fall",
+                    .range = not_negative,
+                    .fallback = "0 mm",
+                    .help = "from the bucket's lip to the floor; 0 mm: laid down at rest"},
                    duration_key("300 s")}};
 }
 
@@ -67,7 +71,8 @@ ApparatusKeys keys() {
                                       {.cell = "[\"10 mm\", \"5 mm\"]",
                                        .points_per_cell = "[8, 4]",
                                        .cell_help = "[across, up], or one length",
-                                       .points_help = "[across, up], or one number for each direction"});
+                                       .points_help = "[across, up], or one number for each direction",
+                                       .space_help = "no three dimensions: the pour is laid on a section"});
   return {.name = "lcpc_box",
           .help = "The LCPC box (Roussel 2007).",
           .schema = joined(
@@ -79,7 +84,8 @@ boxes::Scene read_scene(const Values& values) {
   boxes::Scene scene;
   scene.mix = read_mix(values);
   scene.model = read_model(values);
-  scene.pour = boxes::Pour{values.number("test.volume"), values.number("test.pour_time")};
+  scene.pour =
+      boxes::Pour{values.number("test.volume"), values.number("test.pour_time"), values.number("test.fall")};
   const double landing = values.number("test.pour_to"), width = values.number("box.width");
   scene.box = {.column_length = landing,
                .column_height = std::min(2.0 * scene.model.cell[1], scene.pour->volume / (width * landing)),
@@ -175,7 +181,8 @@ Outcome run_and_read(const boxes::Scene& scene, const RunOptions& options, const
 
 std::vector<std::string> uses(const boxes::Scene& scene) {
   std::vector<std::string> lines{flocculation_use(scene.mix)};
-  lines.push_back("bucket: its concrete is laid on the surface, at rest");
+  lines.push_back(scene.pour->fall > 0.0 ? "bucket: its concrete comes onto the surface as fast as it fell"
+                                         : "bucket: its concrete is laid on the surface, at rest");
   lines.push_back(scene.model.space == SpaceKind::plane ? "side walls: left out (model.space = \"plane\")"
                                                         : "side walls: their drag, averaged over the width");
   lines.push_back("walls: " + word(scene.walls));

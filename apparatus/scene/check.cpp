@@ -99,8 +99,9 @@ void read_text(const Key& key, const std::string& text, Value& into) {
   if (key.kind == Kind::text || is_word(key, text)) {
     into.words.push_back(text);
   } else if (key.kind == Kind::choice) {
+    const std::string near = nearest_in_brackets(text, key.words);
     throw Problem(fmt::format("\"{}\" is not allowed; allowed: {}{}", text, join(key.words),
-                              nearest_in_brackets(text, key.words)));
+                              near.empty() && !key.help.empty() ? " (" + key.help + ")" : near));
   } else if (key.kind == Kind::quantity) {
     std::string words = key.words.empty() ? "" : " or " + join(key.words);
     double value = 0.0;

@@ -17,7 +17,7 @@ constexpr funnel::FunnelTest test{
     .words = "V-funnel",
     .help = "The V-funnel test of EN 12350-9.",
     .standard = {.top = 0.515, .mouth = 0.065, .taper = 0.45, .throat = 0.15, .depth = 0.075},
-    .cell = "5 mm"};
+    .cell = "[\"5 mm\", \"8 mm\"]"};
 
 /// EN 12350-9's funnel, whose dimensions may be off by 1 mm.
 bool is_standard(const funnel::Shape& s) {

@@ -5,8 +5,11 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <set>
+#include <utility>
 
 #include "apparatus/parts/boxes/boxes.hpp"
+#include "apparatus/parts/boxes/pour.hpp"
 #include "apparatus/registry/registry.hpp"
 #include "libmpm/constitutive/constants.hpp"
 
@@ -75,6 +78,21 @@ TEST(UBox, TheBarsHoldTheirLimitLoad) {
   const double more = difference("test.bars=3") - difference("test.bars=0");
   std::printf("%.1f mm more with bars, closed form %.1f mm\n", more, held);
   EXPECT_NEAR(more, held, 3.0);
+}
+
+// No square of half a cell in the concrete is without a point: neither along the path around the wall's edge, where the flow
+// stretches the body most, nor anywhere else off the walls and the surface.
+TEST(UBox, TheFlowOpensNoGapsBetweenThePoints) {
+  const auto scene = scene::read_text(u_box, "a.toml", {});
+  const boxes::Outcome raw = boxes::run(std::any_cast<const boxes::Scene&>(scene.test));
+  constexpr double square = 0.01;
+  std::set<std::pair<int, int>> held;
+  for (const auto& x : raw.final_frame.position)
+    held.insert({static_cast<int>(x[0] / square), static_cast<int>(x[1] / square)});
+  int empty = 0;
+  for (int i = 2; i < 26; ++i)
+    for (int j = 2; j < 28; ++j) empty += held.count({i, j}) == 0;
+  EXPECT_EQ(empty, 0);
 }
 
 TEST(UBox, TheDefaultsAreThoseOfItsFile) {
@@ -160,6 +178,23 @@ TEST(LcpcBox, PouredConcreteHasRested) {
   EXPECT_GT(number(rested, "flocculation_mean_end"), 2.0 * number(fresh, "flocculation_mean_end"));
   EXPECT_LT(number(rested, "length_mm"), number(fresh, "length_mm"));
   EXPECT_LT(std::abs(rested.checks.mass_error), 1e-9);
+}
+
+// What has fallen brings its momentum, m sqrt(2 g (fall - y)); what is laid down brings none.
+TEST(LcpcBox, WhatFallsArrivesAsFastAsItFell) {
+  for (const double fall : {0.0, 0.3}) {
+    auto scene = std::any_cast<boxes::Scene>(scene::read_text(lcpc_box, "a.toml", {}).test);
+    scene.pour->fall = fall;
+    auto body = boxes::filled_column<PlaneStrain>(scene);
+    const std::size_t before = body.points.size();
+    boxes::Poured poured;
+    body.time = 1.0;
+    boxes::let_in(scene, poured, body);
+    ASSERT_GT(body.points.size(), before);
+    for (std::size_t p = before; p < body.points.size(); ++p)
+      EXPECT_NEAR(body.points.v[p][1], -std::sqrt(2.0 * gravity * std::max(0.0, fall - body.points.x[p][1])),
+                  1e-12);
+  }
 }
 
 TEST(LcpcBox, SaysWhatItCannotCompute) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "apparatus/parts/funnel/funnel.hpp"
 #include "apparatus/registry/registry.hpp"
@@ -105,6 +106,30 @@ TEST(Funnel, ACoarseMouthIsMarkedBeforeItHasEmptied) {
   ASSERT_FALSE(outcome.checks.reasons.empty());
   EXPECT_NE(outcome.checks.reasons[0].find("half of the mouth"), std::string::npos)
       << outcome.checks.reasons[0];
+}
+
+// Cells of a V-funnel may be 1.6 times as high as wide; of a round funnel that was not measured.
+TEST(Funnel, CellsThatAreTooTallAreMarked) {
+  const auto reasons = [](const std::string& name, const char* cell) {
+    const std::string text =
+        "apparatus = \"" + name +
+        "\"\n[mix]\nyield_stress = \"30 Pa\"\nplastic_viscosity = \"40 Pa.s\"\n"
+        "[test]\nduration = \"0.02 s\"\n[output]\nframes = false\n[model]\ncell = [\"5 mm\", ";
+    return scene::run(scene::read_text(text + cell + "]\n", "a.toml", {})).checks.reasons.size();
+  };
+  EXPECT_EQ(reasons("v_funnel", "\"8 mm\""), 0U);
+  EXPECT_EQ(reasons("v_funnel", "\"10 mm\""), 1U);
+  EXPECT_EQ(reasons("inverted_cone", "\"8 mm\""), 1U);
+}
+
+TEST(Funnel, SaysWhyItHasNoThreeDimensions) {
+  try {
+    run_cone({"model.space=quarter"});
+    FAIL();
+  } catch (const scene::InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("every section through its axis"), std::string::npos)
+        << error.what();
+  }
 }
 
 // The defaults are what reference_data/funnels says.

@@ -160,6 +160,28 @@ TEST(ShownFrames, AreBoundedAndKeepTheEnds) {
   for (const auto& p : last.position) EXPECT_EQ(p[1], 0.0);
 }
 
+// A section of 112 columns of 544 points, 1.25 mm apart, seeded column by column. Every 21st point, the least stride that leaves
+// 3000, lies on lines 12 mm apart and leaves 75 of the squares of 9 mm empty; of those that are shown, each holds one. Half of
+// the area of such a square is that of one point of 3000.
+TEST(ShownFrames, PointsThatAreLeftOutOpenNoGaps) {
+  constexpr int columns = 112, rows = 544, across = 15, up = 75;
+  constexpr double apart = 1.25e-3, square = 9e-3;
+  Frame frame;
+  for (int i = 0; i < columns; ++i)
+    for (int j = 0; j < rows; ++j) frame.position.push_back({(i + 0.5) * apart, (j + 0.5) * apart, 0.0});
+  ShownFrames shown;
+  shown.add(frame);
+  const Frame& thin = shown.frames().front();
+  EXPECT_LE(thin.position.size(), ShownFrames::most_points);
+  EXPECT_GE(thin.position.size(), ShownFrames::most_points / 2);
+  std::vector<int> held(static_cast<std::size_t>(across * up), 0);
+  for (const auto& x : thin.position) {
+    const int i = static_cast<int>(x[0] / square), j = static_cast<int>(x[1] / square);
+    if (i < across && j < up) held[static_cast<std::size_t>(i * up + j)] = 1;
+  }
+  for (const int h : held) EXPECT_EQ(h, 1);
+}
+
 // Of six frames every second is written, and the last: 0, 2, 4 and 5 s.
 TEST(ResultFiles, SomeFramesAreEverySecondAndTheLast) {
   const test::TemporaryFolder folder;

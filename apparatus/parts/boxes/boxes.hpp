@@ -30,6 +30,7 @@ struct Box {
 struct Pour {
   double volume = 6e-3;  ///< [m^3]
   double time = 30.0;    ///< that it takes [s]
+  double fall = 0.0;     ///< from the bucket's lip down to the floor [m]; 0: it is laid down at rest
 };
 
 /// So stiff that a column of 0.6 m compresses by less than 0.2 % under its own weight [Pa]: rho g H / 2 K.

@@ -1,7 +1,7 @@
 #pragma once
 
-// Concrete that is poured into a section of a box instead of standing there from the start. It is laid on the surface over the
-// column's length, row by row and at rest: for pours so slow that their momentum does not count.
+// Concrete that is poured into a section of a box instead of standing there from the start. It comes onto the surface over the
+// column's length, row by row, with the speed of its free fall there. The falling jet is not computed: it is a millimetre thick.
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +16,11 @@ struct Poured {
   double section = 0.0;  ///< of what left the bucket [m^2]
   double waiting = 0.0;  ///< of it, what no points hold yet [m^2]
 };
+
+/// Speed on a surface of what fell freely from the bucket [m/s].
+inline double speed_of_fall(const Pour& pour, double surface) {
+  return std::sqrt(2.0 * experiment::gravity * std::max(0.0, pour.fall - surface));
+}
 
 /// A row of points of this height [m] on the surface. None is laid near the end wall, where it would stick to the wall.
 inline void lay_row(const Scene& scene, double height, Body<PlaneStrain>& body) {
@@ -35,6 +40,7 @@ inline void lay_row(const Scene& scene, double height, Body<PlaneStrain>& body) 
   for (int i = 0; i < n; ++i) {
     const double V = length / n * height, y = top[static_cast<std::size_t>(i)] + 0.5 * height;
     add_point<2>(points, {from + (i + 0.5) * length / n, y}, body.mix.density * V, V, 0.0);
+    if (const double speed = speed_of_fall(*scene.pour, y); speed > 0.0) points.v.back()[1] = -speed;
     add_point<2>(laid.points, Vec<2>::Zero(), 0.0, 0.0, 0.0);
   }
   experiment::rest(laid, scene.rest);

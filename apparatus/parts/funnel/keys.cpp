@@ -107,7 +107,12 @@ ApparatusKeys keys(const FunnelTest& test) {
       model_section(spaces, {.cell = test.cell,
                              .points_per_cell = "4",
                              .cell_help = "[across, up], or one length; at most a third of the mouth",
-                             .points_help = "[across, up], or one number for each direction"});
+                             .points_help = "[across, up], or one number for each direction",
+                             .space_help = test.standard.depth > 0.0
+                                               ? "no three dimensions: a quarter of it on cells that resolve "
+                                                 "the mouth takes half an hour of one core"
+                                               : "no three dimensions: a round funnel is the same in every "
+                                                 "section through its axis"});
   return {
       .name = test.name,
       .help = test.help,

@@ -1,9 +1,11 @@
 #include "apparatus/report/run_files/moving.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <map>
+#include <set>
 #include <utility>
 
 namespace tremie::report {
@@ -72,6 +74,11 @@ MovingFrame seen(const Frame& frame, const scene::Stage& stage, const std::vecto
 
 using Places = std::vector<std::array<double, 3>>;
 
+bool fills_space(const Places& places) {
+  return std::any_of(places.begin(), places.end(), [](const auto& x) { return x[2] != 0.0; }) &&
+         std::any_of(places.begin(), places.end(), [](const auto& x) { return x[1] != 0.0; });
+}
+
 /// Of points that fill a space the section y = 0: of each rectangle of x and z the point that is nearest to it, so that
 /// no part of the section stays empty where the points have moved apart.
 std::vector<std::size_t> nearest_to_section(const Places& places, std::size_t most) {
@@ -93,22 +100,49 @@ std::vector<std::size_t> nearest_to_section(const Places& places, std::size_t mo
   return chosen;
 }
 
-/// Which points of a frame stand for all.
-std::vector<std::size_t> points_shown(const Places& places, std::size_t most) {
-  const bool all = places.size() <= most;
-  if (!all && std::any_of(places.begin(), places.end(), [](const auto& x) { return x[2] != 0.0; }) &&
-      std::any_of(places.begin(), places.end(), [](const auto& x) { return x[1] != 0.0; }))
-    return nearest_to_section(places, most);
+/// How many squares of a section hold some of every k-th point. By floats, as a resumed run has them.
+std::size_t squares_held(const Places& places, std::size_t every, double square) {
+  std::set<std::array<int, 3>> held;
+  const auto at = [square](double x) { return static_cast<int>(std::floor(static_cast<float>(x) / square)); };
+  for (std::size_t p = 0; p < places.size(); p += every)
+    held.insert({at(places[p][0]), at(places[p][1]), at(places[p][2])});
+  return held.size();
+}
+
+/// The stride that leaves at most so many points of a section. Points that were seeded row by row may leave every k-th in lines
+/// far apart, and a flow that stretches them opens gaps: of some strides the first that leaves few squares empty, or the best.
+std::size_t stride_shown(const Places& places, std::size_t most) {
+  constexpr double enough = 0.85;  // two points to a square, at random, hold as many
+  constexpr std::size_t tries = 8;
+  const std::size_t least = (places.size() + most - 1) / most;
+  if (least < 2 || fills_space(places)) return std::max<std::size_t>(1, least);
+  std::array<double, 3> low = places.front(), high = low;
+  for (const auto& x : places)
+    for (std::size_t d = 0; d < 3; ++d) low[d] = std::min(low[d], x[d]), high[d] = std::max(high[d], x[d]);
+  const double width = high[0] - low[0], height = std::max(high[1] - low[1], high[2] - low[2]);
+  const double square = std::sqrt(std::max(2.0 * width * height / static_cast<double>(most), 1e-18));
+  const auto all = static_cast<double>(squares_held(places, 1, square));
+  std::size_t best = least;
+  double most_held = 0.0;
+  for (std::size_t every = least; every < least + tries && most_held < enough; ++every) {
+    const double held = static_cast<double>(squares_held(places, every, square)) / all;
+    if (held > most_held) best = every, most_held = held;
+  }
+  return best;
+}
+
+/// Which points of a frame stand for all: of a section every k-th.
+std::vector<std::size_t> points_shown(const Places& places, std::size_t most, std::size_t every) {
+  if (places.size() > most && fills_space(places)) return nearest_to_section(places, most);
   std::vector<std::size_t> chosen;
-  const std::size_t every = all ? 1 : (places.size() + most - 1) / most;
   for (std::size_t p = 0; p < places.size(); p += every) chosen.push_back(p);
   return chosen;
 }
 
-Frame thin_frame(const Frame& frame, std::size_t most) {
+Frame thin_frame(const Frame& frame, std::size_t most, std::size_t every) {
   Frame thin;
   thin.time = frame.time;
-  for (const std::size_t p : points_shown(frame.position, most)) {
+  for (const std::size_t p : points_shown(frame.position, most, every)) {
     thin.position.push_back(frame.position[p]);
     if (p < frame.shear_rate.size()) thin.shear_rate.push_back(frame.shear_rate[p]);
     if (p < frame.flocculation.size()) thin.flocculation.push_back(frame.flocculation[p]);
@@ -130,7 +164,10 @@ void ShownFrames::add(const Frame& frame) {
     stride_ *= 2;
   }
   last_is_extra_ = came_ % stride_ != 0;
-  kept_.push_back(thin_frame(frame, most_points));
+  const std::size_t times_too_many = (frame.position.size() + most_points - 1) / most_points;
+  if (times_too_many != times_too_many_)
+    times_too_many_ = times_too_many, every_ = stride_shown(frame.position, most_points);
+  kept_.push_back(thin_frame(frame, most_points, every_));
   ++came_;
 }
 

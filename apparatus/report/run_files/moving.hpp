@@ -24,7 +24,8 @@ class ShownFrames {
  private:
   std::vector<Frame> kept_;
   std::size_t came_ = 0, stride_ = 1;
-  bool last_is_extra_ = false;  ///< the last one stands in until the next comes
+  std::size_t times_too_many_ = 0, every_ = 1;  ///< of the points; kept, so that a point stays in the picture
+  bool last_is_extra_ = false;                  ///< the last one stands in until the next comes
 };
 
 /// A run's frames as its stage shows them; nothing without a stage.
