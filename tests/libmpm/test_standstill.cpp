@@ -8,7 +8,7 @@
 
 #include "apparatus/verification/references/bodies.hpp"
 #include "libmpm/implicit/problem/cell_weights.hpp"
-#include "libmpm/implicit/standstill.hpp"
+#include "libmpm/implicit/steady/standstill.hpp"
 
 namespace tremie {
 namespace {
