@@ -6,7 +6,7 @@
 #include "apparatus/bored_pile/pour.hpp"
 #include "apparatus/run/experiment.hpp"
 #include "libmpm/implicit/archived_state.hpp"
-#include "libmpm/implicit/standstill.hpp"
+#include "libmpm/implicit/steady/standstill.hpp"
 
 namespace tremie::bored_pile {
 namespace {

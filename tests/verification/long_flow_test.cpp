@@ -4,22 +4,26 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <vector>
 
 #include "apparatus/run/body_readings.hpp"
 #include "libmpm/implicit/step.hpp"
 #include "libmpm/particles/seeding.hpp"
+#include "libmpm/transfer/apic.hpp"
 
 namespace tremie {
 namespace {
 
 constexpr double h = 0.04, inner = 4 * h, outer = 16 * h, tau_0 = 54.0, mu = 35.8,
                  plug = 0.4 * (outer - inner);
-constexpr double duration = 30'000.0, A_thix = 54.0 / duration;
+constexpr double step = 0.1, duration = 30'000 * step, A_thix = tau_0 / duration;
 
-/// As deep as three cells and periodic, it sinks by a body force of 2 tau_0 over the plug's width.
+/// As deep as three cells and periodic, it sinks by a body force of 2 tau_0 over the plug's width. Its points lie off their raster,
+/// by up to 0.15 of their distance, so that cells hold more and fewer of them as they pass by.
 ImplicitBody<Axisymmetric> between_cylinders() {
   ImplicitBody<Axisymmetric> body;
   body.mix.density = 2400.0, body.mix.tau_0 = tau_0, body.mix.mu = mu, body.mix.K = 350e6;
@@ -32,6 +36,13 @@ ImplicitBody<Axisymmetric> between_cylinders() {
   seed_box<Axisymmetric>(
       {inner, 0.0}, {outer, 3 * h}, {24, 6}, body.mix.density, body.mix.K, [](const auto&) { return true; },
       [](const auto&) { return 0.0; }, body.points);
+  std::uint32_t seed = 1;
+  for (Vec<2>& x : body.points.x)
+    for (double& along : x) {
+      seed = seed * 1664525u + 1013904223u;
+      along += 0.15 * h * (static_cast<double>(seed >> 8) / 16777216.0 - 0.5);
+    }
+  for (Vec<2>& x : body.points.x) keep_in_domain<2>(body.grid.axes, x);
   experiment::rest(body, 0.0);
   return body;
 }
@@ -51,17 +62,19 @@ Ring ring(const Points<2>& points, double from, double to) {
 
 // The shear stress is (f/2)(r - r_1 r_2/r), with a plug from r_1 to r_2 = r_1 + 2 tau_0/f: with equal speeds on both sides it
 // lies within half a cell of the middle. There structure only builds up, lambda = A_thix t/tau_0 = 1 at the end; next to the walls
-// the rate is above 1 1/s, and what was built up has broken down. The plug's concrete is looked for in its middle two cells.
+// the rate is above 1 1/s, and what was built up has broken down. The plug's concrete is looked for in its middle two cells. Without
+// particle shifting, which answers to cells that hold a point too many by chance, and carries points from ring to ring
+// (docs/theory/mpm_step.md).
 TEST(LongFlow, StructureAndVolumeKeepTheirPlace) {
   omp_set_num_threads(1);
   auto body = between_cylinders();
   StepSettings settings;
-  settings.fixed_dt = 1.0;
-  settings.particle_shifting.on = true;
+  settings.fixed_dt = step;
+  settings.alternating_viscosity = 1000.0;
   std::vector<double> volume;
   for (int c = 4; c < 16; ++c) volume.push_back(ring(body.points, c * h, (c + 1) * h).volume);
   int unconverged = 0, steps = 0;
-  for (; body.time < duration - 0.5; ++steps)
+  for (; body.time < duration - 0.5 * step; ++steps)
     unconverged += implicit_step(body, ExactBingham{}, settings).converged ? 0 : 1;
   EXPECT_EQ(unconverged, 0);
   const double middle = 0.5 * (inner + outer), in_plug = ring(body.points, middle - h, middle + h).lambda,
@@ -76,7 +89,7 @@ TEST(LongFlow, StructureAndVolumeKeepTheirPlace) {
               in_plug, at_walls, worst);
   EXPECT_NEAR(in_plug, A_thix * duration / tau_0, 0.01);
   EXPECT_LE(at_walls, 0.01);
-  EXPECT_LE(worst, 0.01);
+  EXPECT_LE(worst, 0.1);  // a ring holds twelve points: 8 % for one that strays
 }
 
 }  // namespace
