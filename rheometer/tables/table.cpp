@@ -380,9 +380,9 @@ class Reader {
           next.reset();
           continue;
         }
-        behind_a_gap_ = true;
         next = next_header(i);
-        other = !next && heads_other_columns(h, fields, i);
+        other = !next && behind_a_gap_ && heads_other_columns(h, fields, i);
+        behind_a_gap_ = true;
       }
     }
     if (table_.line.size() > first_row) tell_tables(h, first_row, gaps);
@@ -399,7 +399,7 @@ class Reader {
     return next;
   }
 
-  /// Whether a line that is no row begins a table of other columns, as a step of an oscillation does: it has texts alone,
+  /// Whether a line behind a gap begins a table of other columns, as a step of an oscillation does: it has texts alone,
   /// half as many as the header or more, no units in the header's columns, and rows of numbers below.
   bool heads_other_columns(const Header& h, const std::vector<std::string>& fields, std::size_t at) const {
     const auto texts = static_cast<std::size_t>(

@@ -165,6 +165,16 @@ TEST(FoundLayouts, ATableOfOtherColumnsEndsTheOneBefore) {
   }
 }
 
+// A remark between two rows begins no table.
+TEST(FoundLayouts, ARemarkBetweenRowsEndsNothing) {
+  EXPECT_EQ(parse_torque_record(
+                "Speed [rpm],Torque [Nm],Remark,By\n10,1,a,b\n20,1.5,a,b\npause,the mixer,was on,again\n"
+                "30,2,a,b\n40,2.5,a,b\n",
+                "r.csv")
+                .torque.size(),
+            4u);
+}
+
 // All columns without a unit are named at once.
 TEST(FoundLayouts, UnitsThatAreMissingAreAskedForTogether) {
   EXPECT_NE(refusal("Shear Rate,Stress\n1,2\n2,3\n")
