@@ -231,7 +231,8 @@ TEST(BoredPile, PoursAPanel) {
   const scene::Outcome outcome = run(panel);
   EXPECT_TRUE(outcome.checks.reasons.empty()) << outcome.checks.reasons.front();
   EXPECT_NEAR(result(outcome, "placed_m3"), 0.41, 1e-9);
-  EXPECT_LE(std::abs(result(outcome, "volume_error")), 1e-3);
+  // The surface is read to a twentieth of a cell of 40 mm, over a metre of concrete.
+  EXPECT_LE(std::abs(result(outcome, "volume_error")), 2e-3);
   EXPECT_LE(std::abs(outcome.checks.mass_error), 1e-9);
   const double level = result(outcome, "level_end_m"), slot = 0.8 / 19,
                mouth = scene::find_column(outcome.series, "mouth_m")->values.back();
