@@ -40,7 +40,7 @@ void print_candidates(const FitResult& r) {
         "fits");
     for (const Candidate& c : r.candidates)
       say("{:<22} {:>10} {:>7.2f} % {:>11.2f} {:>8} {:>8}\n", (c.chosen ? "* " : "  ") + c.name, c.parameters,
-          100.0 * c.scatter, c.correlation, c.difference ? fmt::format("+{:.1f}", *c.difference) : "-",
+          100.0 * c.scatter, c.correlation, c.difference ? fmt::format("{:+.1f}", *c.difference) : "-",
           c.fits ? "yes" : "no");
   }
   if (!r.choice.empty()) say("{:<22} {}\n", "chosen", r.choice);
