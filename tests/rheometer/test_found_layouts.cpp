@@ -14,18 +14,10 @@
 #include "rheometer/records/sections.hpp"
 #include "rheometer/records/torque_record.hpp"
 #include "rheometer/whole_fit/fit_record.hpp"
+#include "tests/rheometer/refusal.hpp"
 
 namespace tremie {
 namespace {
-
-std::string refusal(const std::string& text, const ReadOptions& options = {}) {
-  try {
-    parse_torque_record(text, "r.csv", 0.0, options);
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "nothing";
-}
 
 bool understood(const TorqueRecord& r, const std::string& part) {
   for (const std::string& text : r.understood)

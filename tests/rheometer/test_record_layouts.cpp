@@ -8,6 +8,7 @@
 #include "libmpm/constitutive/constants.hpp"
 #include "rheometer/records/torque_record.hpp"
 #include "rheometer/reference/instrument.hpp"
+#include "tests/rheometer/refusal.hpp"
 
 namespace tremie {
 namespace {
@@ -22,15 +23,6 @@ ReadOptions shear_first() {
   ReadOptions options;
   options.shear_first = true;
   return options;
-}
-
-std::string refusal(const std::string& text, const ReadOptions& options = {}) {
-  try {
-    parse_torque_record(text, "r.csv", 0.0, options);
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "nothing";
 }
 
 void expect_refusal(const std::string& text, const std::string& start, const std::string& part) {
