@@ -85,7 +85,8 @@ StartUpReading read_start_up(const ProtocolRecord& r, const Section& s, const In
     return std::vector<double>(v.begin() + static_cast<std::ptrdiff_t>(s.begin),
                                v.begin() + static_cast<std::ptrdiff_t>(s.end));
   };
-  if (const auto limit = torque_limit(section(r.time), section(r.torque))) {
+  const auto limit = torque_limit(section(r.time), section(r.torque));
+  if (limit && *std::max_element(r.torque.begin(), r.torque.end()) <= limit->torque * (1.0 + 1e-9)) {
     reading.peak_inside = false;
     notes.push_back(
         text_of("static_yield_stress: %ld rows in a row have the largest torque: the instrument's limit cuts "

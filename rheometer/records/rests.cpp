@@ -19,9 +19,23 @@ bool starts_a_step(const ProtocolRecord& r, std::size_t row) {
   return std::binary_search(r.restarts.begin(), r.restarts.end(), row);
 }
 
+/// Whether speeds are imposed one after the other, each faster or slower by the same factor: from three rows, with the next one
+/// of the same step. A vane that runs down does not keep a factor.
+bool are_steps_of_one_factor(const ProtocolRecord& r, std::size_t begin, std::size_t end) {
+  if (begin > 0 && !starts_a_step(r, begin)) --begin;
+  if (end < r.omega.size() && !starts_a_step(r, end)) ++end;
+  if (end - begin < 4 || !(r.omega[begin] > 0.0)) return false;
+  const double first = r.omega[begin + 1] / r.omega[begin];
+  if (std::abs(first - 1.0) < 0.05) return false;
+  for (std::size_t i = begin + 1; i < end; ++i)
+    if (!(std::abs(r.omega[i] / r.omega[i - 1] / first - 1.0) < 0.1)) return false;
+  return true;
+}
+
 /// Whether the rows are the slow end of a sweep: gradual throughout, and into the faster rows of the same step. Its torque
-/// may be small beside the largest one, as that of a fluid with little yield stress is.
+/// may be small beside the largest one, as that of a fluid with little yield stress is, and noise.
 bool ends_a_sweep(const ProtocolRecord& r, std::size_t begin, std::size_t end) {
+  if (are_steps_of_one_factor(r, begin, end)) return true;
   for (std::size_t i = begin + 1; i < end; ++i)
     if (!pass_gradually(r, i - 1, i)) return false;
   return (begin > 0 && !starts_a_step(r, begin) && pass_gradually(r, begin - 1, begin)) ||

@@ -114,18 +114,20 @@ void stress_from_viscosity(NumberTable& table) {
   table.understood.push_back("no shear stress in the header: it is taken as viscosity times shear rate");
 }
 
-/// A time that falls at two of five rows tells how long each reading took. It is no clock of the test.
+/// A time that falls at two of five rows, or three times by less than half, tells how long each reading took. It is no clock of
+/// the test, which starts again from the beginning or not at all.
 void drop_a_time_of_readings(NumberTable& table) {
   const bool has_rate = table.position[q_speed] != 0 || table.position[q_shear_rate] != 0;
   if (table.position[q_time] == 0 || !has_rate) return;
   const std::vector<double>& time = table.column[q_time];
-  std::size_t falls = 0, pairs = 0;
+  std::size_t falls = 0, pairs = 0, small = 0;
   for (std::size_t i = 1; i < time.size(); ++i) {
     if (std::binary_search(table.starts.begin(), table.starts.end(), i)) continue;
     ++pairs;
     falls += time[i] < time[i - 1];
+    small += time[i] < time[i - 1] && time[i] > 0.5 * time[i - 1];
   }
-  if (falls < 3 || 5 * falls < 2 * pairs) return;
+  if (falls < 3 || (5 * falls < 2 * pairs && small < 3)) return;
   table.understood.push_back("column " + std::to_string(table.position[q_time]) +
                              " is no clock of the test: it falls at " + std::to_string(falls) + " of " +
                              std::to_string(pairs) + " rows; the rows are read without a time");
@@ -136,6 +138,7 @@ void drop_a_time_of_readings(NumberTable& table) {
 /// Keeps one of several tables.
 void keep_table(NumberTable& table, std::size_t number, const std::string& name) {
   const std::size_t tables = table.starts.size();
+  if (table.chosen) return;
   if (number == 0 && (tables < 2 || table.position[q_time] != 0)) return;
   const std::size_t kept = std::max<std::size_t>(number, 1);
   if (kept > tables)

@@ -1,0 +1,113 @@
+// Files with tables of different columns, or with several samples in one table, as public repositories hold them. The files here
+// are made; a Chandler 5550's calibration before its data and a list of muds by a Fann viscometer are their models.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "rheometer/protocol/protocol.hpp"
+#include "rheometer/records/sections.hpp"
+#include "rheometer/records/torque_record.hpp"
+
+namespace tremie {
+namespace {
+
+bool understood(const TorqueRecord& r, const std::string& part) {
+  return std::any_of(r.understood.begin(), r.understood.end(),
+                     [&](const std::string& text) { return text.find(part) != std::string::npos; });
+}
+
+const std::string curve = "shear rate [1/s],shear stress [Pa]\n10,1\n20,1.5\n30,2\n40,2.5\n";
+
+// A table of two other columns is a table, with a unit in its header or below it, or by the numbers right below.
+TEST(MixedTables, TwoOtherColumnsAreNoRows) {
+  for (const std::string below :
+       {"\nStrain [%],G' [Pa]\n20,2\n21,2.1\n", "Frequency [Hz],Temperature [C]\n20,2\n21,2.1\n",
+        "\nRotor Radius,Bob Radius\n(cm),(cm)\n20,2\n21,2.1\n", "\nminute,temperature\n20,2\n21,2.1\n"}) {
+    SCOPED_TRACE(below);
+    const TorqueRecord r = parse_torque_record(curve + below, "r.csv");
+    EXPECT_EQ(r.torque.size(), 4u);
+    EXPECT_TRUE(understood(r, "2 rows of tables with other columns left out"));
+  }
+}
+
+// The kind of table with the most rows is read; --table reads another. A torque without a speed needs a word from the user.
+TEST(MixedTables, OneKindIsReadAndTheOtherIsTold) {
+  const std::string calibration =
+      "Rotor Speed,Shear Rate,Shear Stress\n(RPM),(1/sec),(dyne/cm2)\n10,8.5,17\n20,17,34\n30,25.5,51\n\n";
+  std::string log = "Time (min),Shear Rate (1/sec),Shear Stress (dyne/cm2)\n";
+  for (int i = 1; i <= 12; ++i)
+    log += std::to_string(i) + "," + std::to_string(50 + 50 * i) + "," + std::to_string(140 + 60 * i) + "\n";
+  const TorqueRecord r = parse_torque_record(calibration + log, "r.csv");
+  ASSERT_EQ(r.torque.size(), 12u);
+  EXPECT_NEAR(r.torque[0], 20.0, 1e-9);
+  EXPECT_TRUE(understood(r, "3 rows of tables with other columns left out (--table reads another)"));
+  ReadOptions first;
+  first.table = 1;
+  const TorqueRecord one = parse_torque_record(calibration + log, "r.csv", 0.0, first);
+  ASSERT_EQ(one.torque.size(), 3u);
+  EXPECT_NEAR(one.torque[2], 5.1, 1e-9);
+  const std::string torques =
+      "Time [s],Torque [mN m]\n1,5\n2,5\n3,5\n4,5\n5,5\n6,5\n\nspeed [rpm],torque [mN m]\n10,1\n20,2\n30,3\n";
+  EXPECT_EQ(parse_torque_record(torques, "r.csv").torque.size(), 3u);
+}
+
+// Samples under one header are tables; where they alternate, or a time goes through, a note says that they are read as one.
+TEST(MixedTables, SamplesOfOneTableAreToldApart) {
+  const std::string header = "sample,ramp,shear rate [1/s],shear stress [Pa]\n";
+  const std::string text =
+      header +
+      "CMC,up,10,1\nCMC,up,20,2\nCMC,up,30,3\nCMC,down,10,4\nCMC,down,20,5\nCMC,down,30,6\n"
+      "TiO2,up,10,7\nTiO2,up,20,8\nTiO2,up,30,9\n";
+  const TorqueRecord r = parse_torque_record(text, "r.csv");
+  ASSERT_EQ(r.torque.size(), 3u);
+  EXPECT_TRUE(understood(r, "lines 5 to 7 (CMC, down)"));
+  ReadOptions third;
+  third.table = 3;
+  EXPECT_NEAR(parse_torque_record(text, "r.csv", 0.0, third).torque[0], 7.0, 1e-9);
+
+  const TorqueRecord mixed =
+      parse_torque_record(header + "A,up,10,1\nB,up,10,2\nA,up,20,3\nB,up,20,4\nA,up,30,5\n", "r.csv");
+  EXPECT_EQ(mixed.torque.size(), 5u);
+  EXPECT_TRUE(understood(mixed, "column 1 'sample' changes at line 3 (A, up to B, up)"));
+  // a number of each row is no group
+  const TorqueRecord rows =
+      parse_torque_record("Run,shear rate [1/s],shear stress [Pa]\n1,10,1\n2,20,2\n3,30,3\n", "r.csv");
+  EXPECT_EQ(rows.torque.size(), 3u);
+  EXPECT_FALSE(understood(rows, "changes at line"));
+}
+
+// 15.02 s for a reading, and 15.03 for the next: a clock that started again would start from the beginning.
+TEST(MixedTables, ATimeThatHardlyFallsIsNoClock) {
+  std::string text = "RPM,Elapsed_Time_s,Torque [mN m]\n";
+  const char* time[] = {"35.08", "20.09", "15.02", "15.02", "15.02", "15.03",
+                        "15.03", "15.02", "15.02", "15.03", "15.02"};
+  for (int i = 0; i < 11; ++i)
+    text += std::to_string(i + 2) + "," + time[i] + "," + std::to_string(40 + i) + "\n";
+  const TorqueRecord r = parse_torque_record(text, "r.csv");
+  EXPECT_EQ(r.kind, RecordKind::flow_curve);
+  EXPECT_EQ(r.torque.size(), 11u);
+}
+
+// A sweep from 0.01 to 100 1/s in steps of one factor begins below a two-thousandth of its fastest rate. The stresses of an oil
+// are noise there. A vane that runs down to a stand keeps no factor.
+TEST(MixedTables, TheSlowEndOfASweepIsNoRest) {
+  ProtocolRecord sweep;
+  for (int i = 0; i < 25; ++i) {
+    sweep.time.push_back(10.0 * i), sweep.omega.push_back(0.01 * std::pow(10.0, i / 6.0));
+    sweep.torque.push_back(0.01 * sweep.omega.back() + (i % 2 == 0 ? 1e-4 : -2e-4));
+    sweep.line.push_back(i + 2);
+  }
+  const auto sections = find_sections(sweep);
+  ASSERT_EQ(sections.size(), 1u);
+  EXPECT_EQ(sections[0].end - sections[0].begin, 25u);
+  const double stop[] = {3e-4, 2.9e-4, 1e-4, 2e-6, 1e-6, 1e-7};
+  for (std::size_t i = 0; i < 6; ++i) sweep.omega[i] = stop[i];
+  EXPECT_EQ(find_sections(sweep).front().kind, SectionKind::rest);
+}
+
+}  // namespace
+}  // namespace tremie
