@@ -165,7 +165,7 @@ std::vector<GivenColumn> given_columns(const std::string& text,
     const std::size_t equals = one.find('=');
     const std::string quantity = lower(trimmed(one.substr(0, std::min(equals, one.size()))));
     std::string names;
-    GivenColumn g{quantities.size(), 0, {}, {}};
+    GivenColumn g{quantities.size(), 0, {}, {}, {}};
     for (std::size_t q = 0; q < quantities.size(); ++q) {
       names += (names.empty() ? "" : ", ") + std::string(quantities[q].name);
       if (spaced(quantities[q].name) == spaced(quantity)) g.quantity = q;
@@ -184,7 +184,8 @@ std::vector<GivenColumn> given_columns(const std::string& text,
         !(*number >= 1.0 && *number <= 1000.0 && *number == static_cast<double>(static_cast<int>(*number))))
       throw std::invalid_argument("\"" + std::string(one) + "\": columns are counted from 1");
     if (number) g.number = static_cast<std::size_t>(*number);
-    g.name = lower(number ? std::string_view{} : unit.empty() ? what : before);
+    g.exact = std::string(number ? std::string_view{} : unit.empty() ? what : before);
+    g.name = lower(g.exact);
     g.unit = std::string(unit);
     if (!unit.empty() && !factor_of(quantities[g.quantity], unit))
       throw std::invalid_argument("\"" + std::string(one) + "\": unknown unit '" + std::string(unit) +

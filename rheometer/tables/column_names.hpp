@@ -37,6 +37,7 @@ struct GivenColumn {
   std::size_t quantity = 0;
   std::size_t number = 0;  ///< from 1; 0: by name or unit
   std::string name;        ///< of the header, lower case; or a unit that a column has
+  std::string exact;       ///< the name as it was written: 't' and 'T' may be two columns
   std::string unit;        ///< what is written behind in brackets; empty for what the header has
 };
 

@@ -40,13 +40,17 @@ bool carries_nothing(std::string_view line) {
 
 /// The columns that the fields name, or that the user gives.
 Header Headers::columns_of(std::vector<std::string> fields, std::size_t at, char separator) const {
-  Header h{at, separator, std::move(fields), {}, {}, 0, true, {}, {}};
+  Header h{.at = at, .separator = separator, .fields = std::move(fields), .column = {}, .index = {}};
   h.column.resize(quantities.size()), h.index.resize(quantities.size());
   for (std::size_t i = 0; i < h.fields.size(); ++i) {
     auto named = named_column(h.fields[i], quantities);
     for (const GivenColumn& g : given) {
       if (named && named->quantity == g.quantity) named.reset();
-      if (g.number != i + 1 && !is_given(g, h.fields[i], quantities[g.quantity])) continue;
+      const bool exactly =
+          !g.exact.empty() && std::find(h.fields.begin(), h.fields.end(), g.exact) != h.fields.end();
+      if (g.number != i + 1 &&
+          !(exactly ? h.fields[i] == g.exact : is_given(g, h.fields[i], quantities[g.quantity])))
+        continue;
       const std::string unit = !g.unit.empty() ? g.unit : unit_within(h.fields[i], g.quantity);
       named = NamedColumn{g.quantity, 0, unit, false};
       h.plain = false;
@@ -80,7 +84,7 @@ void Headers::take(Header& h, const NamedColumn& named, std::size_t i) const {
                         (column->unknown_unit == named.unknown_unit && named.rank < column->rank);
     if (!better && (named.unknown_unit > column->unknown_unit || named.rank > column->rank)) return;
     if (!better) {
-      h.doubled = i;
+      h.doubled = i, h.doubled_quantity = named.quantity;
       return;
     }
   }

@@ -27,8 +27,9 @@ struct Header {
   std::size_t named = 0;                           ///< how many are there
   bool plain = true;                               ///< English names with units, which leave nothing to tell
   std::optional<std::size_t> doubled = {};  ///< field of a second column of a quantity, as good as the first
-  std::vector<std::size_t> moduli = {};     ///< fields that only an oscillation fills
-  std::vector<std::size_t> groups = {};     ///< fields that tell samples, ramps or runs apart
+  std::size_t doubled_quantity = 0;
+  std::vector<std::size_t> moduli = {};  ///< fields that only an oscillation fills
+  std::vector<std::size_t> groups = {};  ///< fields that tell samples, ramps or runs apart
 
   bool has(std::size_t q) const { return column[q].has_value(); }
 };

@@ -15,8 +15,8 @@ namespace tremie {
 using detail::all_empty, detail::carries_nothing, detail::clock_seconds, detail::count_numbers,
     detail::factor_of, detail::fields_of, detail::given_columns, detail::Header, detail::Headers,
     detail::is_of_oscillation, detail::is_placeholder, detail::lines_of, detail::looks_like_a_number,
-    detail::lower, detail::measures_a_modulus, detail::named_column, detail::NamedColumn, detail::normal_unit,
-    detail::NumberCell, detail::numbers_of, detail::row_fields, detail::TextLine, detail::trimmed;
+    detail::lower, detail::measures_a_modulus, detail::NamedColumn, detail::normal_unit, detail::NumberCell,
+    detail::numbers_of, detail::row_fields, detail::TextLine, detail::trimmed;
 
 std::string at_position(const std::string& name, long line, std::size_t column, const std::string& what) {
   return name + ":" + std::to_string(line) + ":" + std::to_string(column) + ": " + what;
@@ -110,8 +110,7 @@ class Reader {
   // --- headers
 
   [[noreturn]] void fail_doubled(const Header& h) const {
-    const auto named = named_column(h.fields[*h.doubled], quantities_);
-    const std::string quantity(quantities_[named ? named->quantity : 0].name);
+    const std::string quantity(quantities_[h.doubled_quantity].name);
     fail(name_, lines_[h.at].number, *h.doubled + 1,
          "'" + h.fields[*h.doubled] + "' is a second column of " + quantity + "; say which with --column " +
              quantity + "=" + std::to_string(*h.doubled + 1));

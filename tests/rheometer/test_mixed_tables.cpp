@@ -80,6 +80,15 @@ TEST(MixedTables, SamplesOfOneTableAreToldApart) {
   EXPECT_FALSE(understood(rows, "changes at line"));
 }
 
+// Two columns whose names differ by their case alone: the one that is written as the user writes it is meant.
+TEST(MixedTables, AColumnIsGivenByItsNameAsItIsWritten) {
+  ReadOptions options;
+  options.columns = "torque=T [mN m]; speed=n [rpm]";
+  const TorqueRecord r = parse_torque_record("n,T,t\n10,1,0\n20,2,5\n30,3,10\n", "r.csv", 0.0, options);
+  ASSERT_EQ(r.torque.size(), 3u);
+  EXPECT_NEAR(r.torque[2], 0.003, 1e-12);
+}
+
 // 15.02 s for a reading, and 15.03 for the next: a clock that started again would start from the beginning.
 TEST(MixedTables, ATimeThatHardlyFallsIsNoClock) {
   std::string text = "RPM,Elapsed_Time_s,Torque [mN m]\n";
