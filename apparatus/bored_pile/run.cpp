@@ -20,6 +20,7 @@ constexpr double alternating_viscosity = 1000.0;
 StepSettings step_settings(const Scene& scene) {
   StepSettings settings = experiment::step_settings(scene.model);
   settings.moving_surface = true;
+  settings.particle_shifting.rigid_share = 0.1;  // the concrete rises as a plug for thousands of steps
   settings.alternating_viscosity = alternating_viscosity;
   settings.wall_law = scene.walls;
   if (scene.model.space == SpaceKind::plane_with_side_walls) settings.side_wall_distance = scene.width;

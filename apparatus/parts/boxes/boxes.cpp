@@ -41,11 +41,13 @@ scene::SizeEstimate estimate_in(const Scene& scene) {
   scene::SizeEstimate e;
   count<Geometry>(scene, e);
   const StepSettings settings = experiment::step_settings(scene.model);
+  constexpr double sinking = 2.0;  // that the column sinks fast [s]
   const double collapse = 0.5 * std::sqrt(experiment::gravity * scene.box.column_height) /
                           (settings.cfl * std::min(scene.model.cell[0], scene.model.cell[1]));
   const auto steps = [&](double share, double time, double dt) {
-    return experiment::whole_steps(scene.model.time_step ? time / *scene.model.time_step
-                                                         : share * collapse + time / dt);
+    return experiment::whole_steps(scene.model.time_step
+                                       ? time / *scene.model.time_step
+                                       : share * collapse * std::min(1.0, time / sinking) + time / dt);
   };
   e.time_expected = std::min(scene.duration, expected_time(scene) + (scene.pour ? scene.pour->time : 0.0));
   e.point_step = in_space(scene) ? 1.6e-6 : 0.75e-6;

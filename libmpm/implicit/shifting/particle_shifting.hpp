@@ -20,15 +20,71 @@ struct ParticleShifting {
   bool on =
       false;  ///< for bodies that flow far; it keeps mass and momentum, angular momentum only to about 1e-6
   double rate = 1.0;  ///< share of a cell's misfill that is mended per unit of shear
+  /// For flows of thousands of steps, which stray points would spoil. Cells sheared by less than this share of the mean rate keep
+  /// their points where they are. And a point counts for all the cells that a box of its volume reaches into, so that rows of
+  /// points that pass by do not fill and empty them. 0: neither.
+  double rigid_share = 0.0;
 };
 
 /// kappa, in density times area of a cell.
 inline constexpr double fill_stiffness = 100.0;
 
-/// What the minimum has of each cell: kappa V_c (0: the cell is left alone) and e_c.
+/// What the minimum has of each cell: kappa V_c (0: the cell is left alone) and e_c; whether it is as good as rigid.
 struct CellFill {
   std::vector<double> stiffness, misfill;
+  std::vector<char> rigid;  ///< empty where ParticleShifting::rigid_share is 0
 };
+
+namespace detail {
+
+/// Shares of a box of width `wide` [cells] about the local coordinate s that lie in the cell before, in the cell and behind it.
+inline std::array<double, 3> shares_of_box(double s, double wide) {
+  const double low = std::clamp(0.5 - s / wide, 0.0, 1.0),
+               high = std::clamp(0.5 - (1.0 - s) / wide, 0.0, 1.0);
+  return {low, 1.0 - low - high, high};
+}
+
+}  // namespace detail
+
+/// Volume that the points have in every cell, each spread over a box of its volume in the cell's proportions. What would lie
+/// beyond a wall or the surface stays in the point's cell.
+template <class Geometry>
+std::vector<double> volumes_by_boxes(const ActiveGrid<Geometry::dim>& grid,
+                                     const Points<Geometry::dim>& points) {
+  constexpr int D = Geometry::dim;
+  std::vector<double> filled(grid.cell_index.size(), 0.0);
+  double cell = 1.0;
+  for (const Axis& a : grid.axes) cell *= a.h;
+  for (int c = 0; c < grid.n_cells(); ++c)
+    for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
+      const int p = grid.order[i];
+      const double V = points.volume(p), full = cell * Geometry::measure(points.x[p]),
+                   wide = std::min(1.0, std::pow(V / full, 1.0 / D));
+      const Vec<D> s = local_coordinates<D>(grid.axes, grid.cell_index[c], points.x[p]);
+      std::array<std::array<double, 3>, D> share;
+      for (int d = 0; d < D; ++d) share[d] = detail::shares_of_box(s[d], wide);
+      for (int k = 0; k < power(3, D); ++k) {
+        const Index<D> o = local_offset<D>(k);
+        Index<D> n;
+        double part = V;
+        for (int d = 0; d < D; ++d)
+          n[d] = grid.axes[d].cell(grid.cell_index[c][d] + o[d] - 1), part *= share[d][o[d]];
+        if (part == 0.0) continue;
+        const int to = grid.cell_map.at(n);
+        filled[to >= 0 ? to : c] += part;
+      }
+    }
+  return filled;
+}
+
+/// Whether each cell is sheared by less than a share of the mean rate.
+inline std::vector<char> rigid_cells(const std::vector<double>& gamma_dot, double share) {
+  double mean = 0.0;
+  for (const double rate : gamma_dot) mean += rate / static_cast<double>(gamma_dot.size());
+  std::vector<char> rigid(gamma_dot.size());
+  for (std::size_t c = 0; c < rigid.size(); ++c) rigid[c] = gamma_dot[c] <= share * mean;
+  return rigid;
+}
 
 /// `gamma_dot`: mean shear rate of every cell [1/s].
 template <class Geometry>
@@ -38,9 +94,13 @@ CellFill cell_fill(const YieldProblem<Geometry>& problem, const Points<Geometry:
   const auto& grid = problem.grid;
   double part = 1.0, reach2 = 0.0;
   for (const Axis& a : grid.axes) part *= 0.5 * a.h, reach2 = std::max(reach2, a.h * a.h);
-  CellFill cells{std::vector<double>(gamma_dot.size(), 0.0), std::vector<double>(gamma_dot.size(), 0.0)};
+  const bool boxes = settings.rigid_share > 0.0;
+  CellFill cells{std::vector<double>(gamma_dot.size(), 0.0), std::vector<double>(gamma_dot.size(), 0.0),
+                 boxes ? rigid_cells(gamma_dot, settings.rigid_share) : std::vector<char>{}};
+  const std::vector<double> filled = boxes ? volumes_by_boxes<Geometry>(grid, points) : std::vector<double>{};
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < grid.n_cells(); ++c) {
+    if (boxes && cells.rigid[c]) continue;
     double full = 0.0, mass = 0.0, volume = 0.0;
     for (int k = 0; k < power(2, D); ++k)
       full += part *
@@ -49,7 +109,7 @@ CellFill cell_fill(const YieldProblem<Geometry>& problem, const Points<Geometry:
       mass += points.mass[grid.order[i]];
       volume += points.volume(grid.order[i]);
     }
-    const double misfill = volume / full - 1.0;
+    const double misfill = (boxes ? filled[c] : volume) / full - 1.0;
     if (misfill <= 0.0 && !is_inside<D>(grid, grid.cell_index[c])) continue;
     cells.misfill[c] = misfill * -std::expm1(-settings.rate * gamma_dot[c] * problem.dt);
     cells.stiffness[c] = fill_stiffness * reach2 * mass / volume * full;
@@ -70,6 +130,16 @@ std::vector<char> held_by_walls(const ActiveGrid<D>& grid) {
                          grid.axes[d].on_high_wall(grid.node_index[i][d]);
   }
   for (const MirrorNode<D>& m : grid.mirrors) std::fill_n(&fixed[m.node * D], D, 1);
+  return fixed;
+}
+
+/// Besides these, all nodes that a rigid cell sees: a plug is not stirred by what is sheared beside it.
+template <int D>
+std::vector<char> held_nodes(const ActiveGrid<D>& grid, const CellFill& cells) {
+  std::vector<char> fixed = held_by_walls<D>(grid);
+  for (std::size_t c = 0; c < cells.rigid.size(); ++c)
+    if (cells.rigid[c])
+      for (const int i : grid.cell_nodes[c]) std::fill_n(&fixed[i * D], D, 1);
   return fixed;
 }
 
@@ -97,7 +167,7 @@ std::vector<Vec<Geometry::dim>> shifting_displacement(const YieldProblem<Geometr
                                                       BlockSystem<Geometry::dim>& system) {
   constexpr int D = Geometry::dim, n_local = power(3, D), n_dof = n_local * D;
   const auto& grid = problem.grid;
-  const std::vector<char> fixed = held_by_walls<D>(grid);
+  const std::vector<char> fixed = held_nodes<D>(grid, cells);
   const Eigen::VectorXd R = fill_forces(problem, cells, fixed);
   system.set_pattern(grid);
   system.set_zero();

@@ -64,7 +64,7 @@ std::vector<Vec<3>> shifting_displacement_3d(const YieldProblem<ThreeD>& problem
   const auto& grid = problem.grid;
   SchurComplementPreconditioner& preconditioner =
       system.preconditioner;  // its memory: the step's solve is done
-  const std::vector<char> fixed = held_by_walls<3>(grid);
+  const std::vector<char> fixed = held_nodes<3>(grid, cells);
   detail::EveningMatrix matrix{problem, cells.stiffness, fixed, system.batches, preconditioner.rows(), {},
                                {},      problem.bound};
   const double trace = trace_of_mass(problem.nodes.mass);
