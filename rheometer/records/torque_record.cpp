@@ -139,7 +139,7 @@ void drop_a_time_of_readings(NumberTable& table) {
 void keep_table(NumberTable& table, std::size_t number, const std::string& name) {
   const std::size_t tables = table.starts.size();
   if (table.chosen) return;
-  if (number == 0 && (tables < 2 || table.position[q_time] != 0)) return;
+  if (number == 0 && (tables < 2 || (table.position[q_time] != 0 && !table.grouped))) return;
   const std::size_t kept = std::max<std::size_t>(number, 1);
   if (kept > tables)
     throw RecordError(

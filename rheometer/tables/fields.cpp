@@ -161,9 +161,45 @@ std::size_t count_numbers(const std::vector<std::string>& fields) {
 }
 
 bool is_placeholder(const std::string& field) {
-  static const std::string_view known[] = {"",     "-",   "--",   "---", "n/a",
-                                           "#n/a", "nan", "n.a.", "*",   "invalid"};
+  static const std::string_view known[] = {"",  "-",       "--", "---",  "n/a",  "#n/a", "nan", "n.a.",
+                                           "*", "invalid", "na", "null", "over", "***",  "-.-"};
   const std::string text = lower(field);
+  return std::find(std::begin(known), std::end(known), text) != std::end(known);
+}
+
+bool is_a_statistic(const std::string& field) {
+  static const std::string_view known[] = {"mean",
+                                           "average",
+                                           "avg",
+                                           "sd",
+                                           "std",
+                                           "stdev",
+                                           "std dev",
+                                           "std. dev",
+                                           "min",
+                                           "max",
+                                           "minimum",
+                                           "maximum",
+                                           "median",
+                                           "range",
+                                           "cv",
+                                           "cov",
+                                           "sum",
+                                           "mw",
+                                           "mittelwert",
+                                           "mittel",
+                                           "standardabw.",
+                                           "summe",
+                                           "moyenne",
+                                           "\u00E9cart-type",
+                                           "media",
+                                           "standard deviation",
+                                           "standardabweichung",
+                                           "variance",
+                                           "rsd",
+                                           "count"};
+  std::string text = lower(field);
+  while (!text.empty() && (text.back() == ':' || text.back() == '.' || text.back() == ' ')) text.pop_back();
   return std::find(std::begin(known), std::end(known), text) != std::end(known);
 }
 

@@ -41,6 +41,9 @@ std::size_t count_numbers(const std::vector<std::string>& fields);
 /// What programs write where there is no value.
 bool is_placeholder(const std::string& field);
 
+/// "Mean", "SD": what heads a row of statistics below the readings.
+bool is_a_statistic(const std::string& field);
+
 /// Whether one of the columns of moduli has a number that is not 0, as the rows of an oscillation do.
 bool measures_a_modulus(const std::vector<std::string>& fields, const std::vector<std::size_t>& moduli);
 

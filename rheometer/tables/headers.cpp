@@ -12,11 +12,28 @@ namespace {
 
 /// Names of columns that tell samples and runs apart, as far as they stand at the beginning of a header.
 bool tells_a_group(std::string_view header) {
-  static const std::string_view names[] = {
-      "sample",      "specimen",   "mix",     "material",    "fluid",   "mud",     "batch",
-      "formulation", "series",     "group",   "ramp",        "run",     "branch",  "replica",
-      "repeat",      "repetition", "probe",   "mischung",    "charge",  "messung", "rampe",
-      "versuch",     "essai",      "mélange", "échantillon", "muestra", "mezcla",  "campione"};
+  static const std::string_view names[] = {"sample",       "specimen",
+                                           "mix",          "material",
+                                           "fluid",        "mud",
+                                           "concrete",     "paste",
+                                           "batch",        "lot",
+                                           "age",          "formulation",
+                                           "series",       "group",
+                                           "ramp",         "run",
+                                           "branch",       "direction",
+                                           "cycle",        "replica",
+                                           "replicate",    "repeat",
+                                           "repetition",   "test",
+                                           "id",           "operator",
+                                           "day",          "probe",
+                                           "mischung",     "rezeptur",
+                                           "alter",        "charge",
+                                           "messung",      "rampe",
+                                           "versuch",      "essai",
+                                           "m\u00E9lange", "\u00E9chantillon",
+                                           "echantillon",  "muestra",
+                                           "mezcla",       "campione",
+                                           "pr\u00F3bka"};
   const std::string text = lower(header);
   return std::any_of(std::begin(names), std::end(names), [&](std::string_view name) {
     return text.starts_with(name) &&

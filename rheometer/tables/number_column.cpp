@@ -53,7 +53,7 @@ std::optional<double> number_by(std::string_view text, char decimal) {
     if (text.front() == '-') number = "-";
     text.remove_prefix(1);
   }
-  const std::size_t e = text.find_first_of("eE");
+  const std::size_t e = text.find_first_of("eEdD");
   std::string_view mantissa = text.substr(0, e),
                    exponent = e == text.npos ? std::string_view{} : text.substr(e + 1);
   if (e != text.npos && exponent.empty()) return std::nullopt;
@@ -141,12 +141,17 @@ NumberReadings readings_of(std::string_view text) {
 bool looks_like_a_number(std::string_view text) {
   const std::string plain = plain_marks(trimmed(text));
   return std::any_of(plain.begin(), plain.end(), is_digit) &&
-         plain.find_first_not_of("0123456789+-., 'eE") == std::string::npos && plain.front() != 'e' &&
-         plain.front() != 'E';
+         plain.find_first_not_of("0123456789+-., 'eEdD") == std::string::npos &&
+         std::isalpha(static_cast<unsigned char>(plain.front())) == 0;
 }
 
 std::optional<double> clock_seconds(std::string_view text) {
   double seconds = 0.0;
+  const std::string with_hours = "0:" + std::string(text);
+  // "02:30.5" has minutes and seconds; "12:30" may have hours and minutes, and is no clock here
+  const bool minutes =
+      std::count(text.begin(), text.end(), ':') == 1 && text.find_first_of(".,") != text.npos;
+  if (minutes) text = with_hours;
   for (const double unit : {3600.0, 60.0, 1.0}) {
     const std::size_t colon = text.find(':');
     if ((colon == text.npos) != (unit == 1.0) || text.empty() || !is_digit(text.front())) return std::nullopt;

@@ -31,7 +31,7 @@ NumberReadings readings_of(std::string_view text);
 /// Whether a text is meant as a number: digits and what goes with them, nothing else.
 bool looks_like_a_number(std::string_view text);
 
-/// The seconds of a clock's time, "00:01:30.5"; empty for any other text.
+/// The seconds of a clock's time, "00:01:30.5" or "01:30.5"; empty for any other text.
 std::optional<double> clock_seconds(std::string_view text);
 
 /// The numbers of each column. `others`: texts beside them, which may tell the file's decimal mark. `decimal`: "point",

@@ -6,6 +6,7 @@
 
 #include "rheometer/tables/column_names.hpp"
 #include "rheometer/tables/fields.hpp"
+#include "rheometer/tables/groups.hpp"
 #include "rheometer/tables/headers.hpp"
 #include "rheometer/tables/number_column.hpp"
 #include "rheometer/tables/text.hpp"
@@ -37,7 +38,8 @@ struct Kept {
 };
 
 class Reader {
-  static constexpr std::size_t fewest = 3;  ///< rows of a table among others under one header
+  static constexpr std::size_t fewest = 3,  ///< rows of a table among others under one header
+      most_grouped = 20000;                 ///< rows of a table in which groups are looked for
 
  public:
   Reader(std::string_view text, const std::string& name, const std::vector<ColumnQuantity>& quantities,
@@ -78,12 +80,14 @@ class Reader {
     if (kinds_.size() > 1) return table_;
     if (table_.position == std::vector<std::size_t>(quantities_.size(), 0)) return table_;
     convert();
+    if (ages_ > 0 && ages_ == with_rows_) drop_ages();
     if (table_.line.empty() && oscillating_ > 0)
       fail(
           name_, table_.header_line, 1,
           "the rows are those of an oscillation (they have a storage or loss modulus); a rotation is needed: "
           "a flow curve, a start-up or a decay");
-    if (!strict_ || oscillating_ + other_rows_ > 0 || tables_.size() > 1) tell_counts();
+    if (!strict_ || left_out_ + oscillating_ + other_rows_ + statistics_ > 0 || tables_.size() > 1)
+      tell_counts();
     return table_;
   }
 
@@ -185,7 +189,8 @@ class Reader {
       table_.header = h.fields;
       table_.of_oscillation = !h.moduli.empty();
     }
-    if (h.has(0) && h.column[0]->unit.empty() && begin < lines_.size() && quantities_[0].name == "time")
+    if (h.has(0) && !factor_of(quantities_[0], h.column[0]->unit) && begin < lines_.size() &&
+        quantities_[0].name == "time")
       if (auto first = fields_of(lines_[begin].text, h.separator); read_clock(h, first))
         h.column[0]->unit = "s";
     std::vector<double> factor(quantities_.size());
@@ -195,7 +200,9 @@ class Reader {
     std::optional<Header> next;
     std::vector<std::size_t> gaps;  // rows in front of which a line of empty fields stands
     behind_a_gap_ = false;
-    bool other = !kept;  // below a header of columns that are not asked for
+    row_texts_.clear(), title_.clear();
+    std::size_t last_gap = 0;  // the row behind the last blank line
+    bool other = !kept;        // below a header of columns that are not asked for
     for (std::size_t i = begin; i < lines_.size() && !next; ++i) {
       if (carries_nothing(lines_[i].text)) {
         behind_a_gap_ = true;
@@ -211,6 +218,7 @@ class Reader {
         gaps.push_back(table_.line.size());
       read_clock(h, fields);
       if (takes_row(h, fields, lines_[i].number)) {
+        if (behind_a_gap_) last_gap = table_.line.size();
         put_row(h, fields, factor, lines_[i].number);
         behind_a_gap_ = false;
       } else {
@@ -219,13 +227,18 @@ class Reader {
           next.reset();
           continue;
         }
+        if (const std::string title = lone_text(fields); !title.empty()) title_ = title;
         next = headers_.next_header(i);
         other = !next && headers_.heads_other_columns(h, fields, i, behind_a_gap_);
         behind_a_gap_ = true;
       }
     }
     if (!kept) return next;
+    if (const std::size_t behind = table_.line.size() - last_gap; last_gap > first_row && behind < fewest)
+      table_.understood.push_back("the last " + std::to_string(behind) +
+                                  " rows stand behind a blank line and count as readings");
     if (table_.line.size() > first_row) {
+      ++with_rows_;
       tell_tables(h, first_row, gaps);
       if (is_torque_table()) kinds_[kind] += table_.line.size() - first_row;
     }
@@ -233,6 +246,17 @@ class Reader {
       for (std::size_t q = 0; q < quantities_.size(); ++q)
         if (h.has(q)) table_.position[q] = h.index[q] + 1;
     return next;
+  }
+
+  /// "Sample A;;": the one text of a line without numbers.
+  static std::string lone_text(const std::vector<std::string>& fields) {
+    std::string text;
+    for (const std::string& f : fields) {
+      if (f.empty()) continue;
+      if (!text.empty() || looks_like_a_number(f)) return {};
+      text = f;
+    }
+    return text;
   }
 
   /// A clock's time as its seconds; whether it is one.
@@ -257,6 +281,10 @@ class Reader {
         ++texts, text_at = i;
     }
     if (numbers == 0) return false;
+    if (is_torque_table() && detail::is_a_statistic(fields.front())) {
+      ++statistics_;
+      return false;
+    }
     if (is_torque_table() && measures_a_modulus(fields, h.moduli)) {
       ++oscillating_;
       return false;
@@ -301,10 +329,11 @@ class Reader {
       }
     }
     table_.line.push_back(line);
-    std::string label;
-    for (const std::size_t i : h.groups)
-      if (i < fields.size()) label += (label.empty() ? "" : ", ") + fields[i];
-    labels_.push_back(std::move(label));
+    if (is_torque_table() && row_texts_.size() < most_grouped) {
+      row_texts_.push_back(fields);
+      row_texts_.back().resize(h.fields.size());
+      row_texts_.back().push_back(title_);
+    }
   }
 
   void convert() {
@@ -322,48 +351,73 @@ class Reader {
     }
   }
 
+  void drop_ages() {
+    table_.understood.push_back("column " + std::to_string(table_.position[q_time]) +
+                                " is no clock of the test: it stays the same over rows of different speeds");
+    table_.column[q_time].clear();
+    table_.position[q_time] = 0;
+  }
+
   // --- what was understood
 
-  /// Rows where samples or ramps change, if each has three rows or more and comes once; else a note that they are not told apart.
-  std::vector<std::size_t> changes_of_group(const Header& h, std::size_t first_row) {
-    std::vector<std::size_t> changes;
-    const std::size_t rows = table_.line.size();
-    std::map<std::string, std::size_t> first{{labels_[first_row], first_row}};
-    bool apart = true;
-    for (std::size_t i = first_row + 1, start = first_row; i <= rows; ++i) {
-      if (i < rows && labels_[i] == labels_[i - 1]) continue;
-      const bool is_new = i == rows || first.try_emplace(labels_[i], i).second;
-      apart = apart && is_new && i - start >= fewest;
-      if (i < rows) changes.push_back(i);
-      start = i;
+  /// The rows from `first_row` on as the search for groups wants them. A time that stays the same over rows of different speeds
+  /// is no clock: it is the age of a sample.
+  detail::GroupedRows grouped_rows(const Header& h, std::size_t first_row) {
+    detail::GroupedRows table{std::move(row_texts_), h.groups, {}, {}, {}};
+    row_texts_.clear();
+    const auto numbers = [&](std::size_t q) {
+      std::vector<double> values;
+      for (std::size_t i = first_row; i < table_.line.size(); ++i) {
+        const auto read = detail::readings_of(cells_[q][cells_[q].size() - table_.line.size() + i].text);
+        values.push_back(read.by_point.value_or(read.by_comma.value_or(0.0)));
+      }
+      return values;
+    };
+    for (const std::size_t q : {q_shear_rate, q_speed})
+      if (h.has(q)) table.abscissa = numbers(q);
+    for (std::size_t i = 0; i <= h.fields.size(); ++i) {  // behind the last one stands the title of the rows
+      bool quantity = false;
+      for (std::size_t q = 0; q < quantities_.size(); ++q)
+        quantity = quantity || (h.has(q) && h.index[q] == i);
+      if (!quantity && std::find(h.groups.begin(), h.groups.end(), i) == h.groups.end())
+        table.others.push_back(i);
     }
-    if (changes.empty() || (apart && !h.has(q_time))) return changes;
-    const bool numbered = changes.size() + 1 == rows - first_row && first.size() == rows - first_row;
-    if (!numbered)
-      table_.understood.push_back("column " + std::to_string(h.groups.front() + 1) + " '" +
-                                  h.fields[h.groups.front()] + "' changes at line " +
-                                  std::to_string(table_.line[changes.front()]) + " (" +
-                                  labels_[changes.front() - 1] + " to " + labels_[changes.front()] +
-                                  "); its rows are read as one record");
-    return {};
+    if (h.has(q_time)) table.clock = numbers(q_time);
+    return table;
+  }
+
+  detail::Groups find_groups(const Header& h, std::size_t first_row) {
+    if (!is_torque_table() || row_texts_.size() != table_.line.size() - first_row) return {};
+    detail::GroupedRows rows = grouped_rows(h, first_row);
+    if (h.has(q_time) && !rows.abscissa.empty()) {
+      detail::GroupedRows by_time = rows;
+      by_time.clock.clear(), by_time.named.clear(), by_time.others = {h.index[q_time]};
+      if (auto ages = detail::groups_of(by_time); !ages.starts.empty()) {
+        ++ages_;
+        return ages;
+      }
+    }
+    detail::Groups groups = detail::groups_of(rows);
+    table_.grouped = table_.grouped || !groups.starts.empty();
+    if (!groups.mixed.empty())
+      table_.understood.push_back("column " + std::to_string(groups.column + 1) + " '" +
+                                  (groups.column < h.fields.size() ? h.fields[groups.column] : "title") +
+                                  "' changes (" + groups.mixed + "); its rows are read as one record");
+    return groups;
   }
 
   /// Rows under one header are one table, or several: with lines of empty fields between three rows or more, or of groups.
   void tell_tables(const Header& h, std::size_t first_row, std::vector<std::size_t> gaps) {
     const std::size_t rows = table_.line.size();
     std::size_t start = first_row;
-    if (is_torque_table() && !h.groups.empty())
-      for (const std::size_t row : changes_of_group(h, first_row)) gaps.push_back(row);
+    const detail::Groups groups = find_groups(h, first_row);
+    for (const std::size_t row : groups.starts) gaps.push_back(first_row + row);
     std::sort(gaps.begin(), gaps.end());
     const auto tell = [&](std::size_t end) {
       table_.starts.push_back(start);
-      const std::string& label = labels_[start];
-      const bool one = std::all_of(labels_.begin() + static_cast<std::ptrdiff_t>(start),
-                                   labels_.begin() + static_cast<std::ptrdiff_t>(end),
-                                   [&](const std::string& l) { return l == label; });
+      const std::string label = groups.starts.empty() ? "" : groups.label[start - first_row];
       tables_.push_back("lines " + std::to_string(table_.line[start]) + " to " +
-                        std::to_string(table_.line[end - 1]) +
-                        (one && !label.empty() ? " (" + label + ")" : ""));
+                        std::to_string(table_.line[end - 1]) + (label.empty() ? "" : " (" + label + ")"));
       start = end;
     };
     for (const std::size_t gap : gaps)
@@ -390,6 +444,7 @@ class Reader {
     if (other_rows_ > 0)
       text += "; " + std::to_string(other_rows_) + " rows of tables with other columns left out" +
               (kept_.chosen() ? " (--table reads another)" : "");
+    if (statistics_ > 0) text += "; " + std::to_string(statistics_) + " rows of statistics left out";
     if (oscillating_ > 0) text += "; " + std::to_string(oscillating_) + " rows of an oscillation left out";
     table_.understood.push_back(text);
   }
@@ -404,11 +459,13 @@ class Reader {
   std::vector<std::vector<NumberCell>> cells_;
   std::vector<std::vector<double>> factors_;
   std::vector<NumberCell> others_;
-  std::vector<std::string> labels_;           ///< of each row, where columns tell groups apart
-  std::map<std::size_t, std::size_t> kinds_;  ///< rows of each kind of table
-  std::size_t headed_ = 0;                    ///< tables so far
+  std::vector<std::vector<std::string>> row_texts_;  ///< of the table that is read
+  std::string title_;                                ///< a lone text above the rows that follow
+  std::size_t ages_ = 0;                             ///< tables whose time is the age of a sample
+  std::map<std::size_t, std::size_t> kinds_;         ///< rows of each kind of table
+  std::size_t headed_ = 0, with_rows_ = 0;           ///< tables so far, and those with rows
   std::vector<std::string> tables_;
-  std::size_t left_out_ = 0, oscillating_ = 0, other_rows_ = 0;
+  std::size_t left_out_ = 0, oscillating_ = 0, other_rows_ = 0, statistics_ = 0;
   bool strict_ = false;
   bool behind_a_gap_ = false;  ///< the line before the one that is read is blank, or text behind a blank one
   NumberTable table_;

@@ -46,6 +46,7 @@ struct NumberTable {
   std::vector<std::size_t> position;        ///< column of the file, from 1; 0: not there
   std::vector<long> line;                   ///< of each row
   std::vector<std::size_t> starts;          ///< first row of each table of the file
+  bool grouped = false;                     ///< samples under one header are tables, with or without a time
   bool chosen = false;                      ///< the table that the options name is the only one here
   long header_line = 0;
   std::vector<std::string> header;      ///< what stands there

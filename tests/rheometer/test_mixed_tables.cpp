@@ -69,15 +69,70 @@ TEST(MixedTables, SamplesOfOneTableAreToldApart) {
   third.table = 3;
   EXPECT_NEAR(parse_torque_record(text, "r.csv", 0.0, third).torque[0], 7.0, 1e-9);
 
-  const TorqueRecord mixed =
-      parse_torque_record(header + "A,up,10,1\nB,up,10,2\nA,up,20,3\nB,up,20,4\nA,up,30,5\n", "r.csv");
-  EXPECT_EQ(mixed.torque.size(), 5u);
-  EXPECT_TRUE(understood(mixed, "column 1 'sample' changes at line 3 (A, up to B, up)"));
+  const TorqueRecord mixed = parse_torque_record(
+      header + "A,up,10,1\nB,up,10,2\nA,up,20,3\nB,up,20,4\nA,up,30,5\nB,up,30,6\n", "r.csv");
+  EXPECT_EQ(mixed.torque.size(), 6u);
+  EXPECT_TRUE(
+      understood(mixed, "column 1 'sample' changes (A, up to B, up); its rows are read as one record"));
   // a number of each row is no group
   const TorqueRecord rows =
       parse_torque_record("Run,shear rate [1/s],shear stress [Pa]\n1,10,1\n2,20,2\n3,30,3\n", "r.csv");
   EXPECT_EQ(rows.torque.size(), 3u);
-  EXPECT_FALSE(understood(rows, "changes at line"));
+  EXPECT_FALSE(understood(rows, "changes ("));
+}
+
+/// Three curves of Bingham concretes, 60, 64 and 68 Pa, below a column or a line that tells them apart.
+std::string three_curves(const std::string& column, const std::vector<std::string>& values, bool as_title) {
+  std::string text = (as_title ? "" : column + ",") + "Shear rate [1/s],Shear stress [Pa]\n";
+  for (std::size_t g = 0; g < 3; ++g) {
+    if (as_title) text += "mix " + values[g] + ",\n";
+    for (int rate = 5; rate <= 50; rate += 5)
+      text += (as_title ? "" : values[g] + ",") + std::to_string(rate) + "," +
+              std::to_string(60 + 4 * static_cast<int>(g) + 2 * rate) + "\n";
+  }
+  return text;
+}
+
+// A column of any name parts a table where its rows go through the same rates again; so does a line with a text alone, and a
+// time that stays the same over a whole curve, which is an age.
+TEST(MixedTables, CurvesOfOneTableAreFoundByTheirRates) {
+  for (const char* column :
+       {"Age (min)", "W/C", "SP dosage (%)", "Time after mixing (min)", "anything", ""}) {
+    SCOPED_TRACE(column);
+    const std::string text = three_curves(column, {"0.45", "0.5", "0.55"}, *column == 0);
+    ReadOptions options;
+    for (std::size_t table = 1; table <= 3; ++table) {
+      options.table = table;
+      const TorqueRecord r = parse_torque_record(text, "r.csv", 0.0, options);
+      ASSERT_EQ(r.torque.size(), 10u);
+      EXPECT_NEAR(r.torque[0], 66.0 + 4.0 * static_cast<double>(table), 1e-9);
+    }
+  }
+  // the steps of one curve, and an instrument's state, go on where the last one ended
+  std::string steps = "Step,State,Shear rate [1/s],Shear stress [Pa]\n";
+  for (int i = 0; i < 12; ++i)
+    steps += std::to_string(i / 3) + (i < 6 ? ",low," : ",ok,") + std::to_string(5 + i) + ",60\n";
+  EXPECT_EQ(parse_torque_record(steps, "r.csv").torque.size(), 12u);
+}
+
+// Means and deviations below the readings are none of them.
+TEST(MixedTables, StatisticsAreNoReadings) {
+  const TorqueRecord r = parse_torque_record(
+      "No;Shear rate [1/s];Shear stress [Pa]\n1;10;1\n2;20;2\n3;30;3\nMean;20;2\nStd. dev.;10;1\n", "r.csv");
+  EXPECT_EQ(r.torque.size(), 3u);
+  EXPECT_TRUE(understood(r, "2 rows of statistics left out"));
+  EXPECT_TRUE(understood(parse_torque_record(curve + "\n25,1.75\n", "r.csv"), "stand behind a blank line"));
+}
+
+// Numbers as Fortran writes them, and a clock of minutes and seconds.
+TEST(MixedTables, NumbersAndClocksOfPrograms) {
+  EXPECT_NEAR(
+      parse_torque_record("Shear rate [1/s],Shear stress [Pa]\n1.0D+01,5.0D-01\n2.0D+01,7.5D-01\n", "r")
+          .torque[1],
+      0.75, 1e-12);
+  std::string text = "Time (mm:ss),Torque [mN m]\n";
+  for (int i = 0; i < 9; ++i) text += "01:0" + std::to_string(i) + ".5," + std::to_string(90 - i) + "\n";
+  EXPECT_NEAR(parse_torque_record(text, "r.csv").time.back(), 68.5, 1e-9);
 }
 
 // Two columns whose names differ by their case alone: the one that is written as the user writes it is meant.
