@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Which tests tell yield stress and viscosity of a mix: which_test.py TREMIE [FOLDER]
+"""Which tests tell yield stress and viscosity of a mix: which_test.py TREMIE [FOLDER], or which_test.py --chart CSV SVG
 
 Runs each test of a mix, and of mixes a sixth more and less in each parameter, for the sensitivities of its readings. A usual
 error of each reading makes them an information matrix (Fisher); that of a pair of tests is the sum. Prints the standard errors
 of both parameters, in per cent, by each test and by each pair, with walls that hold and with a layer that slides. Half an hour
 of one core."""
 
+import csv
 import itertools
 import json
 import math
@@ -68,7 +69,50 @@ def errors(*matrices):
     return 100 * math.sqrt(d / determinant), 100 * math.sqrt(a / determinant)
 
 
+LETTERS = dict(zip(TESTS, "SLUBVC"))
+
+
+def panel(rows, mix, left):
+    """Errors of a mix by single tests (rings) and by pairs (dots), with walls that hold; the best five pairs have their letters."""
+    side, low, high = 230.0, 3.0, 300.0
+    place = lambda error: side * math.log(min(max(error, low), high) / low) / math.log(high / low)
+    both = lambda r: (float(r["error_tau_0_percent"]), float(r["error_mu_percent"]))
+    mine = sorted((r for r in rows if r["mix"] == mix and r["walls"] == "hold"), key=lambda r: ("+" not in r["tests"], math.hypot(*both(r))))
+    svg = [f'<rect x="{left}" y="40" width="{side}" height="{side}" fill="none" stroke="#999"/>',
+           f'<text x="{left + side / 2}" y="28" text-anchor="middle" font-weight="bold">{mix}</text>']
+    for tick in (3, 10, 30, 100, 300):
+        svg.append(f'<text x="{left + place(tick):.0f}" y="286" text-anchor="middle">{tick}</text>')
+        if left < 100:
+            svg.append(f'<text x="{left - 6}" y="{274 - place(tick):.0f}" text-anchor="end">{tick}</text>')
+    names = []
+    for rank, r in enumerate(mine):
+        pair = "+" in r["tests"]
+        x, y = left + place(both(r)[0]), 270.0 - place(both(r)[1])
+        svg.append(f'<circle cx="{x:.0f}" cy="{y:.0f}" r="4" fill="{"#0067a5" if pair else "#fff"}" stroke="#0067a5"/>')
+        if pair and rank >= 5:
+            continue
+        name, at_x, at_y = "".join(LETTERS[test] for test in r["tests"].split(" + ")), x - 4 if x < left + 200 else x - 14, y + 15
+        while any(abs(at_x - a) < 17 and abs(at_y - b) < 10 for a, b in names):
+            at_y += 10 if y < 200 else -24 if at_y > y else -10
+        names.append((at_x, at_y))
+        svg.append(f'<text x="{at_x:.0f}" y="{at_y:.0f}">{name}</text>')
+    svg.append(f'<text x="{left + side / 2}" y="304" text-anchor="middle">error of the yield stress (%)</text>')
+    return svg
+
+
+def chart(table, path):
+    rows = list(csv.DictReader(table.read_text().splitlines()))
+    parts = [line for i, mix in enumerate(MIXES) for line in panel(rows, mix, 60 + 250 * i)]
+    path.write_text('<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 800 330" font-family="sans-serif" font-size="10">\n'
+                    '<rect width="800" height="330" fill="#fff"/>\n'
+                    '<text x="18" y="155" text-anchor="middle" transform="rotate(-90 18 155)">error of the viscosity (%)</text>\n'
+                    f'<text x="60" y="324">{", ".join(f"{letter} {test}" for test, letter in LETTERS.items())}; two letters: a pair</text>\n'
+                    + "\n".join(parts) + "\n</svg>\n")
+
+
 def main():
+    if sys.argv[1] == "--chart":
+        return chart(pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3]))
     tremie = str(pathlib.Path(sys.argv[1]).resolve())
     folder = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else tempfile.mkdtemp())
     folder.mkdir(parents=True, exist_ok=True)
