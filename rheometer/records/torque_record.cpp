@@ -135,7 +135,29 @@ void drop_a_time_of_readings(NumberTable& table) {
   table.position[q_time] = 0;
 }
 
-/// Keeps one of several tables.
+/// The table behind the last one of a curve that goes on over several, as pages of one print do: the speeds of each lie beyond
+/// those before.
+std::size_t end_of_curve(const NumberTable& table, std::size_t first) {
+  const std::vector<double>& x =
+      table.position[q_speed] != 0 ? table.column[q_speed] : table.column[q_shear_rate];
+  if (x.empty()) return first + 1;
+  const auto range = [&](std::size_t from, std::size_t to) {
+    const auto begin = x.begin() + static_cast<std::ptrdiff_t>(table.starts[from]),
+               end = to < table.starts.size() ? x.begin() + static_cast<std::ptrdiff_t>(table.starts[to])
+                                              : x.end();
+    const auto [low, high] = std::minmax_element(begin, end);
+    return std::pair(*low, *high);
+  };
+  std::size_t behind = first + 1;
+  for (; behind < table.starts.size(); ++behind) {
+    const auto before = range(first, behind), next = range(behind, behind + 1);
+    const bool beyond = next.first >= before.second || next.second <= before.first;
+    if (!beyond || !(next.second > next.first)) break;
+  }
+  return behind;
+}
+
+/// Keeps one of several tables, with those that go on with its curve.
 void keep_table(NumberTable& table, std::size_t number, const std::string& name) {
   const std::size_t tables = table.starts.size();
   if (table.chosen) return;
@@ -145,18 +167,24 @@ void keep_table(NumberTable& table, std::size_t number, const std::string& name)
     throw RecordError(
         at_position(name, table.header_line, 1,
                     "--table " + std::to_string(kept) + ": the file has " + std::to_string(tables)));
+  const std::size_t behind = number == 0 && !table.grouped ? end_of_curve(table, 0) : kept;
   const auto begin = static_cast<std::ptrdiff_t>(table.starts[kept - 1]),
-             end = static_cast<std::ptrdiff_t>(kept < tables ? table.starts[kept] : table.line.size());
+             end = static_cast<std::ptrdiff_t>(behind < tables ? table.starts[behind] : table.line.size());
   const std::size_t rows = table.line.size();
   for (auto& column : table.column)
     if (!column.empty()) column = std::vector<double>(column.begin() + begin, column.begin() + end);
   table.line = std::vector<long>(table.line.begin() + begin, table.line.begin() + end);
   table.starts = {0};
-  if (tables > 1)
-    table.understood.push_back(
-        "table " + std::to_string(kept) + " of " + std::to_string(tables) + ", lines " +
-        std::to_string(table.line.front()) + " to " + std::to_string(table.line.back()) + "; the other " +
-        std::to_string(rows - table.line.size()) + " rows are not used (--table reads another)");
+  if (tables == 1) return;
+  const bool several = behind > kept;
+  std::string text = (several ? "tables 1 to " + std::to_string(behind) : "table " + std::to_string(kept)) +
+                     " of " + std::to_string(tables) + ", lines " + std::to_string(table.line.front()) +
+                     " to " + std::to_string(table.line.back());
+  if (several) text += ": their speeds go on, so they are one curve";
+  if (rows > table.line.size())
+    text += "; the other " + std::to_string(rows - table.line.size()) +
+            " rows are not used (--table reads another)";
+  table.understood.push_back(text);
 }
 
 }  // namespace
@@ -167,8 +195,9 @@ void require_kinds(const NumberTable& table, const std::string& name) {
       "; " + seen(table) +
       (table.of_oscillation ? "; a modulus is of an oscillation, and only a rotation is read" : "") +
       "; a flow curve has speed_rev_per_s,torque_N_m or shear_rate_per_s with shear_stress_Pa or "
-      "viscosity_Pa_s, a torque decay time_s,torque_N_m; another column is named by --column \"torque=2 [mN "
-      "m]\"";
+      "viscosity_Pa_s, a torque decay time_s,torque_N_m; other columns are named by --column \"speed=1 "
+      "[rpm]; "
+      "torque=2 [mN m]\" or \"shear_rate=1 [1/s]; shear_stress=2 [Pa]\"";
   if (table.position[q_torque] == 0)
     throw RecordError(at_position(name, table.header_line, 1, "no torque column in the header" + kinds));
   if (!has_time && !has_speed)

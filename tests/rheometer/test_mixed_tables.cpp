@@ -135,6 +135,40 @@ TEST(MixedTables, NumbersAndClocksOfPrograms) {
   EXPECT_NEAR(parse_torque_record(text, "r.csv").time.back(), 68.5, 1e-9);
 }
 
+// Names and units of more languages and workshops; all are 10 and 20 1/s, 5 and 7 Pa, or 1 and 2 rad/s, 0.5 and 1 N m.
+TEST(MixedTables, NamesAndUnitsOfMoreLanguages) {
+  for (const char* text :
+       {"Szybko\u015B\u0107 \u015Bcinania [1/s];Napr\u0119\u017Cenie \u015Bcinaj\u0105ce "
+        "[Pa]\n10;5,0\n20;7,0\n",
+        "Smykov\u00E1 rychlost [1/s];Smykov\u00E9 nap\u011Bt\u00ED [Pa]\n10;5,0\n20;7,0\n",
+        "Kayma h\u0131z\u0131 (1/s);Kayma gerilmesi (Pa)\n10;5,0\n20;7,0\n",
+        "\u305B\u3093\u65AD\u901F\u5EA6 [1/s],\u305B\u3093\u65AD\u5FDC\u529B [Pa]\n10,5.0\n20,7.0\n"}) {
+    SCOPED_TRACE(text);
+    const TorqueRecord r = parse_torque_record(text, "r.csv");
+    EXPECT_NEAR(r.torque[1], 7.0, 1e-9);
+    EXPECT_NEAR(r.omega[1] / evenly_sheared_speed, 20.0, 1e-9);
+  }
+  for (const char* text : {"Speed [rad/min],Torque [kgf cm]\n60,5.0985810\n120,10.1971621\n",
+                           "Speed [rad/min],Torque [in-lb]\n60,4.4253729\n120,8.8507458\n"}) {
+    const TorqueRecord r = parse_torque_record(text, "r.csv");
+    EXPECT_NEAR(r.torque[1], 1.0, 1e-6);
+    EXPECT_NEAR(r.omega[1], 2.0, 1e-9);
+  }
+}
+
+// A print whose header comes again on every page is one curve if its speeds go on, and several if they come again.
+TEST(MixedTables, PagesOfOneCurveAreReadTogether) {
+  const auto page = [](int from, int stress) {
+    std::string text = "Shear rate [1/s],Shear stress [Pa]\n";
+    for (int i = from; i < from + 4; ++i) text += std::to_string(i) + "," + std::to_string(stress + i) + "\n";
+    return text + "\n";
+  };
+  const TorqueRecord one = parse_torque_record(page(1, 50) + page(5, 50) + page(9, 50), "r.csv");
+  EXPECT_EQ(one.torque.size(), 12u);
+  EXPECT_TRUE(understood(one, "tables 1 to 3 of 3, lines 2 to 17: their speeds go on"));
+  EXPECT_EQ(parse_torque_record(page(1, 50) + page(1, 60), "r.csv").torque.size(), 4u);
+}
+
 // Two columns whose names differ by their case alone: the one that is written as the user writes it is meant.
 TEST(MixedTables, AColumnIsGivenByItsNameAsItIsWritten) {
   ReadOptions options;
