@@ -14,7 +14,8 @@
 
 namespace tremie::detail {
 
-inline constexpr std::size_t fewest_of_group = 3;  ///< rows
+/// Rows that one of several tables under a header has at least.
+inline constexpr std::size_t fewest_of_group = 3;
 
 /// The texts of a table's rows, and what its columns are.
 struct GroupedRows {

@@ -38,8 +38,7 @@ struct Kept {
 };
 
 class Reader {
-  static constexpr std::size_t fewest = 3,  ///< rows of a table among others under one header
-      most_grouped = 20000;                 ///< rows of a table in which groups are looked for
+  static constexpr std::size_t most_grouped = 20000;  ///< rows of a table in which groups are looked for
 
  public:
   Reader(std::string_view text, const std::string& name, const std::vector<ColumnQuantity>& quantities,
@@ -234,7 +233,8 @@ class Reader {
       }
     }
     if (!kept) return next;
-    if (const std::size_t behind = table_.line.size() - last_gap; last_gap > first_row && behind < fewest)
+    if (const std::size_t behind = table_.line.size() - last_gap;
+        last_gap > first_row && behind < detail::fewest_of_group)
       table_.understood.push_back("the last " + std::to_string(behind) +
                                   " rows stand behind a blank line and count as readings");
     if (table_.line.size() > first_row) {
@@ -421,7 +421,7 @@ class Reader {
       start = end;
     };
     for (const std::size_t gap : gaps)
-      if (gap >= start + fewest && rows >= gap + fewest) tell(gap);
+      if (gap >= start + detail::fewest_of_group && rows >= gap + detail::fewest_of_group) tell(gap);
     tell(rows);
     if (strict_ || first_row > 0) return;
     for (std::size_t q = 0; q < quantities_.size(); ++q)

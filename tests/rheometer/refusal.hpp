@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <exception>
 #include <string>
 
@@ -15,6 +16,12 @@ inline std::string refusal(const std::string& text, const ReadOptions& options =
     return error.what();
   }
   return "nothing";
+}
+
+/// Whether the reader says this of what it understood.
+inline bool understood(const TorqueRecord& r, const std::string& part) {
+  return std::any_of(r.understood.begin(), r.understood.end(),
+                     [&](const std::string& text) { return text.find(part) != std::string::npos; });
 }
 
 }  // namespace tremie

@@ -19,12 +19,6 @@
 namespace tremie {
 namespace {
 
-bool understood(const TorqueRecord& r, const std::string& part) {
-  for (const std::string& text : r.understood)
-    if (text.find(part) != std::string::npos) return true;
-  return false;
-}
-
 double rate(const TorqueRecord& r, std::size_t i) { return r.omega[i] / evenly_sheared_speed; }
 
 // Published flow curves often have a viscosity in place of a stress.

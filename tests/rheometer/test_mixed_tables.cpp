@@ -11,14 +11,10 @@
 #include "rheometer/protocol/protocol.hpp"
 #include "rheometer/records/sections.hpp"
 #include "rheometer/records/torque_record.hpp"
+#include "tests/rheometer/refusal.hpp"
 
 namespace tremie {
 namespace {
-
-bool understood(const TorqueRecord& r, const std::string& part) {
-  return std::any_of(r.understood.begin(), r.understood.end(),
-                     [&](const std::string& text) { return text.find(part) != std::string::npos; });
-}
 
 const std::string curve = "shear rate [1/s],shear stress [Pa]\n10,1\n20,1.5\n30,2\n40,2.5\n";
 
