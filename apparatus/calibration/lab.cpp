@@ -41,7 +41,7 @@ std::optional<Known> known_of(const scene::Described& row) {
   if (unit == "1") return row.measurable ? std::optional(known) : std::nullopt;
   for (const auto& [name, dimension, factor] : units_of_readings)
     if (unit == name) {
-      known.key.resize(row.name.size() - unit.size() - 1);
+      known.key = scene::name_without_unit(row.name);
       known.dimension = dimension;
       known.factor = factor;
       known.logarithmic = unit == "s";

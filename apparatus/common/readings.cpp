@@ -41,18 +41,20 @@ std::string unit_of(const std::string& name) {
   return "1";
 }
 
+std::string name_without_unit(const std::string& name) {
+  for (const auto& entry : endings)
+    if (const std::string_view ending = entry.first; name.ends_with(ending))
+      return name.substr(0, name.size() - ending.size());
+  return name;
+}
+
 std::string unit_for_people(const std::string& name) {
   const std::string unit = unit_of(name);
   return unit == "1" ? "" : unit == "N.m" ? "N·m" : unit == "Pa.s" ? "Pa·s" : unit == "m3" ? "l" : unit;
 }
 
 std::string words_from_name(const std::string& name) {
-  std::string text = name;
-  for (const auto& [ending, unit] : endings)
-    if (text.ends_with(ending)) {
-      text.resize(text.size() - std::string(ending).size());
-      break;
-    }
+  std::string text = name_without_unit(name);
   std::replace(text.begin(), text.end(), '_', ' ');
   std::replace(text.begin(), text.end(), '.', ' ');
   return text;

@@ -68,6 +68,9 @@ struct Headline {
 /// "mm", "1/s", "N.m": the unit that a name ends with; "1" for none.
 std::string unit_of(const std::string& name);
 
+/// The name without the ending that tells its unit: "spread" of "spread_mm".
+std::string name_without_unit(const std::string& name);
+
 /// The same as people write it: "N·m"; empty for none. Volumes are in litres.
 std::string unit_for_people(const std::string& name);
 

@@ -36,7 +36,7 @@ struct StepSettings {
   WallLaw wall_law;          ///< along faces of FaceKind::wall_law
   bool keep_forces = false;  ///< fill Body::wall_force and Body::dissipation
   double boundary_stiffness = 1000.0;  ///< of walls inside the grid, in m/dt
-  double alternating_viscosity = 0.0;  ///< zeta of yield_problem.hpp, in eta; sections alone
+  double alternating_viscosity = 0.0;  ///< zeta of yield_problem.hpp, in eta
   bool cut_cell_rule = false;    ///< stresses of partly filled cells where the points are; sections alone
   bool settle_on_floor = false;  ///< partly filled cells on the floor are full from below (mpm_step.md)
   bool balanced_weight = false;  ///< gravity by the stresses' quadrature (cell_weights.hpp); sections alone

@@ -43,6 +43,14 @@ TEST(Readings, SlumpAndTimeTo400StandInResultsSeriesScreenAndGlossary) {
   EXPECT_EQ(report::words_of("t400_s", "l_box"), "t400, front 400 mm from the gate");
 }
 
+// What a unit takes off a name is its own ending, not as many letters as the unit has.
+TEST(Readings, ANameWithoutItsUnit) {
+  EXPECT_EQ(scene::name_without_unit("spread_mm"), "spread");
+  EXPECT_EQ(scene::name_without_unit("slip_end_m_per_s"), "slip_end");
+  EXPECT_EQ(scene::name_without_unit("hysteresis_area_Pa_per_s"), "hysteresis_area");
+  EXPECT_EQ(scene::name_without_unit("emptied"), "emptied");
+}
+
 TEST(Readings, DottedNamesNestAndAGroupWithoutARowIsNull) {
   std::vector<scene::Result> results;
   scene::put_empty_group("measured.spread_mm", results);

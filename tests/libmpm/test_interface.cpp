@@ -1,4 +1,4 @@
-// The interface law of a wall, tau_i + k_i u, against a slab that slides down a slope.
+// The interface law of a wall, tau_i + k_i u, against a slab that slides down a slope, and flow in a slit and a pipe.
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -107,6 +107,72 @@ TEST(InterfaceLaw, HasItsLimits) {
   slide(no_slip, Interface{}, 1.0);
   EXPECT_NEAR(speed(holds) / speed(no_slip), 1.0, 0.01);  // 409 Pa / k = 0.4 mm/s
 }
+
+// Bingham concrete that a body force f drives through a slit or a pipe whose walls slide. The stress at the wall is
+// f a/n, with n = 1 for a slit of half width a and 2 for a pipe of radius a; what slides is (stress - tau_i)/k_i, and the
+// concrete adds (f/(2n)(a^2 - y^2) - tau_0 (a - y))/mu outside of a plug of y = n tau_0/f.
+
+constexpr double a = 0.05;
+constexpr Interface layer{25.0, 500.0};
+const Mix sliding = concrete(50.0, 20.0);
+
+template <class Geometry>
+constexpr int n_of = std::is_same_v<Geometry, Axisymmetric> ? 2 : 1;
+
+template <class Geometry>
+double exact_speed(double at_wall, double y) {
+  constexpr int n = n_of<Geometry>;
+  const double f = n * at_wall / a, slides = std::max(0.0, at_wall - layer.tau_i) / layer.k_i;
+  if (at_wall <= sliding.tau_0) return slides;
+  y = std::max(y, n * sliding.tau_0 / f);
+  return slides + (f / (2 * n) * (a * a - y * y) - sliding.tau_0 * (a - y)) / sliding.mu;
+}
+
+/// Mean error of the speed over the largest, with `cells` over the half width, after 6 s.
+template <class Geometry>
+double error_between_walls(double at_wall, int cells) {
+  omp_set_num_threads(1);
+  constexpr bool pipe = n_of<Geometry> == 2;
+  ImplicitBody<Geometry> body;
+  body.mix = sliding;
+  body.gravity[1] = -n_of<Geometry> * at_wall / a / body.mix.density;
+  const double h = a / cells, middle = pipe ? 0.0 : a, width = pipe ? a : 2.0 * a;
+  body.grid.axes[0] = {.h = h,
+                       .low = pipe ? FaceKind::free_slip : FaceKind::wall_law,
+                       .high = FaceKind::wall_law,
+                       .n_cells = pipe ? cells : 2 * cells};
+  body.grid.axes[1] = {.h = h, .periodic = true, .n_cells = 3};
+  fill_box<Geometry>(body, {0.0, 0.0}, {width, 3.0 * h}, 2);
+  StepSettings settings;
+  settings.fixed_dt = 0.1;
+  settings.wall_law = layer;
+  settings.admm.tolerance = 1e-4;
+  for (int i = 0; i < 60; ++i) EXPECT_TRUE(implicit_step(body, ExactBingham{}, settings).converged);
+  double squares = 0.0, volume = 0.0;
+  for (std::size_t p = 0; p < body.points.size(); ++p) {
+    const double exact = exact_speed<Geometry>(at_wall, std::abs(body.points.x[p][0] - middle));
+    squares += body.points.volume(p) * std::pow(-body.points.v[p][1] - exact, 2);
+    volume += body.points.volume(p);
+  }
+  return std::sqrt(squares / volume) / exact_speed<Geometry>(at_wall, 0.0);
+}
+
+template <class Geometry>
+void flows_between_walls(const char* name) {
+  for (const double at_wall : {40.0, 150.0}) {  // a plug slides; the concrete shears too
+    double before = 0.0;
+    for (const int cells : {4, 8, 16}) {
+      const double error = error_between_walls<Geometry>(at_wall, cells);
+      std::printf("%s, %3.0f Pa, %2d cells: error %.2e, order %.1f\n", name, at_wall, cells, error,
+                  before > 0.0 ? std::log2(before / error) : NAN);
+      EXPECT_LE(error, 0.01);
+      before = error;
+    }
+  }
+}
+
+TEST(InterfaceLaw, ASlitWhoseWallsSlide) { flows_between_walls<PlaneStrain>("slit"); }
+TEST(InterfaceLaw, APipeWhoseWallSlides) { flows_between_walls<Axisymmetric>("pipe"); }
 
 }  // namespace
 }  // namespace tremie::sliding_slab

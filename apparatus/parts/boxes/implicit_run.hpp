@@ -23,6 +23,7 @@ StepSettings step_settings(const Scene& scene) {
   if (!scene.model.time_step) settings.detached = detached_share;
   settings.cut_cell_rule = true;   // what hangs on the column's walls is thinner than a cell
   settings.moving_surface = true;  // without it steps of tenths of a second carry a fluid past its level
+  settings.settle_on_floor = Geometry::dim == 3;  // there the cut cells have no rule of their own
   settings.alternating_viscosity = scene.alternating_viscosity;
   settings.wall_law = scene.walls;
   if (scene.model.space == SpaceKind::plane_with_side_walls && face(scene.walls) != FaceKind::free_slip)

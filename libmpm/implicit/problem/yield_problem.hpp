@@ -9,7 +9,7 @@
 // Phi the potential of the yield law, gamma_dot = |q| at quadrature point q, one divergence a cell. A velocity
 // that alternates from node to node has none in any cell: nothing but the shear stress resists it, and in a
 // fluid with little yield stress it gathers the points on every second face. zeta, a bulk viscosity of what
-// differs from the cell's mean, does, in sections; of a resolved flow it sees next to nothing. Its stationarity is the
+// differs from the cell's mean, does, in sections and where systems are solved by iteration; of a resolved flow it sees next to nothing. Its stationarity is the
 // momentum balance; its solvers are in admm.hpp and newton.hpp.
 
 #include <algorithm>
@@ -66,7 +66,7 @@ struct YieldProblem {
   std::vector<PointTerm<D>> bound;       ///< walls inside the grid
   std::vector<PointTerm<D>> surface;     ///< head of the moving free surface, in a section
   std::vector<PointTerm<D>> bars;        ///< thinner than the grid resolves; ADMM alone
-  double zeta = 0.0;                     ///< [Pa s], sections alone
+  double zeta = 0.0;                     ///< [Pa s]; by factors in 3D, none
   std::vector<double> p_offset = {};     ///< of the cells' pressures [Pa]; empty: those before the step
   double K_share = 1.0;                  ///< K over the mix's
   double eta =

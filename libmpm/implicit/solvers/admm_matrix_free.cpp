@@ -107,7 +107,8 @@ AdmmResiduals pass_over_cells(YieldProblem<ThreeD>& problem, const Law& law, con
                   volume = mean;
     double missed_p = 0.0;
     for (int k = 0; k < 8; ++k) mean += vol.V[k] * (G.g[0][0][k] + G.g[1][1][k] + G.g[2][2][k]);
-    const Lanes<double> p = pressures_of(b, bulk * vol.inverse_cell * mean, update, problem, missed_p);
+    mean *= vol.inverse_cell;
+    const Lanes<double> p = pressures_of(b, bulk * mean, update, problem, missed_p) + problem.zeta * mean;
     for (int k = 0; k < 8; ++k) {
       Lanes<double> q[5], s[5], d[5], div, stress[5], tau_y;
       strain_at(G, k, q, div);
@@ -130,7 +131,7 @@ AdmmResiduals pass_over_cells(YieldProblem<ThreeD>& problem, const Law& law, con
       rate += vol.V[k] * gamma_dot.square();
       volume += vol.V[k];
       for (int j = 0; j < 5; ++j) stress[j] = -vol.V[k] * (mu * q[j] + s[j] + r * (q[j] - d[j]));
-      stress_at<double>(stress, vol.V[k] * p, k, G);
+      stress_at<double>(stress, vol.V[k] * (p - problem.zeta * div), k, G);
     }
     system.batches.scatter(b, G, to);
     part[b] = {.primal = r * r * sum_of(missed),

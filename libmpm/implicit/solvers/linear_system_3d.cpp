@@ -78,11 +78,16 @@ std::vector<Mat<3, 3>> MatrixFreeSystem::node_blocks(const YieldProblem<ThreeD>&
     kind[c] = cell_kind(grid.axes, grid.cell_index[c]);
     if (done[kind[c]]) continue;
     done[kind[c]] = true;
+    std::array<Stencil<3>, 8> at;
+    for (int k = 0; k < 8; ++k) at[k] = stencil<3>(grid.axes, grid.cell_index[c], quadrature_point<3>(k));
     for (int k = 0; k < 8; ++k) {
-      const Stencil<3> st = stencil<3>(grid.axes, grid.cell_index[c], quadrature_point<3>(k));
+      const Stencil<3>& st = at[k];
       for (int i = 0; i < 27; ++i) {
+        Vec<3> excess = st.g[i];
+        for (const Stencil<3>& other : at) excess -= 0.125 * other.g[i];
         const Mat<3, 3> own = eta_system_ * (st.g[i].squaredNorm() * Mat<3, 3>::Identity() +
-                                             st.g[i] * st.g[i].transpose() / 3.0);
+                                             st.g[i] * st.g[i].transpose() / 3.0) +
+                              problem.zeta * excess * excess.transpose();
         viscous[kind[c]][k][i] << own.diagonal(), own(1, 0), own(2, 1), own(2, 0), 0.0, 0.0;
       }
     }
@@ -112,7 +117,9 @@ std::vector<Mat<3, 3>> MatrixFreeSystem::node_blocks(const YieldProblem<ThreeD>&
 
 void MatrixFreeSystem::multiply(const YieldProblem<ThreeD>& problem, const Eigen::VectorXf& x,
                                 Eigen::VectorXf& out) {
-  const auto bulk = static_cast<float>(problem.K * problem.dt), eta_system = static_cast<float>(eta_system_);
+  const auto zeta = static_cast<float>(problem.zeta),
+             bulk = static_cast<float>(problem.K * problem.dt) - zeta,
+             eta_system = static_cast<float>(eta_system_);
   ++products;
   out.resize(x.size());
   const auto give_batch = [&](int b, float* to) {
@@ -127,7 +134,7 @@ void MatrixFreeSystem::multiply(const YieldProblem<ThreeD>& problem, const Eigen
       strain_at(G, k, q, div);
       const Lanes<float> w = eta_system * v.V[k];
       for (Lanes<float>& s : q) s *= w;
-      stress_at<float>(q, v.V[k] * mean, k, G);
+      stress_at<float>(q, v.V[k] * (mean + zeta * div), k, G);
     }
     batches.scatter(b, G, to);
   };
