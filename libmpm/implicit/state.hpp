@@ -37,7 +37,8 @@ struct StepSettings {
   bool keep_forces = false;  ///< fill Body::wall_force and Body::dissipation
   double boundary_stiffness = 1000.0;  ///< of walls inside the grid, in m/dt
   double alternating_viscosity = 0.0;  ///< zeta of yield_problem.hpp, in eta
-  bool cut_cell_rule = false;    ///< stresses of partly filled cells where the points are; sections alone
+  bool cut_cell_rule =
+      false;  ///< stresses of partly filled cells where the points are; in 3D films hold on their walls
   bool settle_on_floor = false;  ///< partly filled cells on the floor are full from below (mpm_step.md)
   bool balanced_weight = false;  ///< gravity by the stresses' quadrature (cell_weights.hpp); sections alone
   bool moving_surface = false;   ///< gravity where the step leaves the free surface; sections alone

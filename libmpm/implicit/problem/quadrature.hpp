@@ -15,6 +15,7 @@
 #include "libmpm/constitutive/equation_of_state.hpp"
 #include "libmpm/grid/active_grid.hpp"
 #include "libmpm/implicit/problem/cut_cell_rule.hpp"
+#include "libmpm/implicit/problem/wall_films.hpp"
 #include "libmpm/particles/particles.hpp"
 
 namespace tremie {
@@ -244,7 +245,7 @@ void settle_on_floor(const ActiveGrid<Geometry::dim>& grid, const Index<Geometry
 
 /// Lays out the quadrature of a step: places, volumes, yield stresses tau_y = (1 + lambda) tau_0 and
 /// pressures. `fit`: the places of partly filled cells are fitted to their points (cut_cell_rule.hpp), in a
-/// section. `settle`: partly filled cells on the floor are full from below.
+/// section; in 3D films are held on their walls (wall_films.hpp). `settle`: partly filled cells on the floor are full from below.
 template <class Geometry>
 void lay_out_quadrature(const ActiveGrid<Geometry::dim>& grid, const Points<Geometry::dim>& points,
                         double tau_0, double K, Quadrature<Geometry>& quadrature, bool fit = false,
@@ -275,6 +276,8 @@ void lay_out_quadrature(const ActiveGrid<Geometry::dim>& grid, const Points<Geom
       for (int k = 0; k < n; ++k) quadrature.V[c][k] = section / n * Geometry::measure(x[k]);
     }
     if (settle && !inside) detail::settle_on_floor<Geometry>(grid, cell, x, quadrature.V[c]);
+    if constexpr (D == 3)
+      if (fit && !inside) hold_film(grid, cell, quadrature.V[c]);
     // Inside the body a cell is full: with counted volumes the pressure would push whenever a point crosses
     // into a cell.
     if (inside) quadrature.V[c] = detail::full_volumes<Geometry>(grid.axes, x);
