@@ -65,7 +65,8 @@ struct Headline {
   int digits = 0;
 };
 
-/// "mm", "1/s", "N.m": the unit that a name ends with; "1" for none.
+/// "mm", "1/s", "N.m": the unit that a name ends with; "1" for none. Endings are those of readings.cpp: a speed ends with
+/// "_mm_per_s", since "_mm_s" would be seconds.
 std::string unit_of(const std::string& name);
 
 /// The name without the ending that tells its unit: "spread" of "spread_mm".

@@ -70,6 +70,23 @@ TEST(Slow, TheLBoxRestsOnItsClosedForm) {
     }
 }
 
+// A self-compacting concrete in the half box in space, on its default cells: it stands, films hold on the column's walls, and
+// H1, H2 and their ratio are those of the closed form at the same mean depth within 3 mm and 0.03.
+TEST(Slow, AFluidMixStandsInTheBoxInSpace) {
+  auto scene = lbox_reference::scene_of(20.0, 0.015, true);
+  scene.model.space = SpaceKind::half;
+  scene.model.points_per_cell = {8, 4};
+  const auto outcome = l_box::run(scene);
+  const l_box::Results& r = outcome.results;
+  ASSERT_TRUE(r.h2 && r.stopped_at);
+  const double drop = l_box::drop_at_rest(scene, 0.5 * (r.h1 + *r.h2), 0.70), mean = 0.5 * (r.h1 + *r.h2);
+  std::printf("H1 %.1f mm, H2 %.1f mm, drop of the closed form %.1f mm\n", 1e3 * r.h1, 1e3 * *r.h2,
+              1e3 * drop);
+  EXPECT_NEAR(r.h1 - *r.h2, drop, 0.003);
+  EXPECT_NEAR(*r.passing_ratio, (mean - 0.5 * drop) / (mean + 0.5 * drop), 0.03);
+  EXPECT_TRUE(outcome.checks.reasons.empty()) << outcome.checks.reasons.front();
+}
+
 // Without yield stress the box fills level in both modes, and stays so: a ratio of 1 within 0.01.
 TEST(Slow, AFluidLevelsInTheLBox) {
   for (bool side_walls : {false, true}) {
