@@ -85,15 +85,14 @@ l_box::Outcome over_two_seconds(SpaceKind space, bool side_walls_slip, int bars)
 }
 
 // Between side walls that let it slip the concrete moves as in the plane, and half of the box as the whole.
-// The front is faster by 7 %: partly filled cells keep the places of full ones in space (cut_cell_rule.hpp),
-// which leaves what is thin less friction.
+// The front is faster by 2 %: partly filled cells keep the places of full ones in space (wall_films.hpp).
 TEST(LBoxInSpace, IsThePlaneBetweenWallsThatSlip) {
   const auto plane = over_two_seconds(SpaceKind::plane, false, 0);
   for (SpaceKind space : {SpaceKind::half, SpaceKind::full}) {
     const auto outcome = over_two_seconds(space, true, 0);
     std::printf("front %.1f, plane %.1f mm; H1 %.1f, %.1f mm\n", 1e3 * outcome.series.back().front,
                 1e3 * plane.series.back().front, 1e3 * outcome.results.h1, 1e3 * plane.results.h1);
-    EXPECT_NEAR(outcome.series.back().front / plane.series.back().front, 1.0, 0.1);
+    EXPECT_NEAR(outcome.series.back().front / plane.series.back().front, 1.0, 0.05);
     EXPECT_NEAR(outcome.results.h1 / plane.results.h1, 1.0, 0.05);
     EXPECT_LE(std::abs(outcome.checks.volume_change), 0.002);
     EXPECT_TRUE(outcome.checks.reasons.empty());

@@ -5,7 +5,7 @@
 // A film is thinner than a cell. With all its volume at the quadrature points next to the wall it has a motion that does not
 // strain there, and slides off without friction, however thin it is. So a part of it counts at the points farther away. That
 // motion strains there by some 2.7/(0.5 s) of the film's mean speed over a cell, s the film's share of the cell: a film of
-// tau_0/(rho g), which the yield stress just holds, needs 0.19 of its volume there, whatever the cell.
+// tau_0/(rho g), which the yield stress just holds, needs 0.19 of its volume there where it fills little of the cell.
 
 #include <algorithm>
 #include <array>
@@ -19,7 +19,7 @@ namespace tremie {
 /// from which a film reaches them by itself.
 inline constexpr double film_share = 0.3, thick_film = 0.4;
 
-/// Moves volume of a partly filled cell along the walls that hold it. `V`: of its quadrature points [m^3].
+/// Moves volume of a partly filled cell away from the upright walls that hold it. `V`: of its quadrature points [m^3].
 inline void hold_film(const ActiveGrid<3>& grid, const Index<3>& cell, std::array<double, 8>& V) {
   double full = 1.0;
   for (const Axis& a : grid.axes) full *= a.h;
