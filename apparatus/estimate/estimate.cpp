@@ -234,6 +234,10 @@ void check_readings(const Measured& m, const Mould& mould) {
         fmt::format("slump: must be less than the cone's height, {:.0f} mm", 1e3 * mould.height));
   if (m.t500 && mould.name != Mould{}.name)
     throw scene::InputError("t500: is read with the Abrams cone alone");
+  constexpr double reached = 0.5, errors = 3.0;
+  if (m.t500 && m.spread && *m.spread + errors * m.spread_error < reached)
+    throw scene::InputError(
+        fmt::format("t500: concrete that stops at {:.0f} mm never reaches 500 mm", 1e3 * *m.spread));
 }
 
 }  // namespace tremie::estimate

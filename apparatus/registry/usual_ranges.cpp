@@ -125,10 +125,10 @@ std::string softness(const Values& values) {
     const double weight = values.number("mix.density") * gravity * h, lost = -std::expm1(-weight / K);
     if (!(lost > most)) return {};
     return fmt::format(
-        "mix.bulk_modulus: {} kPa is soft: {} m of concrete weigh {} kPa, which takes {:.2g} % of the volume "
+        "mix.bulk_modulus: {} kPa is soft: {} m of concrete weigh {} kPa, which takes {} % of the volume "
         "at the foot; "
         "{} kPa: 1 %",
-        rounded(1e-3 * K, 3), rounded(h, 3), rounded(1e-3 * weight, 3), 100.0 * lost,
+        rounded(1e-3 * K, 3), rounded(h, 3), rounded(1e-3 * weight, 3), rounded(100.0 * lost, 2),
         rounded(0.1 * weight, 1));
   }
   return {};

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "apparatus/slump_flow/slump_flow.hpp"
@@ -29,7 +30,7 @@ std::string class_of(const cone::Scene& scene, const Results& r) {
   return has_classes(scene, r) ? cone::spread_class(r.spread) : std::string{};
 }
 
-double slump_at(const cone::View& v, double height) { return v.scene.cone.height - height; }
+double slump_at(const cone::View& v, double height) { return std::max(0.0, v.scene.cone.height - height); }
 double slump_of(const cone::View& v) { return slump_at(v, v.r.height); }
 
 std::string slump_class_of(const cone::View& v) {

@@ -247,12 +247,15 @@ const Block<D>* block_of_node(const ActiveGrid<D>& grid, const Index<D>& node) {
   });
 }
 
-/// The sheet that a node lies on, if any.
+/// The sheet that a node lies on, if any. A node on a wall at the sheet's foot lets a third of a cell through: it is open once
+/// half of that is, so that a narrow slit above a wall that slides is shut.
 template <int D>
 const Sheet<D>* sheet_at_node(const ActiveGrid<D>& grid, const Index<D>& node) {
   for (const Sheet<D>& s : grid.sheets) {
     if (node[s.normal] != grid.axes[s.normal].first_node(s.face)) continue;
-    const double at = grid.axes[s.along].node_position(node[s.along]);
+    const Axis& along = grid.axes[s.along];
+    double at = along.node_position(node[s.along]);
+    if (along.on_low_wall(node[s.along])) at += along.h / 6.0;
     if (at >= s.from && at < s.to) return &s;
   }
   return nullptr;

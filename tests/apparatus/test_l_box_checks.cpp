@@ -38,16 +38,19 @@ TEST(LBoxChecks, CellsThatDoNotResolveTheDepthAreMarked) {
     EXPECT_EQ(reasons(cell).size(), 1u) << cell;
 }
 
-// A gate that does not open lets nothing through in a minute, on the default cells and on coarser ones.
+// A gate that does not open lets nothing through in a minute, on the default cells and on coarser ones, above a floor that holds
+// and above one without friction.
 TEST(LBoxChecks, NothingPassesAShutGate) {
-  for (const char* cell : {"25 mm", "10 mm"}) {
-    const auto outcome = scene::run(scene::read_text(
-        plane, "plane.toml",
-        {std::string("model.cell=") + cell, "test.duration=60 s", "test.gate_speed=1e-9 m/s"}));
-    EXPECT_EQ(scene::find_number(outcome, "volume_in_channel_m3"), 0.0) << cell;
-    EXPECT_NEAR(*scene::find_number(outcome, "h1_mm"), 600.0, 0.6) << cell;
-    EXPECT_TRUE(outcome.checks.reasons.empty()) << cell;
-  }
+  for (const char* cell : {"25 mm", "10 mm"})
+    for (const char* walls : {"no_slip", "free_slip"}) {
+      const auto outcome = scene::run(
+          scene::read_text(plane, "plane.toml",
+                           {std::string("model.cell=") + cell, std::string("walls.contact=") + walls,
+                            "test.duration=60 s", "test.gate_speed=1e-9 m/s"}));
+      EXPECT_EQ(scene::find_number(outcome, "volume_in_channel_m3"), 0.0) << cell << walls;
+      EXPECT_NEAR(*scene::find_number(outcome, "h1_mm"), 600.0, 0.6) << cell << walls;
+      EXPECT_TRUE(outcome.checks.reasons.empty()) << cell << walls;
+    }
 }
 
 // Any box has a face of the grid where its gate stands, within a hundredth of the column.

@@ -94,6 +94,18 @@ TEST(Moulds, AHalfConeIsTheWholeOneOnItsScale) {
   EXPECT_NEAR(2.0 * b / a, 1.0, 0.003);
 }
 
+// EN 12350-8 reads the time to 500 mm with its own cone.
+TEST(Moulds, OnlyTheAbramsConeHasAT500) {
+  EXPECT_THROW(scene_of({"measured.t500=2 s"}), scene::InputError);
+  EXPECT_NO_THROW(scene_of({"measured.t500=2 s", "cone=abrams"}));
+}
+
+// 20 kPa stand: a body that is pressed by its own weight alone has no slump, not a tenth of a millimetre.
+TEST(Moulds, ABodyThatStandsHasNoSlump) {
+  const auto outcome = outcome_of({"cone=abrams", "mix.yield_stress=20 kPa", "test.duration=1 s"});
+  EXPECT_EQ(*scene::find_number(outcome, "slump_mm"), 0.0);
+}
+
 // EN 206: S1 10 to 40 mm, S2 50 to 90, S3 100 to 150, S4 160 to 210, S5 from 220, read to 10 mm.
 TEST(Moulds, SlumpClasses) {
   EXPECT_EQ(cone::slump_class(0.004), "");

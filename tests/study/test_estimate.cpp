@@ -105,6 +105,8 @@ TEST(Estimate, OtherMouldsHaveTablesOfTheirOwn) {
   EXPECT_THROW(check_readings({.slump = 0.06}, haegermann.mould), scene::InputError);   // all of its height
   EXPECT_THROW(check_readings({.spread = 0.2, .t500 = 1.0}, haegermann.mould),
                scene::InputError);  // no such reading
+  EXPECT_THROW(check_readings({.spread = 0.3, .t500 = 1.0}, Mould{}),
+               scene::InputError);  // never reaches 500 mm
   EXPECT_THROW(check_readings({}, haegermann.mould), scene::InputError);
 }
 

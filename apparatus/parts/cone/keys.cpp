@@ -114,6 +114,13 @@ void check_cells(const Values& values, const Scene& scene) {
   check_points(values, points);
 }
 
+/// Only the Abrams cone, either way up, has a time to 500 mm.
+void check_measured(const Values& values, const Scene& scene) {
+  if (values.given("measured.t500") && !is_abrams(scene.cone, true))
+    values.fail("measured.t500",
+                "is read with the Abrams cone alone; leave it out, or use cone = \"abrams\"");
+}
+
 }  // namespace
 
 void settle(Values& values) {
@@ -138,6 +145,7 @@ Scene read_scene(const Values& values) {
   scene.film_cell = film_cell_of(scene);
   scene.frame_interval = read_output(values).frame_interval;
   check_cells(values, scene);
+  check_measured(values, scene);
   return scene;
 }
 
