@@ -51,7 +51,8 @@ std::string head(const std::vector<Section>& sections, double wall_seconds) {
       "# Validation\n\nMeasurements beside Tremie's predictions; the last table has two published "
       "correlations. `tremie verify --validation` remakes this page ({:.0f} s), its charts and "
       "`validation.csv`.\n\n**{} of {} met, {} missed, {} without a verdict.** ± is half of a 95 % interval. "
-      "Met: the difference is within both (root of the sum of squares). A wide interval is easily met.\n\n",
+      "Met: the difference is within the combined interval (root of the sum of squares). Wide intervals are "
+      "easily met.\n\n",
       wall_seconds, met, met + missed + open, missed, open);
 }
 

@@ -43,9 +43,9 @@ std::string findings_of(const Section& section) {
 }  // namespace
 
 Section paper_mixes(const Settings& settings) {
-  Section section{
-      "mixes", "Mixes A to C, fresh and after 240 s",
-      "Every value as the paper prints it, friction included; cone at 15 cm/s. Nothing is fitted."};
+  Section section{"mixes", "Mixes A to C, fresh and after 240 s",
+                  "Every value as the paper (Wilkes, Kumar and Biscontin) prints it, its kinetics included; "
+                  "cone at 15 cm/s. Nothing is fitted."};
   std::vector<Ask> asked;
   const std::vector<std::string> as_printed{"mix.thixotropy.kinetics=gated"};
   for (const Floor& floor : {Floor{"no slip", false}, Floor{"friction", true}})

@@ -76,6 +76,14 @@ mix = "mix_a"
 test = {rest = "60 s", duration = "1 s"}
 model = {cell = "20 mm", points_per_cell = 2}
 output = {checkpoint_interval = "0.02 s", frame_interval = "0.1 s"})"},
+                                                    {"pour", R"(apparatus = "bored_pile"
+mix = "mix_a"
+pile = {radius = "0.3 m", depth = "1 m"}
+pipe = {inner_radius = "75 mm", outer_radius = "82 mm", embedment = ["0.2 m", "0.4 m"], pull = "0.2 m", start = "0.15 m", above = "1 m"}
+test = {rate = "20 m3/h"}
+load = [{volume = "0.1 m3"}, {volume = "0.15 m3"}]
+model = {cell = "50 mm", points_per_cell = 2}
+output = {checkpoint_interval = "0.02 s"})"},
                                                     {"box_in_space", R"(apparatus = "l_box"
 mix = "mix_a"
 test = {duration = "0.3 s"}

@@ -4,6 +4,7 @@
 #include <omp.h>
 
 #include "apparatus/verification/references/bodies.hpp"
+#include "libmpm/boundary/openings/outlet.hpp"
 
 namespace tremie::separating_walls {
 namespace {
@@ -88,6 +89,51 @@ TEST(Sheets, LetThroughWhereTheyAreOpen) {
   std::printf("open: %.3f beyond\n", beyond);
   EXPECT_GT(beyond, 0.4);
   EXPECT_LT(beyond, 0.55);
+}
+
+/// What is left in the column after a door at its foot has stood open, in seconds, at the times of a door that opens and shuts.
+struct Emptying {
+  ImplicitBody<PlaneStrain> body = column<PlaneStrain>(0.0125);
+  Outflow left = {};
+
+  Emptying() { body.grid.axes[0].repeated_knots = {8}; }
+  void door(bool open, double until) {
+    body.grid.sheets = {{.face = 8, .along = 1, .from = open ? 0.05 : 0.0, .to = 1.0}};
+    while (body.time < until - 1e-9) {
+      StepSettings settings = long_steps(true);
+      settings.dt_max = std::min(0.02, until - body.time);
+      ASSERT_FALSE(implicit_step(body, ExactBingham{}, settings).failed);
+      let_out<2>({{1.0, 0.0}, width + 0.025}, body.points, left);
+    }
+  }
+  double in_column() const {
+    double volume = 0.0;
+    for (std::size_t p = 0; p < body.points.size(); ++p)
+      if (body.points.x[p][0] < width) volume += body.points.volume(p);
+    return volume;
+  }
+};
+
+// A slow flow has no memory: a door that is open for twice half a second lets out what one does that is open for a second, but for
+// what sets out and settles anew. Nothing passes while it is shut, and what has left and what is left is all that there was.
+TEST(Sheets, ADoorThatShutsAndOpensAgain) {
+  omp_set_num_threads(1);
+  Emptying twice, once;
+  const double all = twice.in_column();
+  twice.door(true, 0.5);
+  const double before = twice.in_column();
+  EXPECT_LT(before, 0.95 * all);
+  twice.door(false, 3.0);
+  EXPECT_NEAR(twice.in_column() / before, 1.0, 1e-3);
+  twice.door(true, 3.5);
+  once.door(true, 1.0);
+  std::printf("left in the column: %.4f, by one opening %.4f\n", twice.in_column() / all,
+              once.in_column() / all);
+  EXPECT_NEAR(twice.in_column() / all, once.in_column() / all, 0.02);
+  double inside = 0.0;
+  for (std::size_t p = 0; p < twice.body.points.size(); ++p) inside += twice.body.points.volume(p);
+  EXPECT_NEAR((inside + twice.left.volume) / all, 1.0, 1e-3);
+  EXPECT_GT(twice.left.points, 0);
 }
 
 // A rigid wall as a signed distance that leans, and stands, holds a fluid as well: a funnel's. Points that it pushes in
