@@ -217,6 +217,16 @@ void check_curve_steps(const Scene& scene, Outcome& outcome) {
                   share, most));
 }
 
+/// Adds a reason where the test ends before the vane has reached its speed.
+void check_start_up(const Scene& scene, Outcome& outcome) {
+  const double time = outcome.series.back().time;
+  if (outcome.status != Status::completed || scene.speed == 0.0 || time > 0.99 * start_up_time) return;
+  outcome.checks.reasons.push_back(
+      fmt::format("the test ends after {:.3g} s, before the vane has reached its speed, {:g} s: use a longer "
+                  "test.duration",
+                  time, start_up_time));
+}
+
 /// Adds a reason where breakdown that hardly depends on the rate narrows the sheared width to a cell.
 void check_localisation(const Scene& scene, Outcome& outcome) {
   const auto width = sheared_width(scene);
@@ -307,6 +317,7 @@ void read_and_check(const Scene& scene, Outcome& outcome) {
   check_against_reference(scene, outcome);
   check_localisation(scene, outcome);
   check_curve_steps(scene, outcome);
+  check_start_up(scene, outcome);
 }
 
 }  // namespace tremie::icar_vane

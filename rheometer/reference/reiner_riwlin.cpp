@@ -157,19 +157,19 @@ Bingham first_guess(std::span<const FlowPoint> points, const Instrument& in) {
   return {tau_0, rest / fully_sheared_torque({0.0, 1.0}, fastest->omega, in)};
 }
 
-}  // namespace
+/// Where a thin layer at the vane alone is sheared, the torque rises with the root of the viscosity, and the guess above leads to its
+/// edge, 0. So a second guess takes the slowest reading for little more than the yield torque, and the layer of the fastest.
+Bingham thin_layer_guess(std::span<const FlowPoint> points, const Instrument& in) {
+  constexpr double yields = 0.97;
+  const auto [slowest, fastest] = std::minmax_element(
+      points.begin(), points.end(), [](const auto& p, const auto& q) { return p.omega < q.omega; });
+  const double area = 2.0 * pi * in.vane_height * in.vane_radius * in.vane_radius;
+  const double tau_0 = yields * slowest->torque / area;
+  const double y = std::max(1.0 / yields, fastest->torque / slowest->torque / yields) - 1.0;
+  return {tau_0, tau_0 * excess_minus_log(y) / (2.0 * fastest->omega)};
+}
 
-Bingham bingham_from_flow_curve(std::span<const FlowPoint> points, const Instrument& in) {
-  check(in);
-  require(points.size() >= 2, "a flow curve needs at least two points");
-  for (const FlowPoint& p : points)
-    require(positive(p.omega) && positive(p.torque),
-            "every speed and torque of a flow curve must be greater than 0");
-  const auto same = [&](const FlowPoint& p) { return p.omega == points.front().omega; };
-  require(!std::all_of(points.begin(), points.end(), same),
-          "a flow curve needs at least two different speeds");
-
-  Bingham best = first_guess(points, in);
+Bingham fitted(Bingham best, std::span<const FlowPoint> points, const Instrument& in) {
   double error = squared_error(best, points, in), damping = 1e-3;
   for (int i = 0; i < 200 && damping < 1e12; ++i) {
     const Bingham next = normal_equations(best, points, in).step(best, damping);
@@ -186,6 +186,24 @@ Bingham bingham_from_flow_curve(std::span<const FlowPoint> points, const Instrum
     if (still || error == 0.0) break;
   }
   return best;
+}
+
+}  // namespace
+
+Bingham bingham_from_flow_curve(std::span<const FlowPoint> points, const Instrument& in) {
+  check(in);
+  require(points.size() >= 2, "a flow curve needs at least two points");
+  for (const FlowPoint& p : points)
+    require(positive(p.omega) && positive(p.torque),
+            "every speed and torque of a flow curve must be greater than 0");
+  const auto same = [&](const FlowPoint& p) { return p.omega == points.front().omega; };
+  require(!std::all_of(points.begin(), points.end(), same),
+          "a flow curve needs at least two different speeds");
+
+  const Bingham best = fitted(first_guess(points, in), points, in);
+  if (best.mu > 0.0) return best;
+  const Bingham other = fitted(thin_layer_guess(points, in), points, in);
+  return squared_error(other, points, in) < squared_error(best, points, in) ? other : best;
 }
 
 }  // namespace tremie

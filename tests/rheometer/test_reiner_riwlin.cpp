@@ -132,6 +132,12 @@ TEST(ReinerRiwlin, ParametersComeBackFromTorques) {
 
 TEST(ReinerRiwlin, ParametersComeBackInTheNewtonianLimit) { expect_round_trip({0.0, 25.0}, {0.5, 1.0, 3.0}); }
 
+// A millimetre at the vane is sheared: the torque is the yield torque and some per cent.
+TEST(ReinerRiwlin, ParametersComeBackFromAThinLayer) {
+  expect_round_trip({54.0, 0.05}, {0.05, 0.1, 0.2, 0.3, 0.4, 0.5});
+  expect_round_trip({54.0, 0.005}, {0.05, 0.1, 0.2, 0.3, 0.4, 0.5});
+}
+
 TEST(ReinerRiwlin, NeverReportsANegativeParameter) {
   const std::vector<FlowPoint> falling{{1.0, 2.0}, {2.0, 1.5}, {3.0, 1.0}};
   const std::vector<FlowPoint> steeper_than_newtonian{{1.0, 0.1}, {2.0, 1.5}, {3.0, 4.0}};
