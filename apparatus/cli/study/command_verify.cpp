@@ -175,8 +175,9 @@ void add_command_verify(CLI::App& app, int& exit_code) {
   command.option("cases", options->cases, "Cases by name or number (default: all): " + known_cases());
   command.flag("--quick", options->quick, "Coarser cells, two to four minutes of one core (the default)");
   command.flag_without("--full", {"--quick"}, options->full, "All cells; four times as long");
-  command.flag_without("--validation", {"--quick", "--full"}, options->validation,
-                       "Compare predictions with measurements on concrete instead; some four minutes of one core");
+  command.flag_without(
+      "--validation", {"--quick", "--full"}, options->validation,
+      "Compare predictions with measurements on concrete instead; some four minutes of one core");
   command.option("--out", options->out,
                  "Folder for the result (default: runs/verification or runs/validation)");
   add_json_option(command, options->json);
