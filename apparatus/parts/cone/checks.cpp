@@ -27,8 +27,8 @@ bool is_implicit(const Scene& scene) { return scene.model.scheme == SchemeKind::
 /// Between the floor that holds it and its free surface a body of a cell has no rows of cells to shear: its spread is
 /// up to 20 % off (three_d.md), of one without a yield stress, which nothing else holds, still at its last cell but one.
 /// From 1.2 cells on a mix with a yield stress is within 5.3 %, by implicit steps in three dimensions from 1.5 on (6.3 % at
-/// 1.2, three_d.md). One that slides need not shear: 6 % from half a cell on, in
-/// cells that are higher than wide from a whole one (16 % at 0.7 of cells of 1 to 3.4).
+/// 1.2, three_d.md). One that slides need not shear: 6 % from half a cell on, in cells that are higher than wide from a
+/// whole one (16 % at 0.7 of cells of 5 by 18 mm).
 std::string too_thin(const View& j) {
   const double R = 0.5 * j.r.spread, depth = volume(j.scene.cone) / (std::numbers::pi * R * R);
   const bool in_space = !in_a_section(j.scene) && is_implicit(j.scene);
