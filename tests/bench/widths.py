@@ -1,7 +1,7 @@
 """Explicit steps compiled for each width of registers that this machine has, by g++ and clang: points a second and core, and
 the bound that the arithmetic sets.
 
-    tests/bench/widths.py [--levels x86-64-v3,...] [--compilers g++,clang++] [--least-ratio 0.8]
+    tests/bench/widths.py [--levels x86-64-v3,...] [--compilers g++,clang++] [--least-ratio 0.65]
 
 `--least-ratio`: exit code 1 where g++'s points a second are less than so many times clang's."""
 import argparse
