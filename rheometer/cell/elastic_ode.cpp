@@ -78,7 +78,7 @@ class Integrator {
     sundials_ok(CVodeSStolerances(m, relative_tolerance, absolute_tolerance), "CVodeSStolerances");
     sundials_ok(CVodeSetUserData(m, &problem_), "CVodeSetUserData");
     sundials_ok(CVodeSetLinearSolver(m, solver_.get, J_.get), "CVodeSetLinearSolver");
-    sundials_ok(CVodeSetMaxNumSteps(m, 50'000'000), "CVodeSetMaxNumSteps");
+    sundials_ok(CVodeSetMaxNumSteps(m, 5'000'000), "CVodeSetMaxNumSteps");
     sundials_ok(CVodeSetErrHandlerFn(
                     m, [](int, const char*, const char*, char*, void*) {}, nullptr),
                 "CVodeSetErrHandlerFn");

@@ -62,14 +62,15 @@ bool flows_at_start(const Problem& p) {
   return start == gamma_c ? p.gamma_dot(1e-6 * p.piece->duration) >= gamma_c : start > gamma_c;
 }
 
-/// lambda relaxes on the time 1/(alpha gamma_dot), times lambda^(1-n)/n with a power; a piece that is much longer than this is stiff.
+/// lambda relaxes on the time 1/(alpha gamma_dot), times lambda^(1-n)/n with a power, and to its saturation as it builds up; a
+/// piece that is much longer than either is stiff.
 int method_for(const Problem& p, std::span<const double> y, OdeMethod wanted) {
   if (wanted != OdeMethod::automatic) return wanted == OdeMethod::bdf ? CV_BDF : CV_ADAMS;
   double fastest = 0.0;
   for (int i = 0; i <= 64; ++i) fastest = std::max(fastest, p.gamma_dot(p.piece->duration * i / 64.0));
   for (std::size_t i = 0; i < p.of_parts.size(); ++i) {
     const auto d = kinetics_equations::derivatives_of(p.of_parts[i], p.build_rate, y[i], fastest, true);
-    if (d.k * d.broken_by_lambda * p.piece->duration > 100.0) return CV_BDF;
+    if ((d.k * d.broken_by_lambda - d.build_by_lambda) * p.piece->duration > 100.0) return CV_BDF;
   }
   return CV_ADAMS;
 }
@@ -93,7 +94,7 @@ class Integrator {
     sundials_ok(CVodeSetUserData(m, &problem_), "CVodeSetUserData");
     sundials_ok(CVodeSetLinearSolver(m, solver_.get, J_.get), "CVodeSetLinearSolver");
     sundials_ok(CVodeSetJacFn(m, jacobian), "CVodeSetJacFn");
-    sundials_ok(CVodeSetMaxNumSteps(m, 50'000'000), "CVodeSetMaxNumSteps");
+    sundials_ok(CVodeSetMaxNumSteps(m, 5'000'000), "CVodeSetMaxNumSteps");
     sundials_ok(CVodeSetNonlinConvCoef(m, 1e-3), "CVodeSetNonlinConvCoef");
     sundials_ok(CVodeSetErrHandlerFn(m, quiet, nullptr), "CVodeSetErrHandlerFn");
     if (problem.gated()) {

@@ -438,7 +438,7 @@ Gap make_gap(const CouetteFlow& flow, double width, const Instrument& in, const 
   for (int i = 0; i <= options.intervals; ++i) {
     const double share = static_cast<double>(i) / options.intervals;
     gap.x.push_back(gap.power == 1.0 ? i * gap.dx : width * share * share);
-    gap.stress_share.push_back(std::exp(-2.0 * gap.x.back()));
+    gap.stress_share.push_back(is_evenly_sheared(in) ? 1.0 : std::exp(-2.0 * gap.x.back()));
   }
   if (t.layer > 0.0) {
     gap.means = layer_means(gap.x, t.layer / in.vane_radius);
@@ -585,6 +585,14 @@ std::optional<CouetteDecay> solve(const CouetteFlow& flow, std::span<const doubl
   return result;
 }
 
+/// The stress is the same at every radius, so that no layer can break down before the others: as in a cone and plate, where a
+/// stress that falls with the shear would otherwise grow bands out of the gap's 2e-5.
+CouetteDecay even_shear(const CouetteFlow& flow, std::span<const double> times, const Instrument& in,
+                        CouetteOptions options) {
+  options.intervals = 2;
+  return *solve(flow, times, in, options, std::log(in.container_radius / in.vane_radius), true);
+}
+
 }  // namespace
 
 CouetteDecay thixotropic_couette(const CouetteFlow& flow, std::span<const double> times, const Instrument& in,
@@ -595,6 +603,7 @@ CouetteDecay thixotropic_couette(const CouetteFlow& flow, std::span<const double
   if (!std::is_sorted(times.begin(), times.end()) || (!times.empty() && times.front() < 0.0))
     throw std::invalid_argument("the times must ascend from 0 or later");
   const double gap = std::log(in.container_radius / in.vane_radius);
+  if (is_evenly_sheared(in)) return even_shear(flow, times, in, options);
   if (!options.whole_gap && flow.thixotropy.layer == 0.0) {
     const double width = sheared_width(flow, in);
     if (width < gap)

@@ -60,6 +60,15 @@ TEST(Rest, ABodyThatSetsOutSlowlyIsNotAtRest) {
   EXPECT_EQ(number_of(outcome, "stopped_at_s"), -1.0);
 }
 
+// A low mould, 60 mm wide above and 25 mm below: its rim falls before anything spreads, and lands after 0.108 s.
+TEST(Rest, AFallingRimIsNotAtRest) {
+  const auto outcome =
+      outcome_of({"mix.yield_stress=100 Pa", "mix.plastic_viscosity=1000 Pa.s", "cone.top_radius=60 mm",
+                  "cone.bottom_radius=25 mm", "cone.height=10 mm", "test.lift_speed=instant",
+                  "model.cell=[\"2 mm\", \"0.5 mm\"]", "test.duration=60 s"});
+  EXPECT_GE(number_of(outcome, "stopped_at_s"), 0.1);
+}
+
 // A looser tolerance ends the run sooner, at a smaller spread.
 TEST(Rest, TheSceneMayChooseItsTolerance) {
   const auto loose = outcome_of({"test.rest_tolerance=0.05"}), close = outcome_of({});

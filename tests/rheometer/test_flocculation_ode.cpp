@@ -100,6 +100,15 @@ TEST(FlocculationOde, TakesBdfForAStiffHistoryAndAdamsForASoftOne) {
   EXPECT_FALSE(slow.used_bdf);
 }
 
+// Build-up that saturates within a millionth of the piece is as stiff as breakdown: lambda is at its balance, in few steps.
+TEST(FlocculationOde, TakesBdfForABuildUpThatSaturatesAtOnce) {
+  const PowerKinetics kinetics{.alpha = 0.01, .gamma_c = 10.0, .saturation = 0.001};
+  const auto result =
+      flocculation_ode(segments({{100.0, 1.0, 1.0}}), {1000.0, kinetics}, 0.001, 1.0, std::vector{100.0});
+  EXPECT_NEAR(result.lambda[0], 0.001, 1e-9);
+  EXPECT_LT(result.steps, 1'000'000);  // 1e11 of an explicit method
+}
+
 TEST(FlocculationOde, RefusesWhatHasNoMeaning) {
   const auto history = segments({{1.0, 0.0, 1.0}});
   EXPECT_THROW(flocculation_ode(history, gated, 0.0, 0.0, std::vector{1.0}), std::invalid_argument);

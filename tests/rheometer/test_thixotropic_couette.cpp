@@ -79,6 +79,18 @@ TEST(ThixotropicCouette, ANarrowGapDecaysAsOneCell) {
 
 // The rate at the vane over time, replayed through CVODE, must give the vane's lambda: the kinetics are
 // equation (3).
+// A cone and plate shears evenly: (1 + lambda_0 exp(-alpha gamma_dot t)) tau_0 + mu gamma_dot, also where the yield stress falls
+// by far more than the viscous stress rises, and a gap between cylinders would break down in one layer.
+TEST(ThixotropicCouette, AnEvenShearStaysEven) {
+  const double rate = 1.6, alpha = 0.026;
+  const CouetteFlow flow{{500.0, 4.0}, {0.0, GatedKinetics{alpha}, 2.0}, rate * evenly_sheared_speed, {}};
+  const CouetteDecay d = thixotropic_couette(flow, std::vector{0.0, 10.0, 30.0, 70.0}, evenly_sheared());
+  for (std::size_t i = 0; i < d.time.size(); ++i) {
+    const double stress = (1.0 + 2.0 * std::exp(-alpha * rate * d.time[i])) * 500.0 + 4.0 * rate;
+    EXPECT_NEAR(d.torque[i] / stress, 1.0, 2e-5) << d.time[i] << " s";
+  }
+}
+
 TEST(ThixotropicCouette, LambdaAtTheVaneFollowsTheFlocculationEquation) {
   CouetteOptions o;
   o.keep_profiles = true;

@@ -161,6 +161,14 @@ inline constexpr double first_look = 2.0;
 
 inline double free_fall_time(const Scene& scene) { return std::sqrt(2.0 * scene.cone.height / gravity); }
 
+/// Whether the body still moves though it does not spread, as a rim that overhangs a low mould's foot falls at first: by its mean
+/// speed it would go on by ten times the tolerance in the time that has passed. At rest it is half of the tolerance.
+inline bool still_moves(const Scene& scene, const Sample& now) {
+  const double mass = scene.mix.density * volume(scene.cone);
+  const double way = std::sqrt(2.0 * now.kinetic_energy / mass) * now.time;
+  return way > 10.0 * scene.rest_tolerance * 0.5 * now.spread;
+}
+
 /// Since when the concrete, free of the cone, rests: since it was within the scene's tolerance of where it would end [s]; empty
 /// while it would gain more. What has swung back and stands for a moment alone moved a little earlier.
 inline std::optional<double> rests_since(const Scene& scene, const std::vector<Sample>& series) {
@@ -169,14 +177,16 @@ inline std::optional<double> rests_since(const Scene& scene, const std::vector<S
   if (now.time < first_look * free_fall_time(scene) || !clear_of_the_cone(scene, now)) return std::nullopt;
   const double left = gain_left(scene, series, now.time);
   if (left > tolerance || gain_left(scene, series, 0.8 * now.time) > 2.0 * tolerance) return std::nullopt;
-  if (!slows_down(series, now.time)) return std::nullopt;
+  if (!slows_down(series, now.time) || still_moves(scene, now)) return std::nullopt;
   const double within = (1.0 - tolerance) * (1.0 + left) * now.reach;
-  for (std::size_t i = 0; i < series.size(); ++i) {
+  const auto moved =
+      std::find_if(series.rbegin(), series.rend(), [&](const Sample& s) { return still_moves(scene, s); });
+  for (auto i = static_cast<std::size_t>(series.rend() - moved); i < series.size(); ++i) {
     if (series[i].reach < within) continue;
     const Sample &after = series[i], &before = series[i > 0 ? i - 1 : 0];
     const double share =
         after.reach > before.reach ? (within - before.reach) / (after.reach - before.reach) : 1.0;
-    return before.time + share * (after.time - before.time);
+    return before.time + std::clamp(share, 0.0, 1.0) * (after.time - before.time);
   }
   return now.time;
 }
