@@ -188,6 +188,11 @@ TEST_F(Program, ClosedAndFullStreamsKeepTheExitCode) {
     for (const char* streams : {" 2>&-", " 2>/dev/full", " >&-", " >/dev/full", " >&- 2>&-"})
       EXPECT_EQ(tremie(arguments + streams).code, code) << arguments << streams;
   }
+  for (const char* asked : {"check quick.toml", "new slump_flow", "--version"}) {
+    EXPECT_EQ(tremie(std::string(asked) + " >&-").code, 0) << asked;
+    EXPECT_EQ(tremie(std::string(asked) + " >/dev/full").code, 1)
+        << asked;  // a file that would be half written
+  }
 }
 
 TEST_F(Program, WhatASchemeCannotRunIsToldWithItsPlace) {

@@ -49,7 +49,7 @@ int exit_code_once_printed(int exit_code, int fault) {
   errno = 0;
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return exit_code;
   if (trouble == 0) trouble = errno;
-  if (has_answered && trouble == EPIPE) return exit_code;
+  if (has_answered && (trouble == EPIPE || trouble == EBADF)) return exit_code;
   say(stderr, "tremie: the standard output cannot be written: {}\n", std::strerror(trouble));
   return has_answered && exit_code == 0 ? fault : exit_code;
 }

@@ -28,8 +28,8 @@ void say(fmt::format_string<Parts...> form, Parts&&... parts) {
 /// Prints what the user asked for: the command has failed where it does not arrive.
 void answer(const std::string& text);
 
-/// The exit code, once all is printed: `exit_code`, or `fault` in place of 0 where an answer was lost on a disk or a closed stream.
-/// Who closes a pipe has read what he wanted.
+/// The exit code, once all is printed: `exit_code`, or `fault` in place of 0 where an answer was lost on a full disk. Who closes a
+/// pipe has read what they wanted; who closes the standard output wants the exit code alone.
 int exit_code_once_printed(int exit_code, int fault);
 
 }  // namespace tremie::cli
