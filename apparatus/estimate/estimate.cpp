@@ -26,10 +26,11 @@ struct Grid {
   Axis tau_0, mu;
 };
 
-Grid grid_of(const SlumpTable& table, double density) {
-  const double scale = density / table.density;
-  return {{scale * table.tau_0.front(), scale * table.tau_0.back()},
-          {scale * table.mu.front(), scale * table.mu.back()}};
+/// Of a viscosity that is known the axis has one value.
+Grid grid_of(const SlumpTable& table, const Measured& m) {
+  const double scale = m.density / table.density;
+  const Axis mu{scale * table.mu.front(), scale * table.mu.back()};
+  return {{scale * table.tau_0.front(), scale * table.tau_0.back()}, m.mu ? Axis{*m.mu, *m.mu} : mu};
 }
 
 /// Minus twice the logarithm of the likelihood, its constant left out.
@@ -180,9 +181,12 @@ void check(const SlumpTable& table, const Measured& m, const Grid& grid, const M
   else if (beyond(at.tau_0, at.best_tau_0))
     e.reasons.push_back(fmt::format("the yield stress may lie outside of the table, {} to {} Pa",
                                     told(grid.tau_0.low), told(grid.tau_0.high)));
-  else if (m.t500 && beyond(at.mu, at.best_mu))
+  else if (m.t500 && !m.mu && beyond(at.mu, at.best_mu))
     e.reasons.push_back(fmt::format("the viscosity may lie outside of the table, {} to {} Pa.s",
                                     told(grid.mu.low), told(grid.mu.high)));
+  if (const Axis mu = grid_of(table, {.density = m.density}).mu; m.mu && (*m.mu < mu.low || *m.mu > mu.high))
+    e.reasons.push_back(fmt::format("a viscosity of {} Pa.s lies outside of the table, {} to {} Pa.s",
+                                    told(*m.mu), told(mu.low), told(mu.high)));
   if (m.density < least_density || m.density > most_density)
     e.reasons.push_back(
         fmt::format("a density of {:.0f} kg/m3 lies outside of what the table serves, {:.0f} to {:.0f} kg/m3",
@@ -208,9 +212,10 @@ MixEstimate estimate(const SlumpTable& table, const Measured& m) {
     e.tau_0_thin_layer = thin_layer_yield_stress(*m.spread, m.density, table.mould.volume);
     e.tau_0_plug = plug_yield_stress(*m.spread, m.density, table.mould.volume);
   }
-  const Grid grid = grid_of(table, m.density);
+  const Grid grid = grid_of(table, m);
   Marginals at = marginals_of(table, m, grid);
-  if (m.t500 && std::isfinite(at.least)) refine(table, m, grid, at);
+  const bool one_mix = m.t500 || m.mu;
+  if (one_mix && std::isfinite(at.least)) refine(table, m, grid, at);
   if (m.t500 && at.least < far_off * far_off && cut_off(table, m, grid, at)) return without_t500(table, m);
   check(table, m, grid, at, e);
   if (!outside(table, m).empty()) return e;
@@ -218,8 +223,11 @@ MixEstimate estimate(const SlumpTable& table, const Measured& m) {
     e.reasons.push_back("no mix of the table reaches 500 mm and has this spread");
     return e;
   }
-  e.tau_0 = interval_of(at.tau_0, grid.tau_0, m.t500 ? std::optional(at.best_tau_0) : std::nullopt);
-  if (m.t500) e.mu = interval_of(at.mu, grid.mu, at.best_mu);
+  e.tau_0 = interval_of(at.tau_0, grid.tau_0, one_mix ? std::optional(at.best_tau_0) : std::nullopt);
+  if (m.mu)
+    e.mu = Interval{*m.mu, *m.mu, *m.mu};
+  else if (m.t500)
+    e.mu = interval_of(at.mu, grid.mu, at.best_mu);
   return e;
 }
 

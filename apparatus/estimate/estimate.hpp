@@ -19,15 +19,17 @@ struct Measured {
   double slump_error = 0.01;
   std::optional<double> t500 = {};
   double t500_error = 0.2;
+  std::optional<double> mu = {};  ///< the plastic viscosity, where it is known [Pa s]
   double density = 2400.0;
 };
 
 struct Interval {
-  double value = 0.0, low = 0.0, high = 0.0;  ///< the best fit (t500 given) or the median; 95 %
+  double value = 0.0, low = 0.0, high = 0.0;  ///< the best fit (t500 or mu given) or the median; 95 %
 };
 
 struct MixEstimate {
-  std::optional<Interval> tau_0, mu;  ///< empty where the table does not reach; mu also without t500
+  std::optional<Interval> tau_0,
+      mu;  ///< empty where the table does not reach; mu also where neither t500 nor it is given
   std::optional<double> tau_0_thin_layer, tau_0_plug;  ///< closed forms, by the spread
   std::vector<std::string> reasons;                    ///< why it is not to be trusted
 };

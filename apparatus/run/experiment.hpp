@@ -61,7 +61,7 @@ void run_experiment(const Flow& flow, Body<Geometry>& body,
   judge_squeeze(squeeze, body.mix, 2.0 * start_height, record.checks);
   if (showing.from_start) judge_volume(start_volume_change, record.checks);
   record.checks.stood_still =
-      showing.from_start && std::abs(mean_height(body.points) / start_height - 1.0) < 0.01;
+      showing.from_start && stopped_at && std::abs(mean_height(body.points) / start_height - 1.0) < 0.01;
   finish(stopped_at);
   record.final_frame = flow.last_frame ? flow.last_frame() : flow.frame();
   if (observer.on_frame) observer.on_frame(record.final_frame);

@@ -60,6 +60,16 @@ TEST(Rest, ABodyThatSetsOutSlowlyIsNotAtRest) {
   EXPECT_EQ(number_of(outcome, "stopped_at_s"), -1.0);
 }
 
+// Within 7 s of a viscous time of 333 s: a low cylinder of 320 kPa.s that weighs six times its yield stress has moved by 0.3 mm.
+TEST(Rest, ABodyThatHasHardlySetOutIsNotAtRest) {
+  const auto outcome =
+      outcome_of({"mix.yield_stress=150 Pa", "mix.plastic_viscosity=320000 Pa.s", "mix.density=1980 kg/m3",
+                  "cone.top_radius=35 mm", "cone.bottom_radius=50 mm", "cone.height=50 mm",
+                  "test.lift_speed=instant", "test.duration=7 s"});
+  EXPECT_EQ(number_of(outcome, "stopped_at_s"), -1.0);
+  EXPECT_FALSE(outcome.checks.stood_still);
+}
+
 // A low mould, 60 mm wide above and 25 mm below: its rim falls before anything spreads, and lands after 0.108 s.
 TEST(Rest, AFallingRimIsNotAtRest) {
   const auto outcome =

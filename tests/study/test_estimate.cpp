@@ -110,6 +110,21 @@ TEST(Estimate, OtherMouldsHaveTablesOfTheirOwn) {
   EXPECT_THROW(check_readings({}, haegermann.mould), scene::InputError);
 }
 
+// A stiff mix that is fluid overshoots by its inertia: of a spread without t500 its yield stress is told once the viscosity is
+// known. 250 Pa and 6 Pa.s against themselves, by a run on half the cells.
+TEST(Estimate, AKnownViscosityNarrowsTheYieldStress) {
+  const Measured direct = direct_run(250.0, 6.0, 2400.0, "");
+  const Measured alone{.spread = direct.spread, .spread_error = 0.002};
+  Measured with = alone;
+  with.mu = 6.0;
+  const auto wide = estimate(table(), alone), narrow = estimate(table(), with);
+  EXPECT_NEAR(narrow.tau_0->value / 250.0, 1.0, 0.05);
+  EXPECT_LT(narrow.tau_0->high - narrow.tau_0->low, 0.5 * (wide.tau_0->high - wide.tau_0->low));
+  EXPECT_EQ(narrow.mu->value, 6.0);
+  with.mu = 5000.0;
+  EXPECT_FALSE(estimate(table(), with).reasons.empty());
+}
+
 // The interval is the measurement's: a fourth of the error makes it markedly narrower.
 TEST(Estimate, IntervalFollowsTheMeasurementsError) {
   Measured m{.spread = 0.555, .t500 = 2.5};

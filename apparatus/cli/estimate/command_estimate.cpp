@@ -26,7 +26,7 @@ namespace {
 using scene::Dimension;
 
 struct EstimateOptions {
-  std::string cone, spread, slump, t500, density, spread_error, slump_error, t500_error, chart;
+  std::string cone, spread, slump, t500, viscosity, density, spread_error, slump_error, t500_error, chart;
   bool json = false;
 };
 
@@ -42,6 +42,7 @@ estimate::Measured measured_of(const EstimateOptions& o, const estimate::Mould& 
   m.spread = quantity("--spread", o.spread, Dimension::length, sensible);
   m.slump = quantity("--slump", o.slump, Dimension::length, sensible);
   m.t500 = quantity("--t500", o.t500, Dimension::time);
+  m.mu = quantity("--plastic-viscosity", o.viscosity, Dimension::viscosity);
   m.density = quantity("--density", o.density, Dimension::density).value_or(m.density);
   m.spread_error = quantity("--spread-error", o.spread_error, Dimension::length).value_or(m.spread_error);
   m.slump_error = quantity("--slump-error", o.slump_error, Dimension::length).value_or(m.slump_error);
@@ -67,6 +68,7 @@ void print_text(const EstimateOptions& o, const estimate::Measured& m, const est
   print_interval("yield stress", e.tau_0, "Pa", "not in the table");
   print_interval("plastic viscosity", e.mu, "Pa.s",
                  o.t500.empty() ? "takes --t500" : "not told by this t500");
+  if (!m.t500 && !m.mu) say("{:<24} --plastic-viscosity narrows the yield stress\n", "");
   if (m.spread) {
     say("{:<24} {} Pa (thin layer at rest, Roussel and Coussot)\n", "by the closed forms",
         scene::rounded(*e.tau_0_thin_layer, 3));
@@ -171,6 +173,8 @@ void add_command_estimate(CLI::App& app, int& exit_code) {
   command.option("--spread", o->spread, "Spread at rest: \"590 mm\"");
   command.option("--slump", o->slump, "Slump: \"120 mm\"");
   command.option("--t500", o->t500, "Time to 500 mm from the start of the lift: \"2.5 s\"");
+  command.option("--plastic-viscosity", o->viscosity,
+                 "Known plastic viscosity: narrows the yield stress of mixes that do not reach 500 mm");
   command.option("--cone", o->cone,
                  "Mould by its name in reference_data/cones: \"haegermann\" (default: \"abrams\")");
   command.option("--density", o->density, "Density (default: \"2400 kg/m3\")");

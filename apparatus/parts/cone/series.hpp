@@ -161,12 +161,15 @@ inline constexpr double first_look = 2.0;
 
 inline double free_fall_time(const Scene& scene) { return std::sqrt(2.0 * scene.cone.height / gravity); }
 
-/// Whether the body still moves though it does not spread, as a rim that overhangs a low mould's foot falls at first: by its mean
-/// speed it would go on by ten times the tolerance in the time that has passed. At rest it is half of the tolerance.
+/// Whether the body still moves though it does not spread, as a rim that overhangs a low mould's foot falls at first, or as one
+/// that has hardly set out. By its mean speed it would go on by ten times the tolerance in the time that has passed (at rest it is
+/// half of the tolerance), or that speed over its depth takes more than the tolerance's share of its weight (at rest 1e-5).
 inline bool still_moves(const Scene& scene, const Sample& now) {
-  const double mass = scene.mix.density * volume(scene.cone);
-  const double way = std::sqrt(2.0 * now.kinetic_energy / mass) * now.time;
-  return way > 10.0 * scene.rest_tolerance * 0.5 * now.spread;
+  const double tolerance = scene.rest_tolerance, weight = scene.mix.density * gravity;
+  const double speed = std::sqrt(2.0 * now.kinetic_energy / (scene.mix.density * volume(scene.cone)));
+  const double depth = std::max(now.height, scene.model.cell[1]), rate = speed / depth;
+  const double viscous = (scene.mix.mu + viscosity(scene.model.law, std::max(rate, 1e-12), 0.0)) * rate;
+  return speed * now.time > 10.0 * tolerance * 0.5 * now.spread || viscous > tolerance * weight * depth;
 }
 
 /// Since when the concrete, free of the cone, rests: since it was within the scene's tolerance of where it would end [s]; empty

@@ -217,8 +217,8 @@ void add_rheometer(py::module_& module) {
       .def(py::init(&thixotropy_of), "A_thix"_a, "alpha"_a, "kinetics"_a, "gamma_c"_a, "exponent"_a,
            "saturation"_a);
   py::class_<estimate::Measured>(module, "Measured")
-      .def(py::init<Optional, double, Optional, double, Optional, double, double>(), "spread"_a,
-           "spread_error"_a, "slump"_a, "slump_error"_a, "t500"_a, "t500_error"_a, "density"_a);
+      .def(py::init<Optional, double, Optional, double, Optional, double, Optional, double>(), "spread"_a,
+           "spread_error"_a, "slump"_a, "slump_error"_a, "t500"_a, "t500_error"_a, "mu"_a, "density"_a);
   module.def("quantity", &quantity, "name"_a, "text"_a, "si_unit"_a);
   module.def("fit_options", &option_rows);
   module.def("fit", [](bool is_decay, const Numbers& x, const Numbers& torque, const py::dict& values) {

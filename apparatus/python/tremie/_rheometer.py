@@ -202,6 +202,7 @@ def estimate(
     t500: Optional[Quantity] = None,
     *,
     slump: Optional[Quantity] = None,
+    plastic_viscosity: Optional[Quantity] = None,
     cone: str = "abrams",
     density: Quantity = "2400 kg/m3",
     spread_error: Quantity = "15 mm",
@@ -209,7 +210,7 @@ def estimate(
     t500_error: Quantity = "0.2 s",
 ) -> Result:
     """Yield stress and plastic viscosity from a spread at rest [m], a slump [m] or both, and t500 [s], by a table of direct
-    runs for each mould (a name from reference_data/cones).
+    runs for each mould (a name from reference_data/cones). A `plastic_viscosity` [Pa s] that is known narrows the yield stress.
 
     The errors are one standard error each. `.results` has yield_stress_Pa and plastic_viscosity_Pa_s (value, ci95;
     None where the table does not reach, and the viscosity without t500) and two closed forms by the spread."""
@@ -225,6 +226,7 @@ def estimate(
         slump_error=positive("slump_error", slump_error, "m"),
         t500=_optional("t500", t500, "s"),
         t500_error=positive("t500_error", t500_error, "s"),
+        mu=_optional("plastic_viscosity", plastic_viscosity, "Pa.s"),
         density=positive("density", density, "kg/m3"),
     )
     results = _tremie.estimate(measured, cone)

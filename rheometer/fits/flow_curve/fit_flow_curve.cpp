@@ -144,7 +144,8 @@ void report_parameters(const Readings& r, const FittedLaw& f, const FitInput& in
     const FitParameter& row = f.law->parameters[k].row;
     const double value = f.all[k];
     const bool viscosity = row.member == &FitResult::mu;
-    if (!f.fit.told[i] || (viscosity && !(value > 0.0))) continue;
+    // A viscosity that makes less than 1e-5 of the torque is lost in how far the model solves its equations.
+    if (!f.fit.told[i] || (viscosity && !(value > 1e-5 * apparent))) continue;
     const double scale = k == 0 ? std::max(value, slowest) : viscosity ? std::max(value, apparent) : value;
     set_value(result, row, estimate(value, f.fit.covariance[i * n + i], degrees, scale));
   }
