@@ -10,6 +10,7 @@
 #include <cstring>
 #include <exception>
 #include <new>
+#include <sstream>
 #include <string_view>
 
 #include "apparatus/cli/commands.hpp"
@@ -188,8 +189,14 @@ int parse_and_run(int argc, char** argv, const std::function<void(CLI::App&, int
         error.what(), &at == &app ? "tremie --help shows what there is." : at.get_footer());
     return bad_input;
   } catch (const CLI::ParseError& error) {
-    error.get_exit_code() != 0 ? check_options(app) : answer("");
-    return app.exit(error) == 0 ? done : bad_input;
+    if (error.get_exit_code() != 0) {
+      check_options(app);
+      return app.exit(error) == 0 ? done : bad_input;
+    }
+    std::ostringstream text;  // of --help and --version
+    app.exit(error, text);
+    answer(text.str());
+    return done;
   }
   return exit_code;
 }
