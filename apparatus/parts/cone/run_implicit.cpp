@@ -24,16 +24,6 @@ constexpr double detached_share = 0.005;
 constexpr double film_spread = 0.52;
 constexpr double film_speed = 5e-3;
 
-/// The height of a film's cells now [m]: as of the scene, but no less than the rows of points are apart, which come nearer to each
-/// other as the film thins. In flatter cells many would be empty, and the front would stand for seconds.
-double height_for_film(const Scene& scene, double spread, double h) {
-  const double radius = 0.5 * film_spread * scale_of(scene.cone),
-               thinned = std::pow(2.0 * radius / spread, 2);
-  const double rows = scene.model.cell[1] / scene.model.points_per_cell[1] * thinned;
-  const double least = std::max(scene.film_cell, rows);
-  return least > scene.film_cell && least > 0.8 * h ? h : std::min(h, least);
-}
-
 /// What a flow has left to gain, as a share of its spread, when points are no longer shifted: in a creep of hours that would
 /// push them out of the front of a film, along the floor.
 constexpr double little_left = 0.01;
@@ -44,7 +34,7 @@ constexpr double longest_creep_step = 0.05;
 /// Puts a section's body on cells of another height; what is kept by cells and nodes is forgotten with them.
 template <class Geometry>
 void change_cell_height(double h, ImplicitBody<Geometry>& body) {
-  if (body.grid.axes[Geometry::up].h == h) return;
+  if (Geometry::dim == 3 || body.grid.axes[Geometry::up].h == h) return;
   body.grid.axes[Geometry::up].h = h;
   body.grid.cell_map = {};
   body.wall_nodes.clear();
@@ -80,9 +70,7 @@ Outcome run_implicit_in(const Scene& scene, const scene::Observer& observer) {
               settings.admm.tolerance = flows ? flowing_tolerance : StepSettings{}.admm.tolerance;
             cone_gone = cone_is_gone(scene, body.time, outcome.series.back());
             if (is_film) {
-              if constexpr (D == 2)
-                change_cell_height(height_for_film(scene, outcome.series.back().spread, body.grid.axes[1].h),
-                                   body);
+              change_cell_height(scene.film_cell, body);
               const double before = std::min(scene.model.cell[0], scene.model.cell[1]);
               settings.time_error = time_error * before / body.grid.cell_size_min();  // as long a way
             }
