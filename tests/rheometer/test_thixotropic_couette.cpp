@@ -77,8 +77,6 @@ TEST(ThixotropicCouette, ANarrowGapDecaysAsOneCell) {
   }
 }
 
-// The rate at the vane over time, replayed through CVODE, must give the vane's lambda: the kinetics are
-// equation (3).
 // A cone and plate shears evenly: (1 + lambda_0 exp(-alpha gamma_dot t)) tau_0 + mu gamma_dot, also where the yield stress falls
 // by far more than the viscous stress rises, and a gap between cylinders would break down in one layer.
 TEST(ThixotropicCouette, AnEvenShearStaysEven) {
@@ -91,6 +89,8 @@ TEST(ThixotropicCouette, AnEvenShearStaysEven) {
   }
 }
 
+// The rate at the vane over time, replayed through CVODE, must give the vane's lambda: the kinetics are
+// equation (3).
 TEST(ThixotropicCouette, LambdaAtTheVaneFollowsTheFlocculationEquation) {
   CouetteOptions o;
   o.keep_profiles = true;
