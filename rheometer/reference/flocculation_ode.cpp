@@ -63,14 +63,16 @@ bool flows_at_start(const Problem& p) {
 }
 
 /// lambda relaxes on the time 1/(alpha gamma_dot), times lambda^(1-n)/n with a power, and to its saturation as it builds up; a
-/// piece that is much longer than either is stiff.
+/// piece that is much longer than either, on either side of the gate, is stiff.
 int method_for(const Problem& p, std::span<const double> y, OdeMethod wanted) {
   if (wanted != OdeMethod::automatic) return wanted == OdeMethod::bdf ? CV_BDF : CV_ADAMS;
   double fastest = 0.0;
   for (int i = 0; i <= 64; ++i) fastest = std::max(fastest, p.gamma_dot(p.piece->duration * i / 64.0));
   for (std::size_t i = 0; i < p.of_parts.size(); ++i) {
-    const auto d = kinetics_equations::derivatives_of(p.of_parts[i], p.build_rate, y[i], fastest, true);
-    if ((d.k * d.broken_by_lambda - d.build_by_lambda) * p.piece->duration > 100.0) return CV_BDF;
+    for (const bool flowing : {false, true}) {
+      const auto d = kinetics_equations::derivatives_of(p.of_parts[i], p.build_rate, y[i], fastest, flowing);
+      if ((d.k * d.broken_by_lambda - d.build_by_lambda) * p.piece->duration > 100.0) return CV_BDF;
+    }
   }
   return CV_ADAMS;
 }
