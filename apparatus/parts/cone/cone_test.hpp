@@ -47,12 +47,17 @@ struct Scene {
   Model model;
   double film_cell =
       0.005;  ///< height of the cells of a section once the body creeps, for its depth at rest [m]
+  double film_spread = 0.52;    ///< from which it gets them [m]
   double frame_interval = 0.0;  ///< simulated time between frames [s]; 0: chosen (run/run_loop.hpp)
   int threads = 1;
 };
 
 /// Height of a section's cells once the body creeps [m]. Cells of a scene's own are as flat, to the default, as they were.
 double film_cell_of(const Scene& scene);
+
+/// Spread [m] from which a section gets cells of that height: wider than 520 mm out of the Abrams cone, and at most twice as
+/// deep as it will rest.
+double film_spread_of(const Scene& scene);
 
 /// One line of timeseries.csv.
 struct Sample {

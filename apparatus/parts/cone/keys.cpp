@@ -56,6 +56,12 @@ double depth_at_rest(const Scene& scene) {
   return V / (std::numbers::pi * R * R);
 }
 
+/// Wider out of the Abrams cone a body is a film [m]; t500 is read on the cells that the flow began on.
+constexpr double film_spread = 0.52;
+
+/// A body that is deeper than this many times its depth at rest is no film: on cells that flat its front would stand.
+constexpr double deepest_film = 2.0;
+
 constexpr double default_height = 0.005;  ///< of a section's cells, for the Abrams cone [m]
 
 }  // namespace
@@ -64,6 +70,12 @@ double film_cell_of(const Scene& scene) {
   const double up = scene.model.cell[1], to_default = up / (default_height * scale_of(scene.cone));
   if (scene.model.space != SpaceKind::axisymmetric || scene.model.scheme != SchemeKind::implicit) return up;
   return std::min(up, to_default * depth_at_rest(scene) / rows_at_rest);
+}
+
+double film_spread_of(const Scene& scene) {
+  const double deepest = deepest_film * depth_at_rest(scene);
+  return std::max(film_spread * scale_of(scene.cone),
+                  2.0 * std::sqrt(volume(scene.cone) / (std::numbers::pi * deepest)));
 }
 
 namespace {
@@ -143,6 +155,7 @@ Scene read_scene(const Values& values) {
   scene.lift_speed = values.number_unless("test.lift_speed", "instant");
   scene.model = read_model(values);
   scene.film_cell = film_cell_of(scene);
+  scene.film_spread = film_spread_of(scene);
   scene.frame_interval = read_output(values).frame_interval;
   check_cells(values, scene);
   check_measured(values, scene);

@@ -19,9 +19,7 @@ constexpr double flowing_tolerance = 4e-3, creeping = 1e-3;  // [1], [m/s]
 /// Share of the points that may lie alone before the front of a film that creeps: a long step carries none of them away.
 constexpr double detached_share = 0.005;
 
-/// Slower than this, and wider out of the Abrams cone, a section spreads as a film, on flat cells [m/s], [m]. t500 is read on the
-/// cells that the flow began on.
-constexpr double film_spread = 0.52;
+/// Slower than this, and wider than Scene::film_spread, a section spreads as a film, on flat cells [m/s].
 constexpr double film_speed = 5e-3;
 
 /// What a flow has left to gain, as a share of its spread, when points are no longer shifted: in a creep of hours that would
@@ -83,7 +81,7 @@ Outcome run_implicit_in(const Scene& scene, const scene::Observer& observer) {
             near_rest = body.time > first_look * free_fall_time(scene) &&
                         gain_left(scene, outcome.series, outcome.series.back().time) < little_left;
             is_film = is_film || (step.bulk_speed < film_speed && (cone_gone || !scene.lift_speed) &&
-                                  outcome.series.back().spread > film_spread * scale_of(scene.cone));
+                                  outcome.series.back().spread > scene.film_spread);
             experiment::count_step(body, step, checks, cost);
             experiment::watch_fixed_step(body, scene.model, step, checks);
             return step;

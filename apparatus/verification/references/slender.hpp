@@ -54,6 +54,7 @@ inline SlenderFlow slender_flow(double across, double up) {
   scene.mix = bodies::concrete(10.0, 35.8);
   scene.model.cell = {across, up};
   scene.film_cell = cone::film_cell_of(scene);
+  scene.film_spread = cone::film_spread_of(scene);
 
   ImplicitBody<Axisymmetric> body{cone::filled_cone<Axisymmetric>(scene)};
   StepSettings settings = cone::step_settings(scene);
