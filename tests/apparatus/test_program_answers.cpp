@@ -72,6 +72,20 @@ TEST_F(Answers, EstimateSuggestsTheUnitThatIsMeant) {
 }
 
 // What is no result, or of another apparatus, is named with what it lacks, and nothing is written.
+// A script whose variable is empty, and a number behind a flag, are no options that were left out.
+TEST_F(Answers, AnEmptyOptionAndAFlagWithAValueAreRefused) {
+  for (const char* arguments :
+       {"estimate --spread '590 mm' --t500 ''", "estimate --spread '590 mm' --chart ''",
+        "check quick.toml --json=5", "run quick.toml --quiet=5", "run ''", "resume ''",
+        "run quick.toml --out ''"}) {
+    const Result said = tremie(arguments);
+    EXPECT_EQ(said.code, 2) << arguments << '\n' << said.text;
+    EXPECT_NE(said.text.find(said.text.find('5') != std::string::npos ? "takes no value" : "is empty"),
+              std::string::npos)
+        << said.text;
+  }
+}
+
 TEST_F(Answers, CompareRefusesWhatItCannotSetSideBySide) {
   ASSERT_EQ(tremie("run quick.toml --quiet --out fresh").code, 0);
   std::filesystem::create_directory(folder_ / "empty");

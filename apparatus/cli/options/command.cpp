@@ -4,31 +4,49 @@
 
 namespace tremie::cli {
 
+namespace {
+
+/// `--t500 ""`, as a script leaves it whose variable is empty, is no option that was left out.
+const CLI::Validator not_empty(
+    [](const std::string& given) {
+      return given.empty() ? std::string("is empty: give a value") : std::string();
+    },
+    "", "not empty");
+
+/// `--json=5`: CLI11 reads a number behind a flag as how often it was given.
+const CLI::Validator no_value(
+    [](const std::string& given) {
+      return given == "true" ? std::string() : "takes no value, but has \"" + given + "\"";
+    },
+    "", "no value");
+
+}  // namespace
+
 Command::Command(CLI::App& program, const char* name, const char* description)
     : app_(program.add_subcommand(name, description)) {}
 
 Command& Command::required(const char* name, std::string& value, const std::string& meaning) {
-  app_->add_option(name, value, meaning)->required();
+  app_->add_option(name, value, meaning)->required()->check(not_empty);
   return *this;
 }
 
 Command& Command::required(const char* name, std::vector<std::string>& values, const std::string& meaning) {
-  app_->add_option(name, values, meaning)->required();
+  app_->add_option(name, values, meaning)->required()->check(not_empty);
   return *this;
 }
 
 Command& Command::option(const char* name, std::string& value, const std::string& meaning) {
-  app_->add_option(name, value, meaning);
+  app_->add_option(name, value, meaning)->check(not_empty);
   return *this;
 }
 
 Command& Command::option(const char* name, std::vector<std::string>& values, const std::string& meaning) {
-  app_->add_option(name, values, meaning);
+  app_->add_option(name, values, meaning)->check(not_empty);
   return *this;
 }
 
 Command& Command::option_with_default(const char* name, std::string& value, const std::string& meaning) {
-  app_->add_option(name, value, meaning)->capture_default_str();
+  app_->add_option(name, value, meaning)->capture_default_str()->check(not_empty);
   return *this;
 }
 
@@ -50,13 +68,13 @@ template Command& Command::number(const char*, std::int64_t&, std::int64_t, std:
 template Command& Command::number(const char*, std::size_t&, std::int64_t, std::int64_t, const std::string&);
 
 Command& Command::flag(const char* name, bool& value, const std::string& meaning) {
-  app_->add_flag(name, value, meaning);
+  app_->add_flag(name, value, meaning)->check(no_value);
   return *this;
 }
 
 Command& Command::flag_without(const char* name, const std::vector<const char*>& others, bool& value,
                                const std::string& meaning) {
-  CLI::Option* flag = app_->add_flag(name, value, meaning);
+  CLI::Option* flag = app_->add_flag(name, value, meaning)->check(no_value);
   for (const char* other : others) flag->excludes(app_->get_option(other));
   return *this;
 }
