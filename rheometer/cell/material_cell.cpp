@@ -180,6 +180,11 @@ std::vector<ShearSegment> parse_shear_history(std::string_view text, const std::
     if (table.position[k] == 0)
       throw RecordError(
           at_position(name, table.header_line, 1, "a history needs the columns time_s,shear_rate_per_s"));
+  if (table.left_out > 0)
+    throw RecordError(
+        at_position(name, table.header_line, 1,
+                    std::to_string(table.left_out) +
+                        " rows have no value in one of their columns; a history needs both in every row"));
   const auto &time = table.column[0], &rate = table.column[1];
   if (time.size() < 2)
     throw RecordError(at_position(name, table.header_line, 1, "a history needs two rows or more"));

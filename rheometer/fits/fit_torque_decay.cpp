@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 
 #include "rheometer/fits/apparent_alpha.hpp"
@@ -13,6 +14,7 @@
 #include "rheometer/reference/thixotropic_couette.hpp"
 #include "rheometer/regression/lack_of_fit.hpp"
 #include "rheometer/regression/statistics.hpp"
+#include "rheometer/tables/text.hpp"
 
 namespace tremie::fitting {
 
@@ -88,8 +90,20 @@ std::size_t rising_rows(const Readings& r) {
   return std::min(start, r.size() - least_left);
 }
 
+/// A vane's start and an elastic strain are over within a turn. A torque that rises for longer tells of structure that builds
+/// up, and what is fitted behind its peak is not what the record began with.
+void judge_rise(const Readings& all, std::size_t rising, double omega, FitResult& result) {
+  if (4 * rising <= all.size()) return;
+  const double turns = std::abs(omega) * (all.x[rising] - all.x.front()) / (2.0 * std::numbers::pi);
+  if (turns > 1.0)
+    result.reasons.push_back(
+        "the torque rises for " + text_of("%.2g", turns) +
+        " turns of the vane before its peak: structure builds up there, and lambda is that of the peak, "
+        "not of the record's start");
+}
+
 /// Rows with a torque from the start of the shear on; times counted from there.
-Readings readings_of(const TorqueRecord& record, FitResult& result) {
+Readings readings_of(const TorqueRecord& record, double omega, FitResult& result) {
   Readings all;
   for (std::size_t i = 0; i < record.torque.size(); ++i) {
     if (record.time[i] < 0.0)
@@ -101,6 +115,7 @@ Readings readings_of(const TorqueRecord& record, FitResult& result) {
   }
   all = dropping(all, spikes_of(all), "spike among its neighbours", result);
   const std::size_t rising = rising_rows(all);
+  judge_rise(all, rising, omega, result);
   std::vector<char> leave_out(all.size(), 0);
   std::fill_n(leave_out.begin(), rising, 1);
   Readings kept = dropping(all, leave_out, before_peak, result);
@@ -394,7 +409,7 @@ FitResult fit_torque_decay(const TorqueRecord& record, const FitInput& input, St
     throw std::invalid_argument("a torque decay needs the speed of the vane: --speed \"0.25 rev/s\"");
   FitResult result;
   result.kind = RecordKind::torque_decay;
-  const Readings r = readings_of(record, result);
+  const Readings r = readings_of(record, *in.omega, result);
   const std::size_t unknowns =
       2u + !in.tau_0 + !in.mu + (!in.choose_kinetics && decay_fit(in.kinetics).free_exponent);
   if (r.size() <= unknowns)

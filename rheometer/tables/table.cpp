@@ -440,6 +440,7 @@ class Reader {
     } else if (!tables_.empty()) {
       text += ", " + tables_.front();
     }
+    table_.left_out = left_out_;
     if (left_out_ > 0) text += "; " + std::to_string(left_out_) + " rows without a value left out";
     if (other_rows_ > 0)
       text += "; " + std::to_string(other_rows_) + " rows of tables with other columns left out" +

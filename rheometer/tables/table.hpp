@@ -50,6 +50,7 @@ struct NumberTable {
   bool chosen = false;                      ///< the table that the options name is the only one here
   long header_line = 0;
   std::vector<std::string> header;      ///< what stands there
+  std::size_t left_out = 0;             ///< rows in which a number is missing
   bool of_oscillation = false;          ///< a column of the header is a modulus, as an oscillation measures
   std::vector<std::string> understood;  ///< a sentence each; none of a table that needs no word
 };

@@ -189,6 +189,23 @@ TEST(FitTorqueDecay, LeavesOutARiseThatBendsIntoThePeak) {
     }
 }
 
+// Roussel's concrete that begins below its balance builds up for minutes of shear: what is fitted behind the peak is not what
+// the record began with.
+TEST(FitTorqueDecay, ARiseOverManyTurnsIsNoStartUp) {
+  TorqueRecord record = torque_decay(exact_decay(even_times(160, 40.0)), 0.003, 1);
+  const double first = record.torque.front();
+  for (double& t : record.time) t += 120.0;
+  for (int i = 70; i-- > 0;) {
+    record.time.insert(record.time.begin(), 120.0 * i / 70.0);
+    record.torque.insert(record.torque.begin(), first * (0.7 + 0.28 * i / 70.0));
+    record.line.insert(record.line.begin(), 0);
+  }
+  const FitResult f = fit(record, decay_input());
+  ASSERT_FALSE(f.reasons.empty());
+  EXPECT_NE(f.reasons.front().find("turns of the vane before its peak"), std::string::npos)
+      << f.reasons.front();
+}
+
 // Without a rise the first reading is used, wherever the noise puts the highest one.
 TEST(FitTorqueDecay, KeepsTheStartOfANoisyDecay) {
   long dropped = 0;

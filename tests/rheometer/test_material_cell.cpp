@@ -95,7 +95,8 @@ TEST(MaterialCell, ReadsAHistoryFromCsv) {
   EXPECT_EQ(s[1].to, 10.0);
   for (const char* text : {"", "time_s,shear_rate_per_s\n", "time_s,shear_rate_per_s\n0,1\n",
                            "time_s,shear_rate_per_s\n0,1\n1,-1\n", "time_s,shear_rate_per_s\n1,1\n0,1\n",
-                           "time_s,shear_rate_per_s\n1,1\n1,2\n", "time_s,torque_N_m\n0,1\n1,1\n"})
+                           "time_s,shear_rate_per_s\n1,1\n1,2\n",
+                           "time_s,shear_rate_per_s\n0,1\n1,nan\n2,1\n", "time_s,torque_N_m\n0,1\n1,1\n"})
     EXPECT_THROW(parse_shear_history(text, "h.csv"), RecordError) << text;
 }
 
