@@ -97,7 +97,8 @@ struct ProfilePoint {
 
 struct Results {
   double torque_peak = 0.0, torque_end = 0.0, torque_wall_end = 0.0, torque_power_end = 0.0;  ///< [N m]
-  double slip_end = 0.0;                                                                      ///< [m/s]
+  double inertia_at_peak = 0.0;                    ///< rate of the angular momentum there [N m]
+  double slip_end = 0.0;                           ///< [m/s]
   std::optional<ReinerRiwlin> reiner_riwlin = {};  ///< from a flow curve, as the instrument would report it
   /// Equation (6) at the peak and at the end of a constant speed [Pa]. A flow curve tells nothing of the
   /// static one, and its dynamic one is Reiner-Riwlin's.

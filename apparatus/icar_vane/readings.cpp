@@ -104,9 +104,18 @@ std::vector<std::string> agreement_lines(const View& v) {
   return lines;
 }
 
+constexpr double told_inertia = 0.05;  ///< of the torque at the peak
+
 std::vector<std::string> torque_lines(const View& v) {
-  return {fmt::format("torque          {:.4g} N.m at its peak, {:.4g} N.m at the end", v.r.torque_peak,
-                      v.r.torque_end)};
+  std::vector<std::string> lines{fmt::format("torque          {:.4g} N.m at its peak, {:.4g} N.m at the end",
+                                             v.r.torque_peak, v.r.torque_end)};
+  const double share = v.r.torque_peak != 0.0 ? v.r.inertia_at_peak / v.r.torque_peak : 0.0;
+  if (v.scene.speeds.empty() && share > told_inertia)
+    lines.push_back(fmt::format(
+        "                {:.0f} % of the peak accelerate the concrete: what is read off the peak is so "
+        "much too large",
+        100.0 * share));
+  return lines;
 }
 
 std::vector<std::string> cylinder_lines(const View& v) {
@@ -163,6 +172,10 @@ Rows<View> torque_rows() {
        .headline_digits = 4,
        .measurable = true,
        .lines = torque_lines},
+      {"torque_peak_inertia_N_m", "part of the largest torque that accelerates the concrete",
+       [](V v) {
+         return number(v.scene.speeds.empty() ? std::optional(v.r.inertia_at_peak) : std::nullopt);
+       }},
       {.name = "torque_end_N_m",
        .words = "torque on the blades at the end",
        .value = [](V v) { return number(v.r.torque_end); },

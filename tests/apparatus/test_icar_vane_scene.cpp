@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "apparatus/icar_vane/icar_vane.hpp"
+#include "apparatus/registry/registry.hpp"
 #include "tests/apparatus/complaint.hpp"
 
 namespace tremie::scene {
@@ -66,6 +67,41 @@ TEST(IcarVaneScene, ACurveWhoseStepsAreAsLongAsItsMeansIsMarked) {
   for (const auto& reason : outcome.checks.reasons)
     marked = marked || reason.find("test.average_time") != std::string::npos;
   EXPECT_TRUE(marked);
+}
+
+// A small vane in 19 kPa of hardly any viscosity shears a layer that is thinner than a cell: its torque is that of a larger
+// cylinder, 2 pi r^2 h tau_0 = 15.1 mN m and 7 % more.
+TEST(IcarVaneScene, ACurveWhoseLayerIsThinnerThanACellIsMarked) {
+  const auto outcome =
+      run(read_text("apparatus = \"icar_vane\"\n[mix]\nyield_stress = \"19.3 kPa\"\nplastic_viscosity = "
+                    "\"0.2 Pa.s\"\n[vane]\nradius = \"5 mm\"\n"
+                    "container_radius = \"16 mm\"\nheight = \"5 mm\"\nshaft_radius = \"1 "
+                    "mm\"\nblade_thickness = \"0.2 mm\"\n[test]\n"
+                    "speeds = [\"1 rev/s\", \"0.3 rev/s\"]\nhold_time = \"2 s\"\npre_shear_time = \"2 "
+                    "s\"\npre_shear_speed = \"1 rev/s\"\n[model]\ncell = \"0.6 mm\"\n",
+                    "a.toml"));
+  ASSERT_FALSE(outcome.checks.reasons.empty());
+  EXPECT_NE(outcome.checks.reasons.front().find("do not resolve its sheared layer"), std::string::npos);
+}
+
+// Fresh Mix A at 0.25 rev/s, reached in a tenth of a second: a ring of concrete is accelerated with the vane, and the peak is
+// not that of structure.
+TEST(IcarVaneScene, InertiasPartOfThePeakIsTold) {
+  const auto outcome = run(read_text(mix_a, "a.toml", {"test.duration=2 s"}));
+  const double peak = *find_number(outcome, "torque_peak_N_m"),
+               inertia = *find_number(outcome, "torque_peak_inertia_N_m");
+  EXPECT_GT(inertia / peak, 0.2);
+  EXPECT_LT(inertia / peak, 0.4);
+  EXPECT_LT(peak - inertia, *find_number(outcome, "torque_end_N_m"));
+}
+
+// A speed whose shear rates the solver takes for rest has no torque, though the closed form has its yield stress.
+TEST(IcarVaneScene, ATorqueThatIsTooSmallIsMarkedAtAnyTime) {
+  const auto outcome = run(
+      read_text(mix_a, "a.toml", {"mix.thixotropy=false", "test.speed=2e-5 rev/s", "test.duration=0.7 s"}));
+  const bool small =
+      *find_number(outcome, "torque_end_N_m") < 0.9 * *find_number(outcome, "torque_couette_reference_N_m");
+  EXPECT_EQ(small, !outcome.checks.reasons.empty());
 }
 
 TEST(IcarVaneScene, OneProtocolOrTheOther) {
