@@ -71,7 +71,6 @@ TEST_F(Answers, EstimateSuggestsTheUnitThatIsMeant) {
   EXPECT_NE(tremie("estimate --spread 59").text.find("write \"59 cm\""), std::string::npos);
 }
 
-// What is no result, or of another apparatus, is named with what it lacks, and nothing is written.
 // A script whose variable is empty, and a number behind a flag, are no options that were left out.
 TEST_F(Answers, AnEmptyOptionAndAFlagWithAValueAreRefused) {
   for (const char* arguments :
@@ -85,6 +84,7 @@ TEST_F(Answers, AnEmptyOptionAndAFlagWithAValueAreRefused) {
   }
 }
 
+// What is no result, or of another apparatus, is named with what it lacks, and nothing is written.
 TEST_F(Answers, CompareRefusesWhatItCannotSetSideBySide) {
   ASSERT_EQ(tremie("run quick.toml --quiet --out fresh").code, 0);
   std::filesystem::create_directory(folder_ / "empty");
