@@ -373,7 +373,7 @@ State start(const Lab& lab, const Settings& settings) {
 
 Calibration calibrate(const Lab& lab, const Settings& settings) {
   const std::size_t n = lab.unknowns.size();
-  const std::size_t first = settings.first_trials ? settings.first_trials : 6 + (n > 2 ? 6 : 3) * n;
+  const std::size_t first = settings.first_trials ? settings.first_trials : 6 + 6 * n;
   const std::size_t most = settings.most_trials ? settings.most_trials : 30 * n;
   const std::size_t batch = std::max<std::size_t>(4, static_cast<std::size_t>(settings.jobs));
   State s = start(lab, settings);
