@@ -38,6 +38,19 @@ TEST(LBoxChecks, CellsThatDoNotResolveTheDepthAreMarked) {
     EXPECT_EQ(reasons(cell).size(), 1u) << cell;
 }
 
+// Walls 100 mm apart carry half of the weight of 600 Pa: H1 is 285 mm on the default cells and 268 on half of them. At 400 Pa they
+// carry a third.
+TEST(LBoxChecks, AColumnThatItsWallsNearlyCarryIsMarked) {
+  const auto reasons_of = [](const std::string& yield_stress, const std::string& cell) {
+    const auto overrides = {"mix.yield_stress=" + yield_stress, "model.cell=" + cell,
+                            std::string("test.duration=4 s")};
+    return scene::run(scene::read_text(plane, "plane.toml", overrides)).checks.reasons;
+  };
+  ASSERT_EQ(reasons_of("600 Pa", "10 mm").size(), 1u);
+  EXPECT_NE(reasons_of("600 Pa", "10 mm").front().find("walls carry 0.51"), std::string::npos);
+  EXPECT_TRUE(reasons_of("400 Pa", "10 mm").empty());
+}
+
 // A gate that does not open lets nothing through in a minute, on the default cells and on coarser ones, above a floor that holds
 // and above one without friction.
 TEST(LBoxChecks, NothingPassesAShutGate) {

@@ -54,7 +54,8 @@ TEST(Calibrate, FindsTheMixOfADirectRun) {
 }
 
 // The table of tremie estimate is of the same scene, so that both must say the same of one slump flow: the ends of their
-// intervals differ by less than a tenth of the interval (emulator, table and the quadratures).
+// intervals differ by less than 0.15 of the interval (emulator, table, the quadratures, and the error of the cells, which calibrate
+// adds).
 TEST(Calibrate, EstimateSaysTheSameOfOneSlumpFlow) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "LAB.toml", measured("590 mm", "2.5 s") + unknown);
@@ -71,7 +72,7 @@ TEST(Calibrate, EstimateSaysTheSameOfOneSlumpFlow) {
     const auto& theirs = estimated[name]["ci95"];
     const double width = ours[1].get<double>() - ours[0].get<double>();
     for (const int end : {0, 1})
-      EXPECT_NEAR(ours[end].get<double>(), theirs[end].get<double>(), 0.1 * width) << key;
+      EXPECT_NEAR(ours[end].get<double>(), theirs[end].get<double>(), 0.15 * width) << key;
   }
 }
 
@@ -83,7 +84,7 @@ TEST(Calibrate, MeasurementsThatContradictEachOtherAreNamed) {
   EXPECT_NE(result.text.find("standard errors"), std::string::npos) << result.text;
 }
 
-// 54 Pa and 35.8 Pa.s spread 537 mm, have 1.9 s to 500 mm and slump some 242 mm: a slump of 150 mm beside them is the one that
+// 54 Pa and 35.8 Pa.s spread 537 mm, have 0.6 s to 400 mm and slump 260 mm (a direct run to rest): a slump of 150 mm beside them is the one that
 // lies, and the other two do not contradict each other. What it should have been is what it is told to be.
 TEST(Calibrate, TheReadingThatTheOthersForecastElsewhereIsNamed) {
   const test::TemporaryFolder folder;
@@ -99,7 +100,7 @@ TEST(Calibrate, TheReadingThatTheOthersForecastElsewhereIsNamed) {
   for (const auto& c : results["contradictions"]) {
     if (c["reading"] != "measured[0].slump") continue;
     named = true;
-    EXPECT_NEAR(c["forecast"].get<double>(), 242.0, 6.0);
+    EXPECT_NEAR(c["forecast"].get<double>(), 260.0, 6.0);
     EXPECT_GT(c["ci99"][0], 150.0);
   }
   EXPECT_TRUE(named) << results["contradictions"].dump();
