@@ -100,6 +100,30 @@ void draw_chains(State& s) {
   s.result.effective_points = chains.effective;
 }
 
+/// The quadrature of one or two unknowns anew, over the box alone in which the posterior lies: sharp readings leave a few of the
+/// points that span the ranges.
+void refine_points(State& s) {
+  constexpr double negligible = 1e-9;
+  const std::size_t n = s.lab.unknowns.size();
+  const Posterior& p = s.result.posterior;
+  Point low(n, 1.0), high(n, 0.0);
+  for (std::size_t i = 0; i < p.points.size(); ++i)
+    for (std::size_t k = 0; k < n && p.weights[i] > negligible * p.weights[p.best]; ++k) {
+      low[k] = std::min(low[k], p.points[i][k]);
+      high[k] = std::max(high[k], p.points[i][k]);
+    }
+  const double spacing = 1.0 / std::pow(static_cast<double>(s.points.size()), 1.0 / static_cast<double>(n));
+  for (std::size_t k = 0; k < n; ++k) {
+    low[k] = std::max(0.0, low[k] - spacing);
+    high[k] = std::min(1.0, high[k] + spacing);
+  }
+  for (Point& x : s.points)
+    for (std::size_t k = 0; k < n; ++k) x[k] = low[k] + (high[k] - low[k]) * x[k];
+  for (Emulated& e : s.emulated)
+    if (e.trained) e.predictions = predict(e.emulator, s.points);
+  update_posterior(s);
+}
+
 double distance(const Point& a, const Point& b) {
   double sum = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
@@ -351,7 +375,10 @@ void report(State& s) {
   for (Emulated& e : s.emulated)
     if (e.trained) e.error = error_near_posterior(s, e);
   find_contradictions(s);  // on points all over the ranges, where the others alone may lead
-  if (s.lab.unknowns.size() > 2 && emulated) draw_chains(s);
+  if (emulated && s.lab.unknowns.size() > 2)
+    draw_chains(s);
+  else if (emulated)
+    refine_points(s);
   report_parameters(s);
   report_readings(s);
   report_contradictions(s);
