@@ -85,6 +85,13 @@ TEST(SlumpFlowChecks, InertiaThatCellsDampIsFlagged) {
   EXPECT_NE(experiment::inertia_on_a_cell(mix, thinning, 5.0, 0.02), "");
 }
 
+// 3.2 cells to the rim and 1.4 rows at rest: 361 mm, where half the cells have 385 and the default 393.
+TEST(SlumpFlowChecks, ALowBodyOfFewCellsIsMarked) {
+  EXPECT_TRUE(
+      marked_as("from its axis to its rim", {"mix.yield_stress=365 Pa", "mix.plastic_viscosity=11 Pa.s",
+                                             "test.duration=10 s", "model.cell=[\"31.4 mm\", \"39.4 mm\"]"}));
+}
+
 // A body that slides is 5 % off with three cells from its axis to its rim, one that its floor holds is not. At a coefficient of
 // 0.05 the floor bears 11 Pa and cannot shear a concrete of 54 Pa, but one that flows below its yield stress; a coefficient of
 // 0.35 bears 262 Pa under 32 mm.
