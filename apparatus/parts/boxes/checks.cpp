@@ -35,10 +35,10 @@ std::string wide_cells_at_the_bars(const View& j) {
 
 /// Depths and how far they reach are the grid's where a few cells make them: below these the passing ratio is
 /// up to 40 % off (lbox_study.md).
-constexpr double least_behind_the_gate = 3.5, least_at_the_end = 1.0, least_along = 3.0;  // [cells]
+constexpr double least_behind_the_gate = 3.5, least_at_the_end = 1.0;  // [cells]
 
 std::string few_cells(const View& j) {
-  const auto [across, up] = j.scene.model.cell;
+  const double up = j.scene.model.cell[1];
   const Results& r = j.r;
   const char* mend = ": use a smaller model.cell";
   if (r.h1 < least_behind_the_gate * up)
@@ -47,9 +47,6 @@ std::string few_cells(const View& j) {
   if (r.h2 && *r.h2 < least_at_the_end * up)
     return fmt::format("the concrete at the channel's end is thinner than a cell, {:.3g} mm{}", 1e3 * *r.h2,
                        mend);
-  if (j.scene.box.column_length < least_along * across)
-    return fmt::format("the column is {:.2g} cells long, less than {:.2g}{}",
-                       j.scene.box.column_length / across, least_along, mend);
   return {};
 }
 

@@ -172,26 +172,32 @@ inline bool still_moves(const Scene& scene, const Sample& now) {
   return speed * now.time > 10.0 * tolerance * 0.5 * now.spread || viscous > tolerance * weight * depth;
 }
 
-/// Since when the concrete, free of the cone, rests: since it was within the scene's tolerance of where it would end [s]; empty
-/// while it would gain more. What has swung back and stands for a moment alone moved a little earlier.
+/// Since when the body has been within `tolerance` of the reach that it ended with, after its first fall [s]. The mean distance
+/// tells it, which is smooth in the viscosity: what is left to gain, by which a run ends, scatters as much as the tolerance.
+inline double within_since(const Scene& scene, const std::vector<Sample>& series) {
+  const auto moves = [&](const Sample& s) { return still_moves(scene, s); };
+  const auto fell = std::find_if(series.begin(), series.end(), moves);
+  const auto landed = fell == series.end() ? series.begin() : std::find_if_not(fell, series.end(), moves);
+  const double end = series.back().reach, band = scene.rest_tolerance * end;
+  auto i = std::prev(series.end());
+  while (i != landed && std::abs(std::prev(i)->reach - end) <= band) --i;
+  if (i == landed) return i->time;
+  const auto before = std::prev(i);
+  const double share = (std::abs(before->reach - end) - band) / std::abs(i->reach - before->reach);
+  return before->time + std::clamp(share, 0.0, 1.0) * (i->time - before->time);
+}
+
+/// Since when the concrete, free of the cone, rests: since it was within the scene's tolerance of where it ended [s]; empty
+/// while it would gain more.
 inline std::optional<double> rests_since(const Scene& scene, const std::vector<Sample>& series) {
   const Sample& now = series.back();
   const double tolerance = scene.rest_tolerance;
   if (now.time < first_look * free_fall_time(scene) || !clear_of_the_cone(scene, now)) return std::nullopt;
-  const double left = gain_left(scene, series, now.time);
-  if (left > tolerance || gain_left(scene, series, 0.8 * now.time) > 2.0 * tolerance) return std::nullopt;
+  if (gain_left(scene, series, now.time) > tolerance ||
+      gain_left(scene, series, 0.8 * now.time) > 2.0 * tolerance)
+    return std::nullopt;
   if (!slows_down(series, now.time) || still_moves(scene, now)) return std::nullopt;
-  const double within = (1.0 - tolerance) * (1.0 + left) * now.reach;
-  const auto moved =
-      std::find_if(series.rbegin(), series.rend(), [&](const Sample& s) { return still_moves(scene, s); });
-  for (auto i = static_cast<std::size_t>(series.rend() - moved); i < series.size(); ++i) {
-    if (series[i].reach < within) continue;
-    const Sample &after = series[i], &before = series[i > 0 ? i - 1 : 0];
-    const double share =
-        after.reach > before.reach ? (within - before.reach) / (after.reach - before.reach) : 1.0;
-    return before.time + std::clamp(share, 0.0, 1.0) * (after.time - before.time);
-  }
-  return now.time;
+  return within_since(scene, series);
 }
 
 /// Whether the cone is so far above the concrete that its wall need not be computed.
