@@ -2,6 +2,10 @@
 
 #include <omp.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "apparatus/icar_vane/ends.hpp"
 #include "apparatus/icar_vane/instrument.hpp"
 #include "apparatus/icar_vane/sections.hpp"
@@ -14,7 +18,8 @@ namespace {
 
 constexpr double largest_dt = 0.02;  // resolves the decay: lambda follows the flow by one step [s]
 constexpr double slow_tolerance =
-    1e-4;                      // of the yield solver where a layer is given: a slow vane's rates are small
+    1e-4;  // of the yield solver where a layer is given: a slow vane's rates are small
+constexpr double share_at_rest = 0.1;  // of the slowest nominal shear rate: rates below are at rest
 constexpr double reach = 1.2;  // of a step, in cells: points move along arcs, without error in a whole turn
 
 template <class Section>
@@ -87,6 +92,15 @@ struct Schedule {
   }
 };
 
+/// Nominal shear rate of the slowest speed that is not 0 [1/s].
+double slowest_rate(const Scene& scene) {
+  double slowest = std::numeric_limits<double>::infinity();
+  for (const Stage& stage : stages_of(scene))
+    if (stage.speed != 0.0) slowest = std::min(slowest, std::abs(stage.speed));
+  return newtonian_shear_rate(angular_speed(slowest),
+                              {scene.vane.radius, scene.vane.height, scene.vane.container_radius});
+}
+
 template <class Section>
 Outcome run_section(const Scene& scene, const Section& section, const scene::Observer& observer) {
   using Geometry = typename Section::Geometry;
@@ -96,6 +110,7 @@ Outcome run_section(const Scene& scene, const Section& section, const scene::Obs
   settings.keep_forces = true;
   settings.wall_law = scene.walls;
   settings.cfl = reach;
+  settings.admm.rate_at_rest = std::min(settings.admm.rate_at_rest, share_at_rest * slowest_rate(scene));
   if (scene.mix.thixotropy && scene.mix.thixotropy->layer > 0.0) settings.admm.tolerance = slow_tolerance;
 
   Outcome outcome;

@@ -35,6 +35,9 @@ struct AdmmSettings {
   double most_bulk_stiffness = 1e4;   ///< K dt over mu + r in a system; the rest by multipliers
   double inertia_from = 10.0;         ///< eta: a cell's inertia beyond this is in the scale of the stresses,
   double inertia_over = 0.3;          ///< over the time of a move by so many cells, or the step if longer
+  /// A rate at which the concrete is at rest [1/s]: half a millimetre a second over half a decimetre. What drives it more
+  /// slowly, as a vane may, must say so.
+  double rate_at_rest = 0.01;
 };
 
 namespace detail {
@@ -42,8 +45,7 @@ namespace detail {
 /// So little is no stress of a concrete [Pa]: the scale where nothing yields and nothing moves.
 inline constexpr double no_stress = 1e-3;
 
-/// A rate at which the concrete is at rest [1/s]: half a millimetre a second over half a decimetre.
-inline constexpr double rate_at_rest = 0.01;
+inline constexpr double rate_at_rest = AdmmSettings{}.rate_at_rest;  ///< [1/s]
 
 /// Squares of the primal and dual residuals and of the stress scale, of the rates and of what they miss,
 /// weighted by volume; what the pressures miss, as the energy of a solve [W].
@@ -55,11 +57,14 @@ struct AdmmResiduals {
     missed += m.missed, rate += m.rate, volume += m.volume, pressure += m.pressure;
   }
   /// How much of the rates may be missed, a tenth and what counts as rest: root of volume times square.
-  double tolerated_miss() const { return 0.1 * std::sqrt(rate) + rate_at_rest * std::sqrt(volume); }
+  double tolerated_miss(const AdmmSettings& settings) const {
+    return 0.1 * std::sqrt(rate) + settings.rate_at_rest * std::sqrt(volume);
+  }
   /// In the stresses, and in the rates: where the yield stress dwarfs r times the rate, the whole rate could
   /// be missed within a tolerance on the stress.
-  bool within(double tolerance) const {
-    return std::max(primal, dual) <= tolerance * tolerance * scale && std::sqrt(missed) <= tolerated_miss();
+  bool within(const AdmmSettings& settings) const {
+    return std::max(primal, dual) <= settings.tolerance * settings.tolerance * scale &&
+           std::sqrt(missed) <= tolerated_miss(settings);
   }
 };
 
@@ -122,7 +127,7 @@ SolveReport solve_admm(YieldProblem<Geometry>& problem, const AdmmSettings& sett
     residuals = form.update(v);
     if (contact_changed && !form.contact_changed()) return report;
     report.converged =
-        residuals.within(settings.tolerance) && nodes_settled && bars_settled && !contact_changed &&
+        residuals.within(settings) && nodes_settled && bars_settled && !contact_changed &&
         std::max(left, residuals.pressure) <= std::min(tolerated, form.tolerated_energy(residuals));
     if (report.converged) break;
   }

@@ -47,7 +47,7 @@ struct MatrixFreeAdmm {
   /// tolerates.
   double tolerated_energy(const detail::AdmmResiduals& m) const {
     return std::min(std::pow(settings.tolerance, 2) * m.scale / eta_system,
-                    eta_system * std::pow(m.tolerated_miss(), 2));
+                    eta_system * std::pow(m.tolerated_miss(settings), 2));
   }
   detail::AdmmResiduals start(const std::vector<Vec<3>>& v) { return pass(v, false); }
   detail::AdmmResiduals update(const std::vector<Vec<3>>& v) { return pass(v, true); }
