@@ -44,7 +44,7 @@ std::string few_cells_along(const boxes::View& j) {
       along, least_along, 1e3 * j.scene.box.column_length / least_along);
 }
 
-/// A sticky concrete that is read while the column empties: the cells' error in time, some per cent, is twice that of H1.
+/// A sticky concrete that is read while its column empties: coarse cells are some per cent late, which makes twice as much of H1.
 std::string h1_still_falls(const boxes::View& j) {
   constexpr double most = 0.15, least_along = 30.0;
   const auto& series = j.series;

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """The pours of docs/guide/bored_pile.md, computed by the program and drawn by their loads: pours.py PROGRAM. Writes pours.svg here. Needs
-python3-h5py; some two minutes of one core."""
+python3-h5py; four minutes of one core."""
 import json, pathlib, subprocess, sys, tempfile
 
 import h5py
@@ -45,6 +45,9 @@ def bands(position, load):
         for k in range(1, rows - 1):  # a rectangle without a point inside of the concrete has its neighbour's load
             if winner[i, k] == 0 and winner[i, k + 1 :].any():
                 winner[i, k] = winner[i, k - 1]
+        for k in range(rows - 2, -1, -1):  # near the base that above it
+            if winner[i, k] == 0 and k < 5:
+                winner[i, k] = winner[i, k + 1]
         start = 0
         for k in range(1, rows + 1):
             if k == rows or winner[i, k] != winner[i, start]:
