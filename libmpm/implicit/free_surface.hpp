@@ -16,16 +16,28 @@
 
 namespace tremie::detail {
 
-/// Surface of what stands on the floor of a section (its lowest cells): from there up, where a cell is less
-/// than half full. What hangs on a wall higher up has none, nor what stands below a block.
+/// Where the surface of a column of cells is taken, in shares of a cell across: twice in a section, once in space, where
+/// each point costs a good deal.
+template <int D>
+std::vector<Vec<D>> places_across() {
+  if constexpr (D == 2)
+    return {quadrature_point<D>(0), quadrature_point<D>(power(2, D) - 1)};
+  else
+    return {Vec<D>::Constant(0.5)};
+}
+
+/// Surface of what stands on the floor (the lowest cells): from there up, where a cell is less than half full. What hangs on
+/// a wall higher up has none, nor what stands below a block.
 template <class Geometry>
 std::vector<PointTerm<Geometry::dim>> surface_of_pool(const ImplicitBody<Geometry>& body, double dt) {
   constexpr int D = Geometry::dim, up = Geometry::up;
-  static_assert(D == 2, "a section has one direction across");
+  const std::vector<Vec<D>> places = places_across<D>();
   std::vector<PointTerm<D>> surface;
   const auto& grid = body.grid;
-  const double section = grid.axes[0].h * grid.axes[1].h;
-  const auto fill = [&](int c) { return body.quadrature.V_cell[c] / section; };
+  double cell = 1.0;
+  for (const auto& axis : grid.axes) cell *= axis.h;
+  const double area = cell / (grid.axes[up].h * static_cast<double>(places.size()));
+  const auto fill = [&](int c) { return body.quadrature.V_cell[c] / cell; };
   for (int c = 0; c < grid.n_cells(); ++c) {
     Index<D> at = grid.cell_index[c];
     if (at[up] != 0) continue;
@@ -37,13 +49,13 @@ std::vector<PointTerm<Geometry::dim>> surface_of_pool(const ImplicitBody<Geometr
       top = next;
     }
     if (block_of_cell<D>(grid, at)) continue;
-    for (const Vec<D>& across : {quadrature_point<D>(0), quadrature_point<D>(power(2, D) - 1)}) {
+    for (const Vec<D>& across : places) {
       Vec<D> s = across;
       s[up] = std::min(1.0, fill(top));
       PointTerm<D> point;
       point.cell = top;
       point.N = stencil<D>(grid.axes, grid.cell_index[top], s).N;
-      point.penalty(up, up) = -0.5 * body.mix.density * body.gravity[up] * grid.axes[1 - up].h * dt;
+      point.penalty(up, up) = -body.mix.density * body.gravity[up] * area * dt;
       surface.push_back(point);
     }
   }

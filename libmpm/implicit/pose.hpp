@@ -147,7 +147,7 @@ void pose(ImplicitBody<Geometry>& body, const YieldLaw& law, const StepSettings&
   if (!body.strips.empty())
     if (const std::optional<WallStress> stress = wall_stress(settings.wall_law))
       add_strips(body, *stress, static_cast<int>(body.bars.size()), *posed);
-  if constexpr (D == 2 && requires { Geometry::up; })
+  if constexpr (requires { Geometry::up; })
     if (settings.moving_surface) posed->surface = surface_of_pool(body, dt);
   carry_over_terms<Geometry>(body.wall_nodes, old_nodes, settings.wall_law, body.grid, posed->wall_nodes);
   posed->contact = find_contact(body.grid, body.points, wall, body.time + dt, dt, settings.wall_gap,

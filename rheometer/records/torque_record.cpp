@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <numeric>
 
 #include "libmpm/constitutive/constants.hpp"
 #include "rheometer/records/sections.hpp"
@@ -34,6 +35,17 @@ void require_below(const std::vector<double>& column, const NumberTable& table, 
   for (std::size_t i = 0; i < column.size(); ++i)
     if (column[i] > most)
       throw RecordError(at_position(name, table.line[i], position, what + "; is the header's unit right?"));
+}
+
+/// Readings that are all below what any rheometer resolves: their squares would be 0.
+void require_above(const std::vector<double>& column, const NumberTable& table, std::size_t position,
+                   double least, const std::string& what, const std::string& name) {
+  const double largest = std::transform_reduce(
+      column.begin(), column.end(), 0.0, [](double a, double b) { return std::max(a, b); },
+      [](double x) { return std::abs(x); });
+  if (largest > 0.0 && largest < least)
+    throw RecordError(
+        at_position(name, table.line.front(), position, what + "; is the header's unit right?"));
 }
 
 bool is_flow_curve(const Section& s) {
@@ -238,9 +250,14 @@ TorqueRecord parse_torque_record(std::string_view bytes, const std::string& name
   if (has_speed && !both)
     require_not_negative(table.column[q_speed], table, table.position[q_speed],
                          sheared_evenly ? "the shear rate" : "the speed", name);
-  if (!sheared_evenly) {
-    require_below(table.column[q_torque], table, table.position[q_torque], 1e4,
-                  "the torque is above 10000 N.m", name);
+  const std::vector<double>& readings = table.column[q_torque];
+  if (sheared_evenly) {
+    require_below(readings, table, table.position[q_torque], 1e9, "the shear stress is above 1e9 Pa", name);
+    require_above(readings, table, table.position[q_torque], 1e-9, "every shear stress is below 1e-9 Pa",
+                  name);
+  } else {
+    require_above(readings, table, table.position[q_torque], 1e-12, "every torque is below 1e-12 N.m", name);
+    require_below(readings, table, table.position[q_torque], 1e4, "the torque is above 10000 N.m", name);
     require_below(table.column[q_speed], table, table.position[q_speed], 1e3, "the speed is above 1000 rad/s",
                   name);
   }

@@ -89,6 +89,9 @@ TEST(TorqueRecord, SaysWhereAndWhatIsWrong) {
   expect_message(std::string("\xFF\xFEt\0i\0", 6), "data.csv:1:1: ", "no torque column");
   expect_message("speed_rpm,torque_N_m\n30,1e300\n", "data.csv:2:2: ", "unit");
   expect_message("speed_rpm,torque_N_m\n1e9,1\n", "data.csv:2:1: ", "unit");
+  expect_message("speed_rpm,torque_N_m\n10,1e-300\n20,2e-300\n", "data.csv:2:2: ", "below 1e-12 N.m");
+  expect_message("shear_rate_1_per_s,shear_stress_Pa\n1,1e-10\n2,2e-10\n", "data.csv:2:2: ", "below 1e-9 Pa");
+  expect_message("shear_rate_1_per_s,shear_stress_Pa\n1,1\n2,1e12\n", "data.csv:3:2: ", "above 1e9 Pa");
   EXPECT_THROW(read_torque_record("/nonexistent/data.csv"), RecordError);
   EXPECT_THROW(read_torque_record("/"), RecordError);
 }

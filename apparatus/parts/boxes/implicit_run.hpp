@@ -31,14 +31,9 @@ StepSettings step_settings(const Scene& scene) {
   return settings;
 }
 
-/// The longest step: the films on the column's walls drain ever more slowly, so may the steps go. In space
-/// gravity acts where the surface is at a step's start (libmpm/implicit/free_surface.hpp), and they do not
-/// grow.
-template <class Geometry>
-double longest_dt(const Scene& scene, double time) {
-  const double shortest = StepSettings{}.dt_max;
-  return scene.model.step_scale *
-         (Geometry::dim == 3 ? shortest : std::clamp(share_of_time * time, shortest, longest_step));
+/// The longest step: the films on the column's walls drain ever more slowly, so may the steps go.
+inline double longest_dt(const Scene& scene, double time) {
+  return scene.model.step_scale * std::clamp(share_of_time * time, StepSettings{}.dt_max, longest_step);
 }
 
 template <class Geometry>
@@ -82,7 +77,7 @@ Outcome run_in(const Scene& scene, const scene::Observer& observer, ProgressText
           [&] {
             const double left = scene.duration - body.time;
             settings.dt_max =
-                std::min(longest_dt<Geometry>(scene, body.time), experiment::without_sliver(left, body.dt));
+                std::min(longest_dt(scene, body.time), experiment::without_sliver(left, body.dt));
             settings.fixed_dt = experiment::fixed_step(scene.model, left);
             body.grid.sheets = walls_inside<Geometry>(scene, body.grid.axes[0], body.time);
           },

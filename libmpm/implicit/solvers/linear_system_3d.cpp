@@ -151,7 +151,7 @@ void MatrixFreeSystem::multiply(const YieldProblem<ThreeD>& problem, const Eigen
         free_diagonal_.segment<4>(4 * i).cwiseProduct(x.segment<4>(4 * i)) +
         free_.segment<4>(4 * i).cwiseProduct(batches.reduction().sum_at<float, 4>(i, forces));
   });
-  if (!problem.bound.empty() || !problem.bars.empty()) {
+  if (!problem.bound.empty() || !problem.surface.empty() || !problem.bars.empty()) {
     for (const auto& terms : problem.points()) add_penalty_products(terms, problem.grid.cell_nodes, x, out);
     for_each_block(out.size(), [&](Eigen::Index i, Eigen::Index size) {
       out.segment(i, size) = out.segment(i, size).cwiseProduct(free_.segment(i, size));
