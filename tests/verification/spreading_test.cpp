@@ -25,8 +25,8 @@ TEST(Lubrication, FollowsHuppert) {
   EXPECT_NEAR(layer.front() / huppert_radius(V, nu, fluid.g, 100.0), 1.0, 0.01);
 }
 
-// ...and the published curve for tau_0 = 10 Pa from a cone that is gone at once. 1 %: how the cone's slope
-// starts is not.
+// ...and the published curve for tau_0 = 10 Pa from a cone that is gone at once. 3 %: in which layers the published run cuts the cone
+// is not stated.
 TEST(Lubrication, PublishedCurve) {
   const Fluid fluid{2400.0, 9.81, 10.0, 35.8};
   Layer layer{2e-3, std::vector<double>(220, 0.0)};
