@@ -174,7 +174,13 @@ std::string words_of(const Test& test) {
   return words;
 }
 
-/// [[measured]] or [[forecast]]: readings, and keys of [test] or of another section by their dotted name.
+/// A key of [test], of another section by its dotted name, or a section taken from a file; the concrete is what is sought.
+std::string full_key(const std::string& key) {
+  const bool is_full = key.find('.') != std::string::npos || (key != "mix" && scene::may_be_named(key));
+  return is_full ? key : "test." + key;
+}
+
+/// [[measured]] or [[forecast]]: readings, and keys of the test (full_key).
 Test read_test(const Node& node, const std::string& label, bool measured) {
   Test test{label, {}, {}, {}, {}};
   const Node* apparatus = scene::find(node, "apparatus");
@@ -184,8 +190,7 @@ Test read_test(const Node& node, const std::string& label, bool measured) {
     complain(*apparatus, "apparatus", "must be " + measuring_apparatus());
   for (const auto& [key, value] : table_of(node, label)) {
     if (key == "apparatus" || is_reading(key, test.apparatus)) continue;
-    const std::string full = key.find('.') == std::string::npos ? "test." + key : key;
-    test.overrides.push_back(full + "=" + override_text(value, key));
+    test.overrides.push_back(full_key(key) + "=" + override_text(value, key));
   }
   test.words = words_of(test);
   if (comes_to_rest(test.apparatus) && !scene::find(node, "duration") && !scene::find(node, "test.duration"))

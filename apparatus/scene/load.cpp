@@ -202,6 +202,11 @@ fs::path data_of_installation() {
 
 }  // namespace
 
+bool may_be_named(const std::string& section) {
+  return std::any_of(std::begin(from_files), std::end(from_files),
+                     [&](const FromFile& from) { return section == from.section; });
+}
+
 Section top_section(const ApparatusKeys& apparatus) {
   std::vector<std::string> presets;
   for (const auto& preset : apparatus.presets) presets.push_back(preset.name);

@@ -41,6 +41,9 @@ Section top_section(const ApparatusKeys& apparatus);
 /// folder that it was configured to be installed in.
 std::vector<std::filesystem::path> data_folders();
 
+/// Whether a scene may take the section whole from such a file by a name: `cone = "haegermann"`.
+bool may_be_named(const std::string& section);
+
 /// The names of the files in a folder of reference_data: those that `mix = "…"` ("mixes"), `cone`, `funnel` may have.
 std::vector<std::string> names_in(const std::string& data_folder);
 /// The names that `mix = "…"` may have.

@@ -53,6 +53,37 @@ TEST(Calibrate, FindsTheMixOfADirectRun) {
             0);
 }
 
+// A mini cone by its name, from a direct run of 30 Pa; the slump flow that follows is within the forecast's interval.
+TEST(Calibrate, TakesAConeByItsName) {
+  const test::TemporaryFolder folder;
+  const std::string tremie = "'" TREMIE_PROGRAM "' ";
+  const auto direct = [&](const std::string& cone) {
+    test::shell(tremie + "new slump_flow > s.toml", folder.path());
+    const auto run = test::shell(
+        tremie + "run s.toml --force --quiet --out r --set mix.yield_stress=30Pa --set cone=" + cone +
+            " --set test.duration=100000s",
+        folder.path());
+    EXPECT_EQ(run.code, 0) << run.text;
+    return nlohmann::json::parse(test::read_file(folder / "r/summary.json"))["results"]["spread_mm"]
+        .get<double>();
+  };
+  const double mini = direct("haegermann"), full = direct("abrams");
+  test::write_file(
+      folder / "LAB.toml",
+      "[[measured]]\napparatus = \"slump_flow\"\ncone = \"haegermann\"\nspread = \"" + std::to_string(mini) +
+          " mm\"\nspread_error = \"3 mm\"\n[unknown]\n\"mix.yield_stress\" = [\"10 Pa\", \"100 "
+          "Pa\"]\n[known]\n"
+          "\"mix.plastic_viscosity\" = \"35.8 Pa.s\"\n[[forecast]]\napparatus = \"slump_flow\"\ncone = "
+          "\"abrams\"\n");
+  const auto result = test::shell(tremie + "calibrate LAB.toml --out cal", folder.path());
+  ASSERT_EQ(result.code, 0) << result.text;
+  const auto results = nlohmann::json::parse(test::read_file(folder / "cal/summary.json"))["results"];
+  const auto& p = results["parameters"]["mix.yield_stress"];
+  EXPECT_LT(p["ci95"][0], 30.0);
+  EXPECT_GT(p["ci95"][1], 30.0);
+  std::printf("%s full %g\n", results.dump().c_str(), full);
+}
+
 // The table of tremie estimate is of the same scene, so that both must say the same of one slump flow: the ends of their
 // intervals differ by less than 0.15 of the interval (emulator, table, the quadratures, and the error of the cells, which calibrate
 // adds).
