@@ -32,18 +32,19 @@ set grid lc "#dddddd"
 set output "validation.svg"
 set multiplot layout 1,2
 table(pattern) = sprintf("< grep '%s' ../../tests/verification/validation.csv | sed 's/\"[^\"]*\"/text/g'", pattern)
-set key below vertical maxrows 9 reverse Left
+set key below vertical maxrows 10 reverse Left
 set xlabel "measured / mm" offset 0, 0.6
 set ylabel "predicted / mm"
 set xrange [0:700]
 set yrange [0:700]
 plot x with lines lc 8 dt 2 title "predicted as measured", \
      table("fresh, no slip") using 4:6:5:7 with xyerrorbars pt 7 lc 1 title "spread, fresh, no slip", \
-     table("rested, no slip") using 4:6:5:7 with xyerrorbars pt 5 lc 7 title "240 s of rest, no slip, α = 0.01", \
+     table("rested, no slip.,") using 4:6:5:7 with xyerrorbars pt 5 lc 7 title "240 s of rest, no slip, α = 0.01", \
+     table("rested, no slip, default") using 4:6:5:7 with xyerrorbars pt 13 lc 6 title "240 s of rest, no slip, a = 0.1 (default)", \
      table("fresh, friction") using 4:6:5:7 with xyerrorbars pt 6 lc 1 title "spread, fresh, friction", \
      table("rested, friction") using 4:6:5:7 with xyerrorbars pt 4 lc 7 title "240 s of rest, friction, α = 0.01", \
      table("^sliding.*fresh") using 4:6:5 with xerrorbars pt 9 lc 2 title "fresh, sliding floor of the other two", \
-     table("^sliding.*rested") using 4:6:5 with xerrorbars pt 8 lc 2 title "240 s, the same, a = 0.1", \
+     table("^sliding.*rested") using 4:6:5 with xerrorbars pt 8 lc 2 title "240 s of rest, the same floor, a = 0.1", \
      table("^slump") using 4:6:5:7 with xyerrorbars pt 2 lc rgb "#888888" title "slump: a correlation, no measurement"
 set xlabel "measured / Pa" offset 0, 0.6
 set ylabel "predicted / Pa"
