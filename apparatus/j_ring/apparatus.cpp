@@ -108,6 +108,28 @@ std::string no_blocking(const View& v) {
                         : "not known: a run did not come to its end";
 }
 
+/// Bars of 18 mm on a circle of 300 mm: 12 for PJ1, 16 for PJ2.
+bool is_en(const cone::Ring& ring) {
+  const auto is = [](double x, double y) { return std::abs(x - y) < 1.001e-3; };
+  return (ring.bars == 12 || ring.bars == 16) && is(ring.bar_diameter, 0.018) && is(ring.diameter, 0.3);
+}
+
+/// EN 206's class of passing ability: a blocking step of at most 10 mm. The ring of 16 bars of 16 mm is ASTM's.
+std::string class_of(const View& v) {
+  constexpr double most = 0.0105;  // read to whole millimetres
+  const cone::Ring& ring = *v.scene.ring;
+  if (v.status != Status::completed || !is_en(ring) || !cone::is_abrams(v.scene.cone, true) ||
+      v.r.step >= most)
+    return "";
+  return ring.bars == 12 ? "PJ1" : "PJ2";
+}
+
+std::string no_class(const View& v) {
+  return is_en(*v.scene.ring) && cone::is_abrams(v.scene.cone, true)
+             ? "none: the step is more than 10 mm"
+             : "none: ring or cone are not those of EN 12350-12";
+}
+
 const std::vector<Reading<View>>& readings() {
   using V = const View&;
   using S = const cone::Sample&;
@@ -116,14 +138,19 @@ const std::vector<Reading<View>>& readings() {
       Rows<View>{cone::spread_row<View>(),
                  cone::t500_row<View>(),
                  {.name = "step_mm",
-                  .words = "step, mean height inside the ring less that over 50 mm outside of it",
+                  .words = "blocking step: height at the centre less that outside of the bars (EN 12350-12)",
                   .value = [](V v) { return number(v.r.step, mm); },
-                  .label = "step",
+                  .label = "blocking step",
                   .digits = 1,
-                  .answer = [](V) { return std::optional<std::string>("step"); },
+                  .answer = [](V) { return std::optional<std::string>("blocking step"); },
                   .headline = 2,
                   .headline_digits = 1,
                   .measurable = true},
+                 {.name = "class_en206_pj",
+                  .words = "passing ability class PJ1 or PJ2 (EN 206), without stones",
+                  .value = [](V v) { return word_or_null(class_of(v)); },
+                  .label = "class",
+                  .none = no_class},
                  {.name = "spread_lost_mm",
                   .words = "spread without the ring less that with it",
                   .value = [](V v) { return number(spread_lost(v), mm); },

@@ -56,6 +56,23 @@ TEST(JRing, TakesNothingFromConcreteThatDoesNotReachIt) {
   EXPECT_EQ(result(stiff, "spread_lost_mm"), 0.0);
 }
 
+// EN 206: PJ1 with 12 bars, PJ2 with 16, up to a blocking step of 10 mm; a concrete that stands at the centre has none.
+TEST(JRing, EnClassesTheStep) {
+  const auto class_of = [](const scene::Outcome& outcome) {
+    return *scene::find_result(outcome, "class_en206_pj");
+  };
+  const auto is = [&](const scene::Outcome& outcome, const char* name) {
+    if (result(outcome, "step_mm") < 10.5)
+      EXPECT_EQ(std::get<std::string>(class_of(outcome)), name);
+    else
+      EXPECT_TRUE(std::holds_alternative<std::monostate>(class_of(outcome)));
+  };
+  is(with_ring("en"), "PJ2"), is(with_ring("en_wide"), "PJ1");
+  EXPECT_LT(result(with_ring("en_wide"), "step_mm"), result(with_ring("en"), "step_mm"));
+  EXPECT_TRUE(std::holds_alternative<std::monostate>(class_of(with_ring("astm"))));
+  EXPECT_TRUE(std::holds_alternative<std::monostate>(class_of(run("j_ring", {"mix.yield_stress=3 kPa"}))));
+}
+
 // Limits of 25 and 50 mm, for its own ring alone.
 TEST(JRing, AstmAssessesTheSpreadThatIsLost) {
   const auto word = [](const scene::Outcome& outcome) {

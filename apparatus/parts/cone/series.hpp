@@ -60,7 +60,9 @@ inline void read_results(const Scene& scene, std::optional<double> stopped_at, O
   if (is_abrams(scene.cone, true)) r.t500 = time_to_spread(outcome.series, standard_t500);
 }
 
-inline constexpr double beside_the_ring = 0.05;  ///< as far beyond the bars heights are read [m]
+/// Where the heights of the step are read: this far around the axis, and this far beyond the bars [m]. A laboratory reads
+/// them at points; two of the default cells are needed.
+inline constexpr double at_the_centre = 0.05, beside_the_ring = 0.03;
 
 /// Mean height of the concrete between two distances from the axis [m].
 inline double mean_height(const Scene& scene, const Points<3>& points, double inner, double outer) {
@@ -71,11 +73,11 @@ inline double mean_height(const Scene& scene, const Points<3>& points, double in
   return (is_quarter(scene) ? 4.0 : 1.0) * volume / (std::numbers::pi * (outer * outer - inner * inner));
 }
 
-/// Mean height inside the ring less that over the 50 mm outside of it [m].
+/// The blocking step of EN 12350-12: height at the centre less that outside of the bars [m].
 inline double step_at_the_ring(const Scene& scene, const Points<3>& points) {
-  const double middle = 0.5 * scene.ring->diameter, half = 0.5 * scene.ring->bar_diameter;
-  return mean_height(scene, points, 0.0, middle - half) -
-         mean_height(scene, points, middle + half, middle + half + beside_the_ring);
+  const double bars = 0.5 * (scene.ring->diameter + scene.ring->bar_diameter);
+  return mean_height(scene, points, 0.0, at_the_centre) -
+         mean_height(scene, points, bars, bars + beside_the_ring);
 }
 
 /// The next line of the series; the share of the concrete that went through a low cone's wall is kept.
