@@ -46,7 +46,8 @@ Section paper_mixes(const Settings& settings) {
   Section section{
       "mixes", "Mixes A to C, fresh and after 240 s",
       "Every value as the paper (Wilkes, Kumar and Biscontin) prints it, its kinetics included; in the "
-      "last three rows Tremie's default kinetics. Cone at 15 cm/s. Nothing is fitted."};
+      "last three rows Tremie's default kinetics. Cone at 15 cm/s. Their rate exponent was chosen with these "
+      "losses in view; nothing else is fitted."};
   std::vector<Ask> asked;
   const std::vector<std::string> as_printed{"mix.thixotropy.kinetics=gated"};
   for (const Floor& floor : {Floor{"no slip", false}, Floor{"friction", true}})
