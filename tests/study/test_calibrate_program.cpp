@@ -81,7 +81,9 @@ TEST(Calibrate, TakesAConeByItsName) {
   const auto& p = results["parameters"]["mix.yield_stress"];
   EXPECT_LT(p["ci95"][0], 30.0);
   EXPECT_GT(p["ci95"][1], 30.0);
-  std::printf("%s full %g\n", results.dump().c_str(), full);
+  const auto& forecast = results["forecast"][0]["spread_mm"]["ci95"];
+  EXPECT_LT(forecast[0], full);
+  EXPECT_GT(forecast[1], full);
 }
 
 // The table of tremie estimate is of the same scene, so that both must say the same of one slump flow: the ends of their
