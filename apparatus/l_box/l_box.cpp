@@ -13,7 +13,7 @@ namespace {
 
 /// In space a thin bed of a fluid mix may level beyond what its yield stress lets it, on cells with few points or a quarter as
 /// large as it is deep, or stop before cells that fast flow left half full have been mended (bars.md): the drop is 0.99 times what
-/// the yield stress holds at 50 Pa and 0.91 at 20 Pa, but 0.52 at 20 Pa on cells of 20 mm, where the ratio is 0.07 too large.
+/// the yield stress holds at 50 Pa and 0.97 at 20 Pa, but 0.52 at 20 Pa on cells of 20 mm, where the ratio is 0.07 too large.
 std::string wrong_level(const boxes::View& j) {
   constexpr double least = 0.6, most = 1.3;
   const Results& r = j.r;
