@@ -88,11 +88,14 @@ std::optional<double> spread_lost(const View& v) {
   return v.plain.results.spread - v.r.spread;
 }
 
-/// ASTM C1621's ring, whose dimensions may be off by 1 mm.
-bool is_astm(const cone::Ring& ring) {
+/// Whether the bars have this diameter and stand on the standards' circle of 300 mm, each to 1 mm.
+bool has_bars_of(double diameter, const cone::Ring& ring) {
   const auto is = [](double x, double y) { return std::abs(x - y) < 1.001e-3; };
-  return ring.bars == 16 && is(ring.bar_diameter, 0.016) && is(ring.diameter, 0.3);
+  return is(ring.bar_diameter, diameter) && is(ring.diameter, 0.3);
 }
+
+/// ASTM C1621's ring.
+bool is_astm(const cone::Ring& ring) { return ring.bars == 16 && has_bars_of(0.016, ring); }
 
 /// The assessment of ASTM C1621 by the spread that is lost.
 std::string blocking_of(const View& v) {
@@ -108,13 +111,12 @@ std::string no_blocking(const View& v) {
                         : "not known: a run did not come to its end";
 }
 
-/// Bars of 18 mm on a circle of 300 mm: 12 for PJ1, 16 for PJ2.
+/// EN 12350-12's rings: 12 bars for PJ1, 16 for PJ2.
 bool is_en(const cone::Ring& ring) {
-  const auto is = [](double x, double y) { return std::abs(x - y) < 1.001e-3; };
-  return (ring.bars == 12 || ring.bars == 16) && is(ring.bar_diameter, 0.018) && is(ring.diameter, 0.3);
+  return (ring.bars == 12 || ring.bars == 16) && has_bars_of(0.018, ring);
 }
 
-/// EN 206's class of passing ability: a blocking step of at most 10 mm. The ring of 16 bars of 16 mm is ASTM's.
+/// EN 206's class of passing ability: a blocking step of at most 10 mm.
 std::string class_of(const View& v) {
   constexpr double most = 0.0105;  // read to whole millimetres
   const cone::Ring& ring = *v.scene.ring;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <numeric>
 
 #include "libmpm/constitutive/constants.hpp"
 #include "rheometer/records/sections.hpp"
@@ -40,9 +39,8 @@ void require_below(const std::vector<double>& column, const NumberTable& table, 
 /// Readings that are all below what any rheometer resolves: their squares would be 0.
 void require_above(const std::vector<double>& column, const NumberTable& table, std::size_t position,
                    double least, const std::string& what, const std::string& name) {
-  const double largest = std::transform_reduce(
-      column.begin(), column.end(), 0.0, [](double a, double b) { return std::max(a, b); },
-      [](double x) { return std::abs(x); });
+  double largest = 0.0;
+  for (double x : column) largest = std::max(largest, std::abs(x));
   if (largest > 0.0 && largest < least)
     throw RecordError(
         at_position(name, table.line.front(), position, what + "; is the header's unit right?"));
