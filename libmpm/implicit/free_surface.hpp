@@ -37,7 +37,12 @@ std::vector<PointTerm<Geometry::dim>> surface_of_pool(const ImplicitBody<Geometr
   double cell = 1.0;
   for (const auto& axis : grid.axes) cell *= axis.h;
   const double area = cell / (grid.axes[up].h * static_cast<double>(places.size()));
-  const auto fill = [&](int c) { return body.quadrature.V_cell[c] / cell; };
+  const auto measure = [&](int c, const Vec<D>& s) {
+    return Geometry::measure(position_in_cell<D>(grid.axes, grid.cell_index[c], s));
+  };
+  const auto fill = [&](int c) {
+    return body.quadrature.V_cell[c] / (cell * measure(c, Vec<D>::Constant(0.5)));
+  };
   for (int c = 0; c < grid.n_cells(); ++c) {
     Index<D> at = grid.cell_index[c];
     if (at[up] != 0) continue;
@@ -55,7 +60,7 @@ std::vector<PointTerm<Geometry::dim>> surface_of_pool(const ImplicitBody<Geometr
       PointTerm<D> point;
       point.cell = top;
       point.N = stencil<D>(grid.axes, grid.cell_index[top], s).N;
-      point.penalty(up, up) = -body.mix.density * body.gravity[up] * area * dt;
+      point.penalty(up, up) = -body.mix.density * body.gravity[up] * area * measure(top, s) * dt;
       surface.push_back(point);
     }
   }
