@@ -25,8 +25,8 @@ inline WallStress in_series(WallStress first, WallStress then, double speed) {
   return {first.yield, (then.yield - first.yield + both * (speed - alone)) / speed};
 }
 
-/// The side walls of a section averaged over the width W. Where the concrete sticks to them, they hold each node with the
-/// yield stress and, for the parabola between two plates, the viscous stress 6 mu v / W on both sides; a layer at the wall
+/// The side walls of a section averaged over the width W. Where the concrete sticks to them, they hold each node with their share
+/// of the yield stress (side_walls.hpp) and, for the parabola between two plates, the viscous stress 6 mu v / W on both sides; a layer at the wall
 /// that slides is in series with that.
 template <class Geometry>
 void add_side_walls(double W, const YieldLaw& law, const WallLaw& wall_law,
@@ -42,7 +42,7 @@ void add_side_walls(double W, const YieldLaw& law, const WallLaw& wall_law,
       for (int i = 0; i < power(3, D); ++i) {
         V[grid.cell_nodes[c][i]] += st.N[i] * problem.quadrature.V[c][k];
         limit[grid.cell_nodes[c][i]] +=
-            st.N[i] * problem.quadrature.V[c][k] * problem.quadrature.tau_y[c][k] * 2.0 / W;
+            st.N[i] * problem.quadrature.V[c][k] * problem.quadrature.wall_yield[c][k] * 2.0 / W;
         if (!mu_V.empty())
           mu_V[grid.cell_nodes[c][i]] += st.N[i] * problem.quadrature.V[c][k] * problem.quadrature.mu[c][k];
       }

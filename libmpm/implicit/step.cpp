@@ -9,6 +9,7 @@
 #include "libmpm/implicit/detached_particles.hpp"
 #include "libmpm/implicit/pose.hpp"
 #include "libmpm/implicit/problem/mixes.hpp"
+#include "libmpm/implicit/problem/side_walls.hpp"
 #include "libmpm/implicit/solve.hpp"
 #include "libmpm/implicit/step_size.hpp"
 #include "libmpm/implicit/update.hpp"
@@ -31,6 +32,12 @@ StepReport step_from_grid(ImplicitBody<Geometry>& body, const YieldLaw& law, con
   lay_out_quadrature<Geometry>(body.grid, body.points, body.mix.tau_0, body.mix.K, body.quadrature,
                                settings.cut_cell_rule, settings.settle_on_floor);
   if (!body.mixes.empty()) lay_out_mixes<Geometry>(body.grid, body.points, body.mixes, body.quadrature);
+  if constexpr (D == 2)
+    if (settings.side_wall_distance > 0.0) {
+      const std::optional<WallStress> layer = wall_stress(settings.wall_law);
+      share_yield_stress<Geometry>(body.grid, body.nodes.v, settings.side_wall_distance,
+                                   layer ? layer->yield : unbounded, body.quadrature);
+    }
   if constexpr (std::is_same_v<Geometry, Axisymmetric>)
     if (settings.alternating_viscosity > 0.0) lay_out_excess<Geometry>(body.grid, body.quadrature);
 

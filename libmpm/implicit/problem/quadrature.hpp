@@ -74,8 +74,9 @@ struct Quadrature {
   std::vector<DivergenceRows> b;                          ///< cell by cell: rows of the mean divergence [1/m]
   CellRows<std::array<DivergenceRows, n_places>, by_kind> slopes;  ///< by kind: the splines' gradients [1/m]
   std::vector<char> full;  ///< in 3D: whether the cell lies inside the body and counts as full
-  std::vector<std::array<double, n_places>> V;      ///< concrete volume of each place [m^3]
-  std::vector<std::array<double, n_places>> tau_y;  ///< yield stress there [Pa]
+  std::vector<std::array<double, n_places>> V;           ///< concrete volume of each place [m^3]
+  std::vector<std::array<double, n_places>> tau_y;       ///< yield stress there [Pa]
+  std::vector<std::array<double, n_places>> wall_yield;  ///< what side walls may hold there [Pa]; empty: none
   std::vector<std::array<double, n_places>> mu;     ///< plastic viscosity there [Pa s]; empty: one everywhere
   std::vector<double> V_cell;                       ///< sum of V [m^3]
   std::vector<double> p;                            ///< pressure at the start of the step [Pa]
