@@ -192,8 +192,8 @@ scene::Outcome run_and_read(const Scene& scene, const RunOptions& options, const
     outcome.remarks.push_back("The concrete did not reach the channel's end: there is no passing ratio.");
   if (scene.model.space == SpaceKind::plane)
     outcome.remarks.push_back(
-        "The box's side walls are left out, which makes the passing ratio too large: 0.73 for 0.56 at 50 Pa, "
-        "0.57 for 0.33 at 75 Pa. model.space = \"plane_with_side_walls\" averages their drag.");
+        "The box's side walls are left out, which makes the passing ratio too large: 0.72 for 0.59 at 50 Pa, "
+        "0.56 for 0.37 at 75 Pa. model.space = \"plane_with_side_walls\" averages their drag.");
   outcome.stage = stage_of(scene);
   outcome.tables = {{"profile.csv", columns_from(profile_columns, raw.results.profile)}};
   outcome.charts = charts_of(scene.mix.thixotropy.has_value());

@@ -27,7 +27,7 @@ inline void visit(Archive& archive, PackedAdmmState& state) { archive(state.batc
 
 template <class Geometry>
 void visit(Archive& archive, AdmmState<Geometry>& state) {
-  archive(state.stress, state.rate);
+  archive(state.stress, state.rate, state.wall_share);
   if constexpr (Geometry::dim == 3) archive(state.packed);
 }
 

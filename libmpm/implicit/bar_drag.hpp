@@ -20,7 +20,8 @@ void add_bar_point(const ImplicitBody<Geometry>& body, const YieldLaw& law, int 
   term.N = stencil<D>(grid.axes, cell, local_coordinates<D>(grid.axes, cell, bar.x)).N;
   double tau_y = 0.0, mu = 0.0, full = Geometry::measure(bar.x);
   for (int k = 0; k < power(2, D); ++k)
-    tau_y += problem.quadrature.tau_y[c][k] / power(2, D), mu += problem.mu_at(c, k) / power(2, D);
+    tau_y += problem.quadrature.yield_of_concrete(c, k) / power(2, D),
+        mu += problem.mu_at(c, k) / power(2, D);
   for (const Axis& axis : grid.axes) full *= axis.h;
   term.scale += (bar_drag_along - 1.0) * bar.axis * bar.axis.transpose();
   term.velocity = bar.velocity;

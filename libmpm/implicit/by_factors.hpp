@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "libmpm/implicit/problem/side_walls.hpp"
 #include "libmpm/implicit/state.hpp"
 
 namespace tremie::detail {
@@ -14,10 +15,12 @@ void carry_over_admm_state(const IndexMap<Geometry::dim>& old_map, const ActiveG
                            AdmmState<Geometry>& admm_state) {
   AdmmState<Geometry> now;
   now.resize(grid.cell_index.size());
+  if (!admm_state.wall_share.empty()) now.wall_share.assign(grid.cell_index.size(), walls_hold_all<Geometry>);
   for (int c = 0; c < grid.n_cells() && !old_map.value.empty(); ++c)
     if (const int old = old_map.at(grid.cell_index[c]); old >= 0) {
       now.stress[c] = admm_state.stress[old];
       now.rate[c] = admm_state.rate[old];
+      if (!now.wall_share.empty()) now.wall_share[c] = admm_state.wall_share[old];
     }
   admm_state = std::move(now);
 }

@@ -36,7 +36,8 @@ StepReport step_from_grid(ImplicitBody<Geometry>& body, const YieldLaw& law, con
     if (settings.side_wall_distance > 0.0) {
       const std::optional<WallStress> layer = wall_stress(settings.wall_law);
       share_yield_stress<Geometry>(body.grid, body.nodes.v, settings.side_wall_distance,
-                                   layer ? layer->yield : unbounded, body.quadrature);
+                                   layer ? layer->yield : unbounded, body.shear_rate,
+                                   body.admm_state.wall_share, body.quadrature);
     }
   if constexpr (std::is_same_v<Geometry, Axisymmetric>)
     if (settings.alternating_viscosity > 0.0) lay_out_excess<Geometry>(body.grid, body.quadrature);

@@ -74,15 +74,21 @@ struct Quadrature {
   std::vector<DivergenceRows> b;                          ///< cell by cell: rows of the mean divergence [1/m]
   CellRows<std::array<DivergenceRows, n_places>, by_kind> slopes;  ///< by kind: the splines' gradients [1/m]
   std::vector<char> full;  ///< in 3D: whether the cell lies inside the body and counts as full
-  std::vector<std::array<double, n_places>> V;           ///< concrete volume of each place [m^3]
-  std::vector<std::array<double, n_places>> tau_y;       ///< yield stress there [Pa]
-  std::vector<std::array<double, n_places>> wall_yield;  ///< what side walls may hold there [Pa]; empty: none
+  std::vector<std::array<double, n_places>> V;      ///< concrete volume of each place [m^3]
+  std::vector<std::array<double, n_places>> tau_y;  ///< yield stress there [Pa]
+  // Between side walls that hold (side_walls.hpp), else empty:
+  std::vector<std::array<double, n_places>>
+      own_yield;  ///< the concrete's, of which tau_y is the plane's share [Pa]
+  std::vector<std::array<double, n_places>> wall_yield;  ///< what the walls may hold there [Pa]
   std::vector<std::array<double, n_places>> mu;     ///< plastic viscosity there [Pa s]; empty: one everywhere
   std::vector<double> V_cell;                       ///< sum of V [m^3]
   std::vector<double> p;                            ///< pressure at the start of the step [Pa]
   std::vector<std::array<Vec<D>, n_places>> place;  ///< local coordinates of the places, in a section
   /// Rows of how the divergence at each place differs from its cell's mean [1/m]; empty where nothing asks for it.
   std::vector<std::array<DivergenceRows, n_places>> excess;
+
+  /// The concrete's yield stress at a place [Pa].
+  double yield_of_concrete(int c, int k) const { return own_yield.empty() ? tau_y[c][k] : own_yield[c][k]; }
 
   void resize(std::size_t n) {
     B.resize(n), resize_for_overwrite(V, n), resize_for_overwrite(tau_y, n), resize_for_overwrite(V_cell, n),

@@ -18,6 +18,7 @@
 
 #include "libmpm/boundary/wall_law.hpp"
 #include "libmpm/implicit/problem/quadrature.hpp"
+#include "libmpm/implicit/solvers/admm.hpp"
 
 namespace tremie::detail {
 
@@ -49,16 +50,27 @@ inline double share_of_walls(double R) {
   return std::lerp(table[i], table[i + 1], at - i);
 }
 
-/// Of shear in the plane and towards the walls [1/s]: far below it, as at rest, the walls hold the whole yield stress.
-inline constexpr double rate_without_flow = 1e-4;
+/// The walls' share at the places of a cell that has not flowed: all.
+template <class Geometry>
+inline constexpr std::array<double, power(2, Geometry::dim)> walls_hold_all = [] {
+  std::array<double, power(2, Geometry::dim)> all{};
+  all.fill(1.0);
+  return all;
+}();
 
-/// Shares out the yield stress at every place by the velocities v of the nodes before the step. `most`: what the walls' own
-/// layer can hold [Pa].
+/// Shares out the yield stress at every place by the velocities v of the nodes before the step. What is at rest
+/// (AdmmSettings::rate_at_rest) keeps its share, and so does all of a body whose mean shear rate has fallen below it, or it would
+/// go on creeping from one share to the next. `most`: what the walls' own layer can hold [Pa].
 template <class Geometry>
 void share_yield_stress(const ActiveGrid<Geometry::dim>& grid, const std::vector<Vec<Geometry::dim>>& v,
-                        double W, double most, Quadrature<Geometry>& quadrature) {
+                        double W, double most, double mean_rate,
+                        std::vector<std::array<double, power(2, Geometry::dim)>>& wall_share,
+                        Quadrature<Geometry>& quadrature) {
   constexpr int D = Geometry::dim;
-  quadrature.wall_yield = quadrature.tau_y;
+  constexpr double at_rest = AdmmSettings{}.rate_at_rest;
+  const bool flows = mean_rate > at_rest;
+  if (wall_share.empty()) wall_share.assign(grid.cell_index.size(), walls_hold_all<Geometry>);
+  quadrature.own_yield = quadrature.wall_yield = quadrature.tau_y;
 #pragma omp parallel for schedule(static)
   for (int c = 0; c < grid.n_cells(); ++c)
     for (int k = 0; k < power(2, D); ++k) {
@@ -69,9 +81,10 @@ void share_yield_stress(const ActiveGrid<Geometry::dim>& grid, const std::vector
         const Vec<D>& v_i = v[grid.cell_nodes[c][i]];
         q += quadrature.B[c][k][i] * v_i, u += st.N[i] * v_i;
       }
-      double& tau_y = quadrature.tau_y[c][k];
-      const double s =
-          share_of_walls((2.0 * u.norm() / W + rate_without_flow) / (q.norm() + rate_without_flow));
+      const double gamma_dot = q.norm(), along = 2.0 * u.norm() / W;
+      double &tau_y = quadrature.tau_y[c][k], &s = wall_share[c][k];
+      if (flows && std::max(gamma_dot, along) > at_rest)
+        s = share_of_walls(along / std::max(gamma_dot, 1e-12));
       quadrature.wall_yield[c][k] = s * tau_y;
       tau_y *= share_of_plane(std::min(s, most / std::max(tau_y, 1e-12)));
     }

@@ -40,6 +40,8 @@ struct AdmmState {
   static constexpr int n = power(2, Geometry::dim);
   std::vector<std::array<Strain, n>> stress;  ///< [Pa]
   std::vector<std::array<Strain, n>> rate;    ///< [1/s]
+  /// What side walls hold of the yield stress (side_walls.hpp); empty: there are none.
+  std::vector<std::array<double, n>> wall_share;
   std::conditional_t<Geometry::dim == 3, PackedAdmmState, Nothing> packed;
 
   /// Of so many cells, without stress.
