@@ -19,7 +19,8 @@ class RestProfile : public testing::TestWithParam<std::pair<double, bool>> {};  
 // What is left are drops (a station of two cells scatters by 2 %) and the normal stress of the plug, 1 %.
 // Nearer to the gate the films fall from the column's walls: no higher than a bed of this yield stress bears,
 // to within a row of points. Those of the front wall fall into the column, and on these cells they are too thick: H1, and
-// with it the ratio, is up to 6 % off, H2 is not.
+// with it the ratio, is up to 6 % off, H2 is not. Side walls leave at least pi/4 of its yield stress to the plane, which the
+// closed form has whole: where the floor holds half of the drop, a tenth of the drop of 8 mm at 15 Pa, 1 % of H2 more.
 TEST_P(RestProfile, IsTheClosedForms) {
   const auto [tau_0, side_walls] = GetParam();
   const auto scene = on_coarse_cells(tau_0, side_walls);
@@ -32,7 +33,7 @@ TEST_P(RestProfile, IsTheClosedForms) {
       ratio);
   EXPECT_LE(error.worst, 0.04);
   EXPECT_NEAR(passing / ratio, 1.0, 0.07);
-  EXPECT_NEAR(outcome.results.h2.value_or(0.0) / form.depth(form.end - 0.05), 1.0, 0.03);
+  EXPECT_NEAR(outcome.results.h2.value_or(0.0) / form.depth(form.end - 0.05), 1.0, side_walls ? 0.04 : 0.03);
   EXPECT_LE(heap, lbox_reference::heap_that_is_borne(tau_0) + 0.005);
   EXPECT_GE(heap, -0.005);
   EXPECT_LE(std::abs(outcome.checks.volume_change), 0.002);
