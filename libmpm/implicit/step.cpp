@@ -34,10 +34,13 @@ StepReport step_from_grid(ImplicitBody<Geometry>& body, const YieldLaw& law, con
   if (!body.mixes.empty()) lay_out_mixes<Geometry>(body.grid, body.points, body.mixes, body.quadrature);
   if constexpr (D == 2)
     if (settings.side_wall_distance > 0.0) {
+      // What is at rest keeps its shares, and so does all of a body that is so in the mean, or it would go on creeping from
+      // one share to the next.
+      const double at_rest = settings.admm.rate_at_rest;
       const std::optional<WallStress> layer = wall_stress(settings.wall_law);
-      share_yield_stress<Geometry>(body.grid, body.nodes.v, settings.side_wall_distance,
-                                   layer ? layer->yield : unbounded, body.shear_rate,
-                                   body.admm_state.wall_share, body.quadrature);
+      share_yield_stress<Geometry>(
+          body.grid, body.nodes.v, settings.side_wall_distance, layer ? layer->yield : unbounded,
+          body.shear_rate > at_rest ? at_rest : unbounded, body.admm_state.wall_share, body.quadrature);
     }
   if constexpr (std::is_same_v<Geometry, Axisymmetric>)
     if (settings.alternating_viscosity > 0.0) lay_out_excess<Geometry>(body.grid, body.quadrature);

@@ -18,7 +18,6 @@
 
 #include "libmpm/boundary/wall_law.hpp"
 #include "libmpm/implicit/problem/quadrature.hpp"
-#include "libmpm/implicit/solvers/admm.hpp"
 
 namespace tremie::detail {
 
@@ -58,17 +57,14 @@ inline constexpr std::array<double, power(2, Geometry::dim)> walls_hold_all = []
   return all;
 }();
 
-/// Shares out the yield stress at every place by the velocities v of the nodes before the step. What is at rest
-/// (AdmmSettings::rate_at_rest) keeps its share, and so does all of a body whose mean shear rate has fallen below it, or it would
-/// go on creeping from one share to the next. `most`: what the walls' own layer can hold [Pa].
+/// Shares out the yield stress at every place by the velocities v of the nodes before the step. A place keeps its share where it
+/// neither shears nor moves along the walls faster than `renewed_from` [1/s]. `most`: what the walls' own layer can hold [Pa].
 template <class Geometry>
 void share_yield_stress(const ActiveGrid<Geometry::dim>& grid, const std::vector<Vec<Geometry::dim>>& v,
-                        double W, double most, double mean_rate,
+                        double W, double most, double renewed_from,
                         std::vector<std::array<double, power(2, Geometry::dim)>>& wall_share,
                         Quadrature<Geometry>& quadrature) {
   constexpr int D = Geometry::dim;
-  constexpr double at_rest = AdmmSettings{}.rate_at_rest;
-  const bool flows = mean_rate > at_rest;
   if (wall_share.empty()) wall_share.assign(grid.cell_index.size(), walls_hold_all<Geometry>);
   quadrature.own_yield = quadrature.wall_yield = quadrature.tau_y;
 #pragma omp parallel for schedule(static)
@@ -83,8 +79,7 @@ void share_yield_stress(const ActiveGrid<Geometry::dim>& grid, const std::vector
       }
       const double gamma_dot = q.norm(), along = 2.0 * u.norm() / W;
       double &tau_y = quadrature.tau_y[c][k], &s = wall_share[c][k];
-      if (flows && std::max(gamma_dot, along) > at_rest)
-        s = share_of_walls(along / std::max(gamma_dot, 1e-12));
+      if (std::max(gamma_dot, along) > renewed_from) s = share_of_walls(along / std::max(gamma_dot, 1e-12));
       quadrature.wall_yield[c][k] = s * tau_y;
       tau_y *= share_of_plane(std::min(s, most / std::max(tau_y, 1e-12)));
     }
