@@ -12,8 +12,8 @@ namespace tremie::l_box {
 namespace {
 
 /// In space a thin bed of a fluid mix may level beyond what its yield stress lets it, on cells with few points or a quarter as
-/// large as it is deep, or stop before cells that fast flow left half full have been mended (bars.md): the drop is 0.99 times what
-/// the yield stress holds at 50 Pa and 0.97 at 20 Pa, but 0.52 at 20 Pa on cells of 20 mm, where the ratio is 0.07 too large. An
+/// large as it is deep, or stop before cells that fast flow left half full have been mended (bars.md): the drop is 1.0 times what
+/// the yield stress holds at 50 Pa and 1.1 at 20 Pa, but 0.52 at 20 Pa on cells of 20 mm, where the ratio is 0.07 too large. An
 /// error of the ratio below 0.05 is none: the drop of 10 Pa is 7 mm, and a reading errs by 1 mm.
 std::string wrong_level(const boxes::View& j) {
   constexpr double least = 0.6, most = 1.3, in_ratio = 0.05;

@@ -26,8 +26,8 @@ inline WallStress in_series(WallStress first, WallStress then, double speed) {
 }
 
 /// The side walls of a section averaged over the width W. Where the concrete sticks to them, they hold each node with their share
-/// of the yield stress (side_walls.hpp) and, for the parabola between two plates, the viscous stress 6 mu v / W on both sides; a layer at the wall
-/// that slides is in series with that.
+/// of the yield stress (side_walls.hpp) and, for the parabola between two plates, the viscous stress 6 mu v / W on both sides; a
+/// layer at the wall that slides is in series with that.
 template <class Geometry>
 void add_side_walls(double W, const YieldLaw& law, const WallLaw& wall_law,
                     const std::vector<Vec<Geometry::dim>>& v, YieldProblem<Geometry>& problem) {
