@@ -111,11 +111,14 @@ std::string judged(const cone::View& v) {
 
 /// Why a spread may differ from the measured one although the computation is right.
 constexpr const char* why_it_may_differ =
-    "A difference from a measured spread beyond the error of the computation lies in what went in: yield "
-    "stress and viscosity come from a rheometer, and instruments differ by factors; the destructuration α "
-    "says how much of what built up at rest survives the lift, and one value for all concretes is a guess; "
-    "the plate may hold the concrete or let it slip (floor.contact). tremie calibrate looks for the values "
-    "that meet the measurements.";
+    "Where a spread differs from the measured one by more than the error of the computation, the scene's "
+    "values "
+    "are the likely cause. Yield stress and viscosity come from a rheometer, and instruments differ by a "
+    "quarter "
+    "and more. After a rest the rate of breakdown decides: measure it on your own concrete. The plate may "
+    "hold "
+    "the concrete or let it slide (floor.contact). tremie calibrate finds the values that meet the "
+    "measurements.";
 
 /// Whether t500, or that there is none, hangs on the last millimetres: below 514 mm estimates from a t500 end too.
 bool near_500(const cone::Scene& scene, const Results& r) {

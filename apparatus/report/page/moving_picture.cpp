@@ -169,7 +169,7 @@ function fill(c,f,k,css,h,X,Y,scale){
 const g=2,W=Math.ceil(css/g),H=Math.ceil(h/g),far=1e9,d2=new Float32Array(W*H).fill(far),shade=new Uint8Array(W*H),sides=m.mirrored?[1,-1]:[1];
 const q=Math.max(g,Math.sqrt((bx1-bx0)*(y1-y0)/f.n)*scale*1.5),seen=new Set();
 for(let i=0;i<f.n;i++)seen.add(Math.floor(X(f.x[i])/q)*8192+Math.floor(Y(f.y[i])/q));
-const space=Math.sqrt(seen.size/f.n)*q,R=Math.min(m.full?40:24,Math.max(3,(m.full?5:2.5)*space))/g,back=m.full?-1:Math.max(0,R-.55*space/g);
+const space=Math.sqrt(seen.size/f.n)*q,R=Math.min((m.full?40:24)*Math.min(1,css/800),Math.max(3,(m.full?5:2.5)*space))/g,back=m.full?-1:Math.max(0,R-.55*space/g);
 for(let i=0;i<f.n;i++)for(const s of sides){const x=X(s*f.x[i])/g,y=Y(f.y[i])/g,col=f.shade.length?f.shade[k*f.n+i]:0;
 for(let b=Math.max(0,Math.ceil(y-.5-R));b<=Math.min(H-1,y-.5+R);b++)for(let a=Math.max(0,Math.ceil(x-.5-R));a<=Math.min(W-1,x-.5+R);a++){
 const d=(a+.5-x)*(a+.5-x)+(b+.5-y)*(b+.5-y),at=b*W+a;if(d<=R*R&&d<d2[at]){d2[at]=d;shade[at]=col;}}}
