@@ -117,7 +117,8 @@ Schema pile_sections() {
 void check_embedment(const Values& values) {
   const auto embedment = values.numbers("pipe.embedment");
   if (embedment.size() != 2 || embedment[0] >= embedment[1])
-    values.fail("pipe.embedment", "needs the least and the most, like [\"2 m\", \"6 m\"]");
+    values.fail("pipe.embedment",
+                "needs the least and the most, the smaller one first, like [\"2 m\", \"6 m\"]");
   const double most = embedment[1] - embedment[0];
   if (values.number("pipe.pull") > most * (1.0 + 1e-9))
     values.fail("pipe.pull",

@@ -254,6 +254,10 @@ void read_unknowns(const Node& document, Lab& lab) {
   const auto& table = table_of(*unknown, "unknown");
   if (table.empty()) complain(*unknown, "unknown", "needs at least one key");
   const auto schema = schema_of(lab, table);
+  const Node* known = scene::find(document, "known");
+  for (const auto& [key, range] : table)
+    if (known && scene::find(*known, key))
+      complain(range, key, "is in [known], too; allowed: in one of both");
   for (const auto& [key, range] : table)
     lab.unknowns.push_back(study::read_factor(key, range, true, scale_of(range), schema));
 }

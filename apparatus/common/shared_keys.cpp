@@ -104,6 +104,10 @@ void settle_bulk_modulus(Values& values) {
   if (values.given(K) && values.layer(K) == layer)
     values.fail(K, "is given beside youngs_modulus and poisson_ratio; give one or the other");
   if (!values.given(K) || values.layer(K) < layer) {
+    constexpr double most = 1e13;  // of any pressure that a scene gives [Pa]
+    if (const double by_ratio = bulk_modulus(values.number(E), values.number(nu)); by_ratio > most)
+      values.fail(nu,
+                  fmt::format("makes a bulk modulus of {:.3g} Pa; allowed: at most {:g} Pa", by_ratio, most));
     values.set_number(
         K, bulk_modulus(values.number(E), values.number(nu)), layer,
         fmt::format("from youngs_modulus = {} and poisson_ratio = {}",

@@ -120,6 +120,9 @@ void settle_thixotropy(Values& values, bool layer_has_meaning) {
                                           name_of(key.name), key.example));
   });
   check_modes(values);
+  const char *most = "mix.thixotropy.saturation", *at_first = "mix.thixotropy.initial_flocculation";
+  if (values.has(most) && values.number(at_first) > values.number(most))
+    values.fail(at_first, fmt::format("is above saturation; allowed: at most {:g}", values.number(most)));
   if (values.has(layer_key) && !layer_has_meaning)
     values.fail(layer_key,
                 "is a length over which the shear rate varies; allowed in apparatus = \"icar_vane\" alone, "

@@ -205,11 +205,11 @@ fs::path find_work(const fs::path& folder) {
   return {};
 }
 
-void refuse_where_another_goes_on(const fs::path& folder, const fs::path& checkpoint) {
+void refuse_where_another_goes_on(const fs::path& folder, const fs::path& checkpoint, bool longer) {
   const fs::path target = resolved_folder(folder), hidden = hidden_name(target);
   for (const fs::path& part : {target.parent_path() / hidden, target / hidden})
     if (is_staging(part)) refuse_what_another_writes(target, part);
-  if (find_checkpoint(folder) != checkpoint)
+  if (find_checkpoint(folder, longer) != checkpoint)
     refuse_folder(target, "another process has gone on with its run meanwhile");
 }
 

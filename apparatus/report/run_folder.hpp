@@ -71,8 +71,8 @@ std::filesystem::path find_checkpoint(const std::filesystem::path& folder, bool 
 std::filesystem::path find_work(const std::filesystem::path& folder);
 
 /// Throws scene::InputError where another process goes on from this checkpoint, or has done so: what is read of it
-/// meanwhile is not whole.
+/// meanwhile is not whole. `longer` as in find_checkpoint().
 void refuse_where_another_goes_on(const std::filesystem::path& folder,
-                                  const std::filesystem::path& checkpoint);
+                                  const std::filesystem::path& checkpoint, bool longer);
 
 }  // namespace tremie::report

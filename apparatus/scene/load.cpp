@@ -42,8 +42,26 @@ fs::path file_of(const FromFile& from, const std::string& name, const Origin& or
                   describe(origin), from.section, name, did_you_mean(name, known), quoted_list(known)));
 }
 
+/// A line for each key at the top of a file that no apparatus has, with the nearest one.
+std::string unknown_at_top(const Node& document, std::span<const ApparatusKeys> known) {
+  std::vector<std::string> allowed{"apparatus", "schema", "preset"};
+  for (const auto& apparatus : known)
+    for (const Section& section : apparatus.schema) {
+      if (!section.name.empty()) allowed.push_back(section.name.substr(0, section.name.find('.')));
+      for (const Key& key : section.name.empty() ? section.keys : std::vector<Key>{})
+        allowed.push_back(key.name);
+    }
+  std::string lines;
+  for (const Member& member : std::get<Table>(document.value))
+    if (std::find(allowed.begin(), allowed.end(), member.key) == allowed.end())
+      lines += fmt::format("{}: {}: unknown key{}\n", describe(member.node.origin), member.key,
+                           did_you_mean(member.key, allowed));
+  return lines;
+}
+
 /// Replaces `mix = "mix_a"` by that file's [mix], and so on. Returns the files.
-std::vector<fs::path> inline_files(Node& document, const fs::path& scene_folder) {
+std::vector<fs::path> inline_files(Node& document, const fs::path& scene_folder,
+                                   std::span<const ApparatusKeys> known) {
   std::vector<fs::path> files;
   for (const FromFile& from : from_files) {
     Node* section = find(document, from.section);
@@ -55,6 +73,7 @@ std::vector<fs::path> inline_files(Node& document, const fs::path& scene_folder)
     if (!table || !std::holds_alternative<Table>(table->value))
       throw InputError(
           fmt::format("{}:1: {}: missing table [{}]", file.string(), from.section, from.section));
+    if (const std::string unknown = unknown_at_top(text, known); !unknown.empty()) throw InputError(unknown);
     *section = *table;
     files.push_back(file);
   }
@@ -71,7 +90,8 @@ bool is_of_the_concrete(const Override& o) {
 
 /// Lays the command line's values over the scene's. Returns the keys of the concrete among them, "yield_stress,
 /// density"; adds the files that were read.
-std::string apply_overrides(Node& document, const Request& request, std::vector<fs::path>& files) {
+std::string apply_overrides(Node& document, const Request& request, std::span<const ApparatusKeys> known,
+                            std::vector<fs::path>& files) {
   std::vector<Override> overrides;
   std::string of_the_concrete;
   for (const auto& argument : request.overrides) overrides.push_back(parse_override(argument));
@@ -82,7 +102,7 @@ std::string apply_overrides(Node& document, const Request& request, std::vector<
   };
   for (const auto& change : overrides)
     if (names_a_file(change)) put(document, change.path, change.value);
-  files = inline_files(document, request.path.parent_path());
+  files = inline_files(document, request.path.parent_path(), known);
   if (!request.text) files.push_back(request.path);
   for (const auto& change : overrides) {
     if (names_a_file(change)) continue;
@@ -100,23 +120,6 @@ void rename_changed_mix(Values& values, const std::string& changed) {
     return;
   auto [measured_on, first] = values.entries.try_emplace("mix.measured_on", name->second);
   name->second.words = {measured_on->second.words.front() + " with changed " + (first ? changed : "values")};
-}
-
-/// A line for each key at the top of a file that no apparatus has, with the nearest one.
-std::string unknown_at_top(const Node& document, std::span<const ApparatusKeys> known) {
-  std::vector<std::string> allowed{"apparatus", "schema", "preset"};
-  for (const auto& apparatus : known)
-    for (const Section& section : apparatus.schema) {
-      if (!section.name.empty()) allowed.push_back(section.name.substr(0, section.name.find('.')));
-      for (const Key& key : section.name.empty() ? section.keys : std::vector<Key>{})
-        allowed.push_back(key.name);
-    }
-  std::string lines;
-  for (const Member& member : std::get<Table>(document.value))
-    if (std::find(allowed.begin(), allowed.end(), member.key) == allowed.end())
-      lines += fmt::format("{}: {}: unknown key{}\n", describe(member.node.origin), member.key,
-                           did_you_mean(member.key, allowed));
-  return lines;
 }
 
 const ApparatusKeys& apparatus_of(const Node& document, const std::string& file,
@@ -251,7 +254,7 @@ Loaded load(const Request& request, std::span<const ApparatusKeys> known, const 
   Node document = request.text ? parse_text(*request.text, request.path.string(), Layer::scene)
                                : parse_file(request.path);
   std::vector<fs::path> files;
-  const std::string changed = apply_overrides(document, request, files);
+  const std::string changed = apply_overrides(document, request, known, files);
   const ApparatusKeys& apparatus = apparatus_of(document, request.path.string(), known, command);
   const MissingSections missing = missing_mix(document);
   lay_on_preset(document, apparatus);

@@ -113,6 +113,23 @@ void read_results(const Node& document, const scene::Apparatus& apparatus, Defin
   }
 }
 
+/// A key that the base scene has no place for makes every row fail. Some rows may: factors limit each other.
+void refuse_what_never_runs(const Definition& study) {
+  std::string why;
+  for (const double share : {0.5, 0.0, 1.0}) try {
+      std::vector<std::string> overrides;
+      for (const Factor& factor : study.factors)
+        overrides.push_back(factor.key + "=" + level_at(factor, share).text);
+      scene::load({study.base, overrides}, scene::all_keys());
+      return;
+    } catch (const scene::InputError& error) {
+      if (why.empty()) why = error.what();
+    }
+  throw scene::InputError(
+      fmt::format("{}: the base scene takes no row of this study; at the middle of its ranges:\n{}",
+                  study.file.string(), why));
+}
+
 }  // namespace
 
 Definition read_definition(const std::filesystem::path& file) {
@@ -129,6 +146,7 @@ Definition read_definition(const std::filesystem::path& file) {
   const auto base = scene::read(study.base);
   study.resolved_base = base.resolved;
   read_results(document, *base.functions, study);
+  refuse_what_never_runs(study);
   return study;
 }
 

@@ -56,6 +56,10 @@ TEST(LBoxScene, FaultsNameTheKey) {
   EXPECT_TRUE(says(complaint(mix_a, {"test.bars=4"}), {"test.bars", "at most 3"}));
   EXPECT_TRUE(says(complaint(mix_a, {"test.bars=2"}), {"test.bars", "three dimensions", "\"half\""}));
   EXPECT_EQ(complaint(mix_a, {"test.bars=2", "model.space=half"}), "");
+  // Bars of 12 mm stand at least 36 mm apart: 11 diameters for three.
+  EXPECT_TRUE(says(complaint(mix_a, {"test.bars=3", "model.space=half", "box.width=130 mm"}),
+                   {"box.width", "\"0.132 m\""}));
+  EXPECT_EQ(complaint(mix_a, {"test.bars=2", "model.space=half", "box.width=130 mm"}), "");
   EXPECT_TRUE(says(complaint(mix_a, {"test.bars=2", "model.space=half", "model.method=newton"}),
                    {"model.method", "\"auto\""}));
   EXPECT_TRUE(says(complaint(mix_a, {"test.gate_speed=0 m/s"}), {"test.gate_speed", "greater than 0 m/s"}));

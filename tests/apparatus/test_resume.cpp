@@ -37,6 +37,9 @@ class Longer {
   std::map<std::string, std::string> bytes(const std::string& out) const {
     return test::bytes_of(folder_ / out);
   }
+  void add_to(const std::string& file, const std::string& text) const {
+    test::write_file(folder_ / file, test::read_file(folder_ / file) + text);
+  }
 
  private:
   test::Result tremie(const std::string& words) const {
@@ -79,6 +82,12 @@ TEST(Resume, RefusesWhatIsNoLaterEnd) {
   }
   EXPECT_EQ(box.resume("nowhere", "1 s").code, 2);
   EXPECT_TRUE(box.bytes("out") == before);
+  // A scene that was edited is named, and no other process is.
+  box.add_to("out/scene.toml", "# mine\n");
+  const auto edited = box.resume("out", "1 s");
+  EXPECT_EQ(edited.code, 2);
+  EXPECT_NE(edited.text.find("scene.toml"), std::string::npos) << edited.text;
+  EXPECT_EQ(edited.text.find("another process"), std::string::npos) << edited.text;
   const Longer vane("couette");
   vane.run("out", "");
   const auto schedule = vane.resume("out", "10 s");

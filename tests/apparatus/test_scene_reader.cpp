@@ -230,6 +230,11 @@ TEST(SceneReader, Contradictions) {
            {"bad.toml:5: mix.bulk_modulus", "one or the other"}));
   EXPECT_TRUE(
       says(complaint(mix_a + "poisson_ratio = 0.4\n"), {"bad.toml:5: mix.poisson_ratio", "youngs_modulus"}));
+  EXPECT_TRUE(says(complaint(mix_a + "youngs_modulus = \"1 MPa\"\npoisson_ratio = 0.4999999999999999\n"),
+                   {"bad.toml:6: mix.poisson_ratio", "bulk modulus", "1e+13 Pa"}));
+  EXPECT_TRUE(
+      says(complaint(thixotropic, {"mix.thixotropy.saturation=1", "mix.thixotropy.initial_flocculation=5"}),
+           {"initial_flocculation", "at most 1"}));
 }
 
 TEST(SceneReader, EveryProblemIsTold) {
@@ -242,6 +247,13 @@ TEST(SceneReader, FilesThatCannotBeRead) {
   const test::TemporaryFolder folder;
   EXPECT_THROW(read(folder / "none.toml"), InputError);
   EXPECT_THROW(read(folder.path()), InputError);
+  // A table that no scene knows would be lost without a word.
+  test::write_file(folder / "mine.toml",
+                   "[mix]\nyield_stress = \"50 Pa\"\nplastic_viscosity = \"30 "
+                   "Pa.s\"\n[thixotropy]\nstructuration_rate = \"1 Pa/s\"\n");
+  EXPECT_TRUE(
+      says(complaint("apparatus = \"slump_flow\"\nmix = \"" + (folder / "mine.toml").string() + "\"\n"),
+           {"mine.toml:4", "thixotropy: unknown key"}));
   EXPECT_TRUE(says(complaint("apparatus = \"slump_flow\"\nmix = = 3\n"), {"bad.toml:2", "no TOML"}));
 }
 

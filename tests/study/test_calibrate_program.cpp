@@ -53,6 +53,15 @@ TEST(Calibrate, FindsTheMixOfADirectRun) {
             0);
 }
 
+TEST(Calibrate, AKeyIsKnownOrUnknown) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "LAB.toml",
+                   measured("555 mm", "2.56 s") + unknown + "\"mix.yield_stress\" = \"50 Pa\"\n");
+  const auto result = test::shell("'" TREMIE_PROGRAM "' calibrate LAB.toml --out cal", folder.path());
+  EXPECT_EQ(result.code, 2);
+  EXPECT_NE(result.text.find("mix.yield_stress: is in [known], too"), std::string::npos) << result.text;
+}
+
 // A mini cone by its name, from a direct run of 30 Pa; the slump flow that follows is within the forecast's interval.
 TEST(Calibrate, TakesAConeByItsName) {
   const test::TemporaryFolder folder;

@@ -90,6 +90,9 @@ TEST_F(Study, BadInputSaysWhereAndWritesNothing) {
   EXPECT_NE(with("\"20 Pa\"", "20").find("bad.toml:4"), std::string::npos);
   EXPECT_NE(with("\"20 Pa\"", "\"-20 Pa\"").find("out of range"), std::string::npos);
   EXPECT_NE(with("levels", "level").find("nearest: levels"), std::string::npos);
+  EXPECT_NE(with("\"test.rest\"\nvalues = [\"0 s\", \"60 s\"]", "\"floor.coefficient\"\nvalues = [0.3, 0.4]")
+                .find("takes no row"),
+            std::string::npos);
 }
 
 // A process that is killed is a finding of its own; those beside it come home.

@@ -66,7 +66,7 @@ Run run(const Case& c) {
   scene.model.points_per_cell = c.points;
   scene.frame_interval = 20.0;
   Run r;
-  l_box::Observer observer;
+  scene::Observer observer;
   observer.on_frame = [&](const Frame& frame) { r.films.push_back({frame.time, hanging_share(frame)}); };
   const std::clock_t start = std::clock();
   r.outcome = l_box::run(scene, observer);

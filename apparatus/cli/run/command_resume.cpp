@@ -42,7 +42,8 @@ report::Checkpoint checked(const std::string& folder, bool longer) {
   std::error_code error;
   const bool unfinished = !report::find_checkpoint(folder).empty();
   if (!unfinished && !fs::exists(folder, error))
-    throw scene::InputError(fmt::format("{}: there is no such folder", folder));
+    throw scene::InputError(
+        fmt::format("{}: there is no such folder, and no checkpoint of a run to it", folder));
   if (longer && unfinished)
     throw scene::InputError(fmt::format(
         "{0}: holds an unfinished run, and --until is for finished ones: `tremie resume {0}` first", folder));
@@ -57,7 +58,7 @@ report::Checkpoint checked(const std::string& folder, bool longer) {
     check_scene_beside(checkpoint);
     return checkpoint;
   } catch (const scene::InputError&) {
-    report::refuse_where_another_goes_on(folder, at);
+    report::refuse_where_another_goes_on(folder, at, longer);
     throw;
   }
 }

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <memory>
+#include <string>
 
 #include "apparatus/cli/options/command.hpp"
 #include "apparatus/cli/program.hpp"
@@ -114,6 +117,21 @@ std::string csv_of(const ReadRecord& r) {
   return text;
 }
 
+/// Replaces nothing but rows of this command.
+void write_rows(const std::filesystem::path& file, const std::string& rows) {
+  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
+  if (std::filesystem::is_directory(file))
+    throw scene::InputError(fmt::format("--csv: {} is a folder; allowed: a file", file.string()));
+  if (!std::filesystem::is_directory(folder))
+    throw scene::InputError(fmt::format("--csv: there is no folder {}", folder.string()));
+  std::ifstream there(file, std::ios::binary);
+  std::string header;
+  if (there && (!std::getline(there, header) || header != rows.substr(0, rows.find('\n'))))
+    throw scene::InputError(fmt::format(
+        "--csv: {} is there already, and holds no rows of this command: not replaced", file.string()));
+  io::write_text(file, rows);
+}
+
 }  // namespace
 
 void add_command_read(CLI::App& app, int& exit_code) {
@@ -136,7 +154,7 @@ void add_command_read(CLI::App& app, int& exit_code) {
     const ReadRecord record = read(*o);
     print_record(record);
     if (!o->csv.empty()) {
-      io::write_text(o->csv, csv_of(record));
+      write_rows(o->csv, csv_of(record));
       fmt::print("{:<22} {}\n", "written to", o->csv);
     }
     exit_code = 0;
