@@ -84,18 +84,23 @@ def panel(rows, mix, left):
         svg.append(f'<text x="{left + place(tick):.0f}" y="286" text-anchor="middle">{tick}</text>')
         if left < 100:
             svg.append(f'<text x="{left - 6}" y="{274 - place(tick):.0f}" text-anchor="end">{tick}</text>')
-    names = []
-    for rank, r in enumerate(mine):
+    dots = [(left + place(both(r)[0]), 270.0 - place(both(r)[1])) for r in mine]
+    around = [(reach * math.sin(k * math.pi / 6), reach * math.cos(k * math.pi / 6)) for reach in (13, 20, 28, 38, 50) for k in range(12)]
+    names, labels = [], []
+    for rank, (r, (x, y)) in enumerate(zip(mine, dots)):
         pair = "+" in r["tests"]
-        x, y = left + place(both(r)[0]), 270.0 - place(both(r)[1])
         svg.append(f'<circle cx="{x:.0f}" cy="{y:.0f}" r="4" fill="{"#0067a5" if pair else "#fff"}" stroke="#0067a5"/>')
         if pair and rank >= 5:
             continue
-        name, at_x, at_y = "".join(LETTERS[test] for test in r["tests"].split(" + ")), x - 4 if x < left + 200 else x - 14, y + 15
-        while any(abs(at_x - a) < 17 and abs(at_y - b) < 10 for a, b in names):
-            at_y += 10 if y < 200 else -24 if at_y > y else -10
-        names.append((at_x, at_y))
-        svg.append(f'<text x="{at_x:.0f}" y="{at_y:.0f}">{name}</text>')
+        name = "".join(LETTERS[test] for test in r["tests"].split(" + "))
+        free = lambda at: left + 8 < at[0] < left + side - 8 and 48 < at[1] < 262 and all(
+            abs(at[0] - a) > 8 + half or abs(at[1] - b) > 9 for points, half in ((dots, 3), (names, 8)) for a, b in points)
+        at = next((at for at in ((x + dx, y + dy) for dx, dy in around) if free(at)), (x, y + 13))
+        names.append(at)
+        labels.append(f'<path d="M{x:.0f} {y:.0f} L{at[0]:.0f} {at[1]:.0f}" stroke="#999" stroke-width="0.6"/>'
+                      f'<text x="{at[0]:.0f}" y="{at[1] + 3.5:.0f}" text-anchor="middle" stroke="#fff" stroke-width="3" '
+                      f'paint-order="stroke">{name}</text>')
+    svg += labels
     svg.append(f'<text x="{left + side / 2}" y="304" text-anchor="middle">error of the yield stress (%)</text>')
     return svg
 
