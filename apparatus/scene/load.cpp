@@ -73,7 +73,8 @@ std::vector<fs::path> inline_files(Node& document, const fs::path& scene_folder,
     if (!table || !std::holds_alternative<Table>(table->value))
       throw InputError(
           fmt::format("{}:1: {}: missing table [{}]", file.string(), from.section, from.section));
-    if (const std::string unknown = unknown_at_top(text, known); !unknown.empty()) throw InputError(unknown);
+    if (const std::string unknown = unknown_at_top(text, known); !unknown.empty())
+      throw InputError(unknown.substr(0, unknown.size() - 1));
     *section = *table;
     files.push_back(file);
   }

@@ -112,13 +112,12 @@ std::string judged(const cone::View& v) {
 /// Why a spread may differ from the measured one although the computation is right.
 constexpr const char* why_it_may_differ =
     "Where a spread differs from the measured one by more than the error of the computation, the scene's "
-    "values "
-    "are the likely cause. Yield stress and viscosity come from a rheometer, and instruments differ by a "
-    "quarter "
-    "and more. After a rest the rate of breakdown decides: measure it on your own concrete. The plate may "
-    "hold "
-    "the concrete or let it slide (floor.contact). tremie calibrate finds the values that meet the "
-    "measurements.";
+    "values are the likely cause. Yield stress and viscosity come from a rheometer, and instruments differ "
+    "by "
+    "a quarter and more. After a rest the rate of breakdown decides: measure it on your own concrete. The "
+    "plate may hold the concrete or let it slide (floor.contact). tremie calibrate finds the values that "
+    "meet "
+    "the measurements.";
 
 /// Whether t500, or that there is none, hangs on the last millimetres: below 514 mm estimates from a t500 end too.
 bool near_500(const cone::Scene& scene, const Results& r) {

@@ -53,8 +53,7 @@ std::string head(const std::vector<Section>& sections, double wall_seconds) {
       "`validation.csv`.\n\n**{} of {} met, {} missed, {} without a verdict.** ± is half of a 95 % interval. "
       "Met: the difference is within the combined interval (root of the sum of squares). Wide intervals are "
       "easily met: a row whose computed ± exceeds the measured one decides nothing. Rows by the default "
-      "kinetics or by "
-      "a = 0.1 use an exponent that was chosen with them in view.\n\n",
+      "kinetics or by a = 0.1 use an exponent that was chosen with them in view.\n\n",
       wall_seconds, met, met + missed + open, missed, open);
 }
 

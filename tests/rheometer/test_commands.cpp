@@ -348,14 +348,18 @@ TEST_F(Commands, AnElasticCellPeaksAtItsStaticYieldStressOverG) {
                  {"mix.shear_modulus", "rigid"});
 }
 
-// A record is nothing that its own rows may replace, and neither is a scene; earlier rows are.
-TEST_F(Commands, RowsReplaceNothingButRows) {
+// A record is nothing that its own rows may replace, and neither is another one with the columns of rows.
+TEST_F(Commands, RowsReplaceNothing) {
   const std::string record = "lab of today\nt_s,T_Nm\n0,1.5\n1,1.2\n2,1.1\n";
   write("lab.csv", record);
   expect_refused("read lab.csv --csv lab.csv", {"--csv", "lab.csv", "not replaced"});
   EXPECT_EQ(test::read_file(folder_ / "lab.csv"), record);
   EXPECT_EQ(tremie("read lab.csv --csv si.csv").code, 0);
-  EXPECT_EQ(tremie("read lab.csv --csv si.csv").code, 0) << "its own rows";
+  EXPECT_EQ(tremie("read lab.csv --csv si.csv").code, 0) << "the same rows";
+  const std::string other = test::read_file(folder_ / "si.csv") + "3,1\n";
+  write("si.csv", other);
+  expect_refused("read lab.csv --csv si.csv", {"--csv", "si.csv", "not replaced"});
+  EXPECT_EQ(test::read_file(folder_ / "si.csv"), other);
   expect_refused("read lab.csv --csv none/si.csv", {"--csv", "no folder"});
   expect_refused("read lab.csv --csv .", {"--csv", "folder"});
 }

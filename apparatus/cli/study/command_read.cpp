@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <memory>
 #include <string>
 
@@ -117,7 +118,7 @@ std::string csv_of(const ReadRecord& r) {
   return text;
 }
 
-/// Replaces nothing but rows of this command.
+/// Replaces nothing: a file with the same columns may be the record of somebody else.
 void write_rows(const std::filesystem::path& file, const std::string& rows) {
   const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
   if (std::filesystem::is_directory(file))
@@ -125,10 +126,9 @@ void write_rows(const std::filesystem::path& file, const std::string& rows) {
   if (!std::filesystem::is_directory(folder))
     throw scene::InputError(fmt::format("--csv: there is no folder {}", folder.string()));
   std::ifstream there(file, std::ios::binary);
-  std::string header;
-  if (there && (!std::getline(there, header) || header != rows.substr(0, rows.find('\n'))))
-    throw scene::InputError(fmt::format(
-        "--csv: {} is there already, and holds no rows of this command: not replaced", file.string()));
+  if (there && std::string(std::istreambuf_iterator<char>(there), {}) != rows)
+    throw scene::InputError(
+        fmt::format("--csv: {} is there already, and holds something else: not replaced", file.string()));
   io::write_text(file, rows);
 }
 
