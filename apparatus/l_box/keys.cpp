@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdint>
 
 #include "apparatus/common/law_keys.hpp"
 #include "apparatus/common/shared_keys.hpp"
@@ -12,9 +11,6 @@ namespace tremie::l_box {
 using namespace scene;
 
 namespace {
-
-/// Bars three diameters apart, the least spacing for which a row's drag is known [m].
-double least_width(std::int64_t bars) { return static_cast<double>(3 * bars + 2) * Box{}.bar_diameter; }
 
 Section box_section() {
   return {
@@ -75,9 +71,7 @@ void settle(Values& values) {
   if (bars > 0 && values.word("model.method") == "newton")
     values.fail("model.method",
                 "\"newton\" does not know bars; allowed with test.bars: \"auto\" or \"admm\"");
-  if (const double least = least_width(bars); bars > 0 && values.number("box.width") < least)
-    values.fail("box.width", fmt::format("is too narrow for {} bars of 12 mm; allowed: at least \"{}\"", bars,
-                                         write_quantity(least, Dimension::length)));
+  boxes::check_width(values, static_cast<int>(bars), Box{}.bar_diameter);
   if (values.number("box.channel_height") > values.number("box.column_height"))
     values.fail("box.channel_height",
                 fmt::format("is above the column's top; allowed: at most column_height, \"{}\"",

@@ -17,8 +17,6 @@ namespace {
 using View = RunView<boxes::Scene, boxes::Outcome>;
 
 constexpr double bar_diameter = 0.013;  ///< [m]
-/// Three bars are three diameters apart there, the least spacing for which a row's drag is known [m].
-constexpr double least_width = 11.0 * bar_diameter;
 
 Section box_section() {
   return {
@@ -57,9 +55,7 @@ void check_bars(const Values& values) {
   if (values.word("model.method") == "newton")
     values.fail("model.method",
                 "\"newton\" does not know bars; allowed with test.bars: \"auto\" or \"admm\"");
-  if (values.number("box.width") < least_width)
-    values.fail("box.width", fmt::format("is too narrow for three bars of 13 mm; allowed: at least \"{}\"",
-                                         write_quantity(least_width, Dimension::length)));
+  boxes::check_width(values, 3, bar_diameter);
 }
 
 void settle(Values& values) {

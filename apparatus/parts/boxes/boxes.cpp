@@ -63,6 +63,14 @@ bool in_space(const Scene& scene) {
   return scene.model.space == SpaceKind::half || scene.model.space == SpaceKind::full;
 }
 
+void check_width(const scene::Values& values, int bars, double bar_diameter) {
+  const double least = (3 * bars + 2) * bar_diameter;
+  if (bars == 0 || values.number("box.width") >= least) return;
+  values.fail("box.width",
+              fmt::format("is too narrow for {} bars of {:g} mm; allowed: at least \"{}\"", bars,
+                          1e3 * bar_diameter, scene::write_quantity(least, scene::Dimension::length)));
+}
+
 double gap_between_bars(const Scene& scene) {
   return (scene.box.width - scene.bars * scene.box.bar_diameter) / (scene.bars + 1);
 }

@@ -98,6 +98,9 @@ void check_cells(const scene::Values& values, const Scene& scene);
 /// Whether the box is computed in three dimensions.
 bool in_space(const Scene& scene);
 
+/// Refuses a box.width that is too narrow for so many bars of a diameter [m]: they need three diameters from one to the next, the
+/// least spacing for which a row's drag is known.
+void check_width(const scene::Values& values, int bars, double bar_diameter);
 /// Width of the gaps between the bars, and between them and the side walls [m].
 double gap_between_bars(const Scene& scene);
 
