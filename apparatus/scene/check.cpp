@@ -364,11 +364,17 @@ class Checker {
                              !find_key(section, key.only_with->key)->implied_by.empty();
         if (!implied && given.layer != Layer::fallback && given.layer >= decider.origin.layer)
           report(given, full, why);
-        else if (!implied && given.layer > Layer::preset)
+        else if (given.layer > Layer::preset && (!implied || is_of_the_scene(given)))
           values_.notes.push_back(fmt::format("{}: {} {}", describe(given), full, why));
         values_.drop(full);
       }
     }
+  }
+
+  /// Written in the scene itself. A mix's file may hold the keys of several kinetics, for whoever chooses one.
+  bool is_of_the_scene(const Origin& given) const {
+    const auto found = values_.entries.find("apparatus");
+    return found != values_.entries.end() && given.file == found->second.origin.file;
   }
 
   bool reported(const std::string& full) const {

@@ -190,9 +190,8 @@ Section breakdown_of_pairs(const Settings& settings) {
   section.findings.push_back(
       fmt::format("All three mixes give a below {:.2f} (97.5 %; median {:.2f}; uniform prior from 0.03 to 1, "
                   "k fixed); a = 1 "
-                  "is less likely than the best by e^−{:.0f}. No effect of rest fits equally well: the "
-                  "losses bound a from "
-                  "above alone.",
+                  "is less likely than the best by e^−{:.0f}. A model in which rest has no effect fits "
+                  "equally well: the losses bound a from above alone.",
                   a[2], a[1], 0.5 * (at_one - best)));
   section.findings.push_back(
       fmt::format("Losses of Mixes A, B, C at a = {} with one change (mm): ", of_the_mixes) +

@@ -45,15 +45,16 @@ std::string head(const std::vector<Section>& sections, double wall_seconds) {
   for (const Section& s : sections)
     for (const Comparison& c : s.comparisons) {
       const bool miss = is_missed(c);
-      (miss ? missed : c.note.empty() ? met : open) += 1;
+      (miss ? missed : verdict(c) == "met" ? met : open) += 1;
     }
   return fmt::format(
       "# Validation\n\nMeasurements beside Tremie's predictions; the last table has two published "
       "correlations. `tremie verify --validation` remakes this page ({:.0f} s), its charts and "
       "`validation.csv`.\n\n**{} of {} met, {} missed, {} without a verdict.** ± is half of a 95 % interval. "
-      "Met: the difference is within the combined interval (root of the sum of squares). Wide intervals are "
-      "easily met: a row whose computed ± exceeds the measured one decides nothing. Rows by the default "
-      "kinetics or by a = 0.1 use an exponent that was chosen with them in view.\n\n",
+      "Met: the difference is within the combined interval (root of the sum of squares). A row whose "
+      "computed "
+      "± exceeds the measured one decides nothing and is not counted as met. Rows by the default kinetics or "
+      "by a = 0.1 use an exponent that was chosen with them in view.\n\n",
       wall_seconds, met, met + missed + open, missed, open);
 }
 
@@ -75,7 +76,8 @@ std::string verdict(const Comparison& c) {
   if (!c.note.empty()) return c.note;
   const double both =
       std::hypot(c.measured_error, std::isfinite(c.predicted_error) ? c.predicted_error : 0.0);
-  return std::abs(c.predicted - c.measured) <= both ? "met" : "missed";
+  if (std::abs(c.predicted - c.measured) > both) return "missed";
+  return c.predicted_error > c.measured_error ? "none: computed ± too wide" : "met";
 }
 
 std::vector<Section> all_sections(const Settings& settings) {

@@ -82,7 +82,7 @@ void compare_paste(Section& section) {
     section.findings.push_back(
         fmt::format("Half of the paste's excess torque is lost after {:.1f} s at 40 rpm and {:.1f} to {:.1f} "
                     "s at 0.115 rpm: k γ̇^a with a = {:.2f} [{:.2f}, {:.2f}], k = {:.2f} 1/s{}. With a = 1 "
-                    "the lower speed would take 346 times as long.",
+                    "the lower speed would take 348 times as long.",
                     times.front().half_time, times.back().half_time, times[1].half_time, exponent->value,
                     exponent->ci95->low, exponent->ci95->high, rate->value,
                     reading.breakdown.modes.empty() ? "" : " for the mode of the largest share"));

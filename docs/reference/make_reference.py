@@ -71,9 +71,9 @@ A run fills a folder ([which files](../guide/slump_flow.md#what-a-run-leaves)); 
 | `cost` | `wall_s`, `cpu_s`, `steps`, `points`, `cells_active`, `bytes_per_point`, `peak_rss_bytes`, `threads`, `simulated_s` |
 | `error` | with `--with-error` or `--accuracy`: half-widths by reading, `basis` (how they were found), `cpu_s` |
 
-`checks.reasons` is a list of sentences; where it is not empty the result is not to be trusted, and the exit code is 3. The same series as in
-`timeseries.csv` are in `results.h5`, with the points over time and where the numbers come from. Every data set there has `unit` and `description`; the root has `scene`, `schema`,
-`apparatus`, `status`, `tremie_version`, `tremie_commit`, `compiler` and `instructions`:
+`checks.reasons` is a list of sentences; where it is not empty the result is not to be trusted, and the exit code is 3.
+
+`results.h5` holds the series of `timeseries.csv`, the points over time, and where the numbers come from: attributes of its root are `scene`, `schema`, `apparatus`, `status`, `tremie_version`, `tremie_commit`, `compiler` and `instructions`. Every data set has the attributes `unit` and `description`.
 
 | in `results.h5` | shape | what |
 |---|---|---|
@@ -84,7 +84,7 @@ A run fills a folder ([which files](../guide/slump_flow.md#what-a-run-leaves)); 
 | `frames/00000/position`, `velocity` | points, 3 | [m], [m/s] |
 | `frames/00000/volume`, `pressure`, `shear_rate`, `flocculation` | points | [m³], [Pa], [1/s], [1] |
 
-`fit`, `estimate`, `study` and `calibrate` leave files of their own: what is in them is on their pages of the guide. A run that was cut short keeps its state in `.NAME.part/checkpoint` beside its folder, for the very build that wrote it: points, time, step, grid, the solver's stresses and rates, friction, bars' drag, and the apparatus' own series. A finished result keeps the same in `.for_longer`, as it was before the end of the test shortened a step: `tremie resume DIR --until` goes on from it.
+`fit`, `estimate`, `study` and `calibrate` leave files of their own: what is in them is on their pages of the guide. A run that was cut short keeps its state in `.NAME.part/checkpoint` beside its folder, for the very build that wrote it: points, time, step, grid, the solver's stresses and rates, friction, bars' drag, and the apparatus' own series. The last step of a test is cut to end at `test.duration`. A finished result keeps the state before that step in `.for_longer`, from which `tremie resume DIR --until` goes on with whole steps. A run that was interrupted and resumed leaves the same bytes as one that was not.
 """
 def scene_sections(names):
     """What `tremie new` prints of each, a table that stood before in the same words named alone."""

@@ -156,6 +156,7 @@ bool has_default_lengths(const FitOptions& o) {
 void check(const FitOptions& o) {
   if (!o.geometry.empty() && !has_default_lengths(o))
     throw std::invalid_argument("--geometry stands for the vane's lengths; give it or them, not both");
+  check(Instrument{o.vane_radius, o.vane_height, o.container_radius});
   if (o.tribometer && (o.protocol || o.ends != "none" || o.blades != "none" || !o.geometry.empty()))
     throw std::invalid_argument(
         "--tribometer is a smooth cylinder's, by --vane-radius and --container-radius; not with --protocol, "

@@ -162,6 +162,8 @@ FitResult read_and_fit(const Fitting& f, const RecordSource& source, FitInput in
     std::vector<std::string> notes{"geometry: " +
                                    geometry_words(f.reading, f.options, record.sheared_evenly)};
     notes.insert(notes.end(), record.understood.begin(), record.understood.end());
+    if (record.kind == RecordKind::flow_curve && f.options.speed)
+      notes.push_back("--speed is a torque decay's; this flow curve has its own speeds");
     FitInput of_curve = in;
     if (record.sheared_evenly) of_curve.instrument = evenly_sheared();
     take_own_flow_curve(f, record, of_curve, notes);

@@ -114,6 +114,15 @@ TEST(SceneReader, KineticsFollowFromTheirKeys) {
   EXPECT_TRUE(says(complaint(thixotropic + "kinetics = \"roussel\"\nrate_exponent = 0.2\n"),
                    {"bad.toml:8", "rate_exponent", "has no meaning with kinetics = \"roussel\""}));
   EXPECT_TRUE(says(complaint(thixotropic + "kinetics = \"power\"\n"), {"exponent", "missing key"}));
+  // Who gives keys of two kinetics and names neither is told which one counts; a mix's file may hold both.
+  const auto note = [](const std::string& text) {
+    const auto notes = read_text(text, "a.toml").notes;
+    return notes.empty() ? "" : notes.front();
+  };
+  EXPECT_TRUE(
+      says(note(thixotropic + "destructuration = 0.03\nbreakdown_rate = \"1 1/s\"\n"),
+           {"a.toml:7: mix.thixotropy.destructuration has no meaning with kinetics = \"rate_power\""}));
+  EXPECT_EQ(note("apparatus = \"slump_flow\"\nmix = \"mix_a\"\n"), "");
 }
 
 TEST(SceneReader, ModesAreSharesAndFactors) {

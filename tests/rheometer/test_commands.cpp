@@ -88,8 +88,9 @@ const std::string decay_options =
 
 TEST_F(Commands, FitWritesTheParametersOfAFlowCurve) {
   write("curve.csv", curve_csv(12, 0.01));
-  const Result r = tremie("fit curve.csv --out out");
+  const Result r = tremie("fit curve.csv --speed '0.5 rev/s' --out out");
   ASSERT_EQ(r.code, 0) << r.text;
+  EXPECT_NE(r.text.find("this flow curve has its own speeds"), std::string::npos) << r.text;
   const auto s = summary("out");
   EXPECT_EQ(s["schema"], 1);
   EXPECT_EQ(s["results"]["kind"], "flow_curve");
@@ -213,6 +214,8 @@ TEST_F(Commands, FitRefusesOptionsWithoutAUnit) {
   expect_refused("fit curve.csv --vane-radius 63.5", {"--vane-radius", "mm"});
   expect_refused("fit curve.csv --vane-radius '-63 mm'", {"--vane-radius", "greater than 0"});
   expect_refused("fit curve.csv --container-radius '5 cm'",
+                 {"container radius", "greater than the vane radius"});
+  expect_refused("read curve.csv --container-radius '5 cm'",
                  {"container radius", "greater than the vane radius"});
   expect_refused("fit curve.csv --speed '3 Pa'", {"--speed"});
   expect_refused("fit curve.csv --yield-stress '54 Pa' --plastic-viscosity '3 Pa.s'",

@@ -25,14 +25,18 @@ TEST(Validation, RemakesItsPage) {
     EXPECT_TRUE(c["predicted"].is_number()) << c.dump();
     const auto what = c["what"].get<std::string>();
     if (c["section"] == "breakdown" && what.ends_with("a of the two others")) {
-      EXPECT_EQ(c["verdict"], "met") << c.dump();
+      EXPECT_NE(c["verdict"], "missed") << c.dump();
       ++forecasts;
     }
     if (c["section"] == "breakdown" && what.ends_with("a = 1")) {
       EXPECT_EQ(c["verdict"], "missed") << c.dump();
       ++by_strain;
     }
-    if (c["section"] == "mixes" && what.find("rested") != std::string::npos) {
+    // An interval wider than the measured one is met by nearly anything.
+    if (c["predicted_error"].is_number() && c["predicted_error"] > c["measured_error"])
+      EXPECT_NE(c["verdict"], "met") << c.dump();
+    if (c["section"] == "mixes" && what.find("rested") != std::string::npos &&
+        what.find("default kinetics") == std::string::npos) {
       EXPECT_EQ(c["verdict"], "missed") << c.dump();
       EXPECT_LT(c["predicted"].get<double>(), c["measured"].get<double>() - 100.0);
       ++rested;
