@@ -106,7 +106,7 @@ void even_layers(Pour<Section>& pour) {
   }
   for (Vec<2>& at : x) {
     const Vec<2> from = at;
-    const double layer = std::min(at[1] / up.h, layers - 1e-9);
+    const double layer = std::min((at[1] - up.origin) / up.h, layers - 1e-9);
     const auto k = static_cast<std::size_t>(layer);
     const double s = layer - static_cast<double>(k);
     at[1] += std::clamp((1.0 - s) * shift[k] + s * shift[k + 1], -0.1 * up.h, 0.1 * up.h);
@@ -220,10 +220,51 @@ void let_in(const Scene& scene, Pour<Section>& pour) {
   even_layers(pour);
 }
 
-#define TREMIE_POUR_IN(Section)                                  \
-  template Pour<Section> start_of(const Scene&);                 \
-  template double prepare(const Scene&, double, Pour<Section>&); \
-  template void let_in(const Scene&, Pour<Section>&);            \
+template <class Section>
+void keep_foot(const Scene& scene, const StepReport& step, Pour<Section>& pour) {
+  constexpr int least = 4, apart = 2;  // layers; those next to what flows stay
+  constexpr double lasts = 5.0;        // [s]
+  auto& body = pour.body;
+  const double level = mean_level(scene, pour);
+  const double grown = -body.mix.density * body.gravity[1] * (level - pour.foot_level);
+  pour.foot_level = level;
+  wait(step.dt, grown, body, pour.foot);
+  pour.wall_mean.resize(pour.wall_max.size(), 0.0);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(pour.foot.layers); ++k) {
+    pour.wall_mean[k] += grown;
+    pour.wall_max[k] = std::max(pour.wall_max[k], pour.wall_mean[k]);
+  }
+  const int reach = pour.inlet.face - static_cast<int>(std::ceil(scene.radius / body.grid.axes[1].h));
+  if (reach < least || stands(pour)) return;
+  const int resting = std::min(resting_layers(body, scene.model.law) - apart, reach);
+  pour.resting = pour.resting_for > 0.0 ? std::min(pour.resting, resting) : resting;
+  pour.resting_for += step.dt;
+  if (pour.resting_for < lasts) return;
+  if (pour.resting >= least) {
+    const std::vector<char> below = set_aside(pour.resting, body, pour.foot);
+    move_chosen(below, pour.load, pour.foot_load);
+    move_chosen(below, pour.batched, pour.foot_batched);
+    pour.inlet.face -= pour.resting;
+    place_pipe(pour.inlet, body.grid);
+  }
+  pour.resting_for = 0.0;
+}
+
+template <class Section>
+void take_foot_back(Pour<Section>& pour) {
+  pour.inlet.face += pour.foot.layers;
+  take_back(pour.body, pour.foot);
+  const std::vector<char> all(pour.foot_load.size(), 1);
+  move_chosen(all, pour.foot_load, pour.load);
+  move_chosen(all, pour.foot_batched, pour.batched);
+}
+
+#define TREMIE_POUR_IN(Section)                                             \
+  template Pour<Section> start_of(const Scene&);                            \
+  template double prepare(const Scene&, double, Pour<Section>&);            \
+  template void let_in(const Scene&, Pour<Section>&);                       \
+  template void keep_foot(const Scene&, const StepReport&, Pour<Section>&); \
+  template void take_foot_back(Pour<Section>&);                             \
   template double flocculation_at_mouth(const Scene&, const Pour<Section>&);
 TREMIE_IN_SECTIONS(TREMIE_POUR_IN)
 

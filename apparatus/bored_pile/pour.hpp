@@ -10,6 +10,7 @@
 #include "apparatus/bored_pile/bored_pile.hpp"
 #include "libmpm/boundary/openings/inlet.hpp"
 #include "libmpm/constitutive/constants.hpp"
+#include "libmpm/implicit/steady/foot.hpp"
 #include "libmpm/implicit/step.hpp"
 
 namespace tremie::bored_pile {
@@ -37,6 +38,13 @@ struct Pour {
   std::vector<double> wall_mean = {};  ///< pressure on the wall of late, by cell [Pa]
   std::vector<double> wall_max;        ///< the largest of it so far
   double mouth_mean = 0.0;             ///< pressure at the mouth of late [Pa]
+
+  /// The foot stands far below the mouth, and steps leave it out. Nothing of it is in `body`, `load` and `batched`.
+  Foot<2> foot{};
+  std::vector<double> foot_load = {}, foot_batched = {};
+  double foot_level = 0.0;   ///< mean level up to which its pressure is known [m]
+  int resting = 0;           ///< layers of cells that have been at rest below the mouth for ...
+  double resting_for = 0.0;  ///< ... so long [s]
 };
 
 /// In a pause the concrete stands after so long below its yield stress [s]: until then its pressure settles.
@@ -57,7 +65,8 @@ Pour<Section> start_of(const Scene& scene);
 
 template <class Section>
 double mouth_of(const Pour<Section>& pour) {
-  return pour.inlet.face * pour.body.grid.axes[1].h;
+  const Axis& up = pour.body.grid.axes[1];
+  return up.origin + pour.inlet.face * up.h;
 }
 /// How far the pipe reaches from the middle on the grid [m].
 template <class Section>
@@ -97,6 +106,13 @@ double prepare(const Scene& scene, double cfl, Pour<Section>& pour);
 /// What came in over the last step.
 template <class Section>
 void let_in(const Scene& scene, Pour<Section>& pour);
+
+/// After a step: the foot waits beside it, and what has come to rest far below the mouth joins it.
+template <class Section>
+void keep_foot(const Scene& scene, const StepReport& step, Pour<Section>& pour);
+/// Takes the foot back into the body, for what is read at the end.
+template <class Section>
+void take_foot_back(Pour<Section>& pour);
 
 /// Pressures of a column of cells without what alternates from one to the next; a straight line stays as it is. With one
 /// pressure a cell, alternating pressures push quadratic splines nowhere (docs/theory/bored_pile.md).

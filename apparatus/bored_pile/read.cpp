@@ -11,7 +11,7 @@
 namespace tremie::bored_pile {
 namespace {
 
-/// Volume fractions of the cells, column by column from the axis and from the base up.
+/// Volume fractions of the cells, column by column from the axis and from the foot up.
 template <class Section>
 std::vector<std::vector<double>> fills(const Pour<Section>& pour) {
   const auto& axes = pour.body.grid.axes;
@@ -49,7 +49,7 @@ Levels levels(const Scene& scene, const Pour<Section>& pour) {
   const auto fill = fills(pour);
   const double h = pour.body.grid.axes[0].h, h_up = pour.body.grid.axes[1].h, r = pipe_radius(pour);
   const auto first = static_cast<std::size_t>(pour.inlet.cells);
-  const auto at = [&](std::size_t c) { return level_of(fill[c], h_up); };
+  const auto at = [&](std::size_t c) { return pour.body.grid.axes[1].origin + level_of(fill[c], h_up); };
   Levels levels{at(first), at((first + fill.size()) / 2), at(fill.size() - 1),
                 area_within(scene, r) * mouth_of(pour) - waiting(scene, pour)};
   double area_inside = 0.0, area_outside = 0.0;
@@ -124,12 +124,13 @@ double stress_of_surface(const Pour<Section>& pour, double surface) {
   return largest;
 }
 
-/// The concrete along the wall, cell by cell.
+/// The concrete along the wall, cell by cell from the foot up.
 template <class Section>
 std::vector<AtWall> along_wall(const Scene& scene, const Pour<Section>& pour) {
   const auto& axes = pour.body.grid.axes;
   const auto& points = pour.body.points;
-  std::vector<AtWall> wall(pour.wall_max.size());
+  const auto foot = static_cast<std::size_t>(pour.foot.layers);
+  std::vector<AtWall> wall(pour.wall_max.size() - foot);
   std::vector<double> volume(wall.size(), 0.0);
   for (std::size_t p = 0; p < points.size(); ++p) {
     const auto c = detail::cell_of<2>(axes, points.x[p]);
@@ -146,7 +147,7 @@ std::vector<AtWall> along_wall(const Scene& scene, const Pour<Section>& pour) {
   for (; n < wall.size() && volume[n] > 0.0; ++n) {
     AtWall& at = wall[n];
     at.pressure_end /= volume[n], at.flocculation /= volume[n], at.age /= volume[n];
-    at.height = (static_cast<double>(n) + 0.5) * axes[1].h;
+    at.height = axes[1].origin + (static_cast<double>(n) + 0.5) * axes[1].h;
     at.hydrostatic = fluid_pressure(scene, at.height) -
                      scene.mix.density * pour.body.gravity[1] * std::max(0.0, level - at.height);
   }
@@ -156,9 +157,29 @@ std::vector<AtWall> along_wall(const Scene& scene, const Pour<Section>& pour) {
   pressure = without_stripes(pressure);
   for (std::size_t k = 0; k < n; ++k) {
     wall[k].pressure_end = pressure[k];
-    wall[k].pressure_max = pour.wall_max[k];
+    wall[k].pressure_max = pour.wall_max[k + foot];
   }
   return wall;
+}
+
+/// Volume mean of lambda, the foot's too; empty without thixotropy.
+template <class Section>
+std::optional<double> mean_flocculation(const Pour<Section>& pour) {
+  const auto &points = pour.body.points, &foot = pour.foot.points;
+  const auto mean = experiment::mean_flocculation(points);
+  if (!mean || foot.size() == 0) return mean;
+  const double V = experiment::total_volume(points), below = experiment::total_volume(foot);
+  return (V * *mean + below * *experiment::mean_flocculation(foot)) / (V + below);
+}
+
+/// sum V / sum V0 - 1, the foot's too.
+template <class Section>
+double volume_change(const Pour<Section>& pour) {
+  const auto &points = pour.body.points, &foot = pour.foot.points;
+  const double change = experiment::volume_change(points);
+  if (foot.size() == 0) return change;
+  const double V = experiment::total_volume(points), below = experiment::total_volume(foot);
+  return (V + below) / (V / (1.0 + change) + below / (1.0 + experiment::volume_change(foot))) - 1.0;
 }
 
 }  // namespace
@@ -188,9 +209,9 @@ Sample read(const Scene& scene, const StepReport& step, Pour<Section>& pour) {
   };
   const std::vector<AtWall> wall = along_wall(scene, pour);
   pour.wall_mean.resize(pour.wall_max.size(), 0.0);
-  for (std::size_t k = 0; k < wall.size(); ++k) {
-    follow(pour.wall_mean[k], wall[k].pressure_end);
-    pour.wall_max[k] = std::max(pour.wall_max[k], pour.wall_mean[k]);
+  for (std::size_t k = 0, at = static_cast<std::size_t>(pour.foot.layers); k < wall.size(); ++k, ++at) {
+    follow(pour.wall_mean[at], wall[k].pressure_end);
+    pour.wall_max[at] = std::max(pour.wall_max[at], pour.wall_mean[at]);
   }
   follow(pour.mouth_mean, pressure_at_mouth(scene, pour));
   Sample now{.time = body.time, .time_step = step.dt, .volume = pour.placed};
@@ -202,8 +223,8 @@ Sample read(const Scene& scene, const StepReport& step, Pour<Section>& pour) {
   now.load = static_cast<double>(load_at(scene, pour.placed) + 1);
   now.surface_stress = stress_of_surface(pour, surface_of(scene, pour, level));
   now.max_speed = step.max_speed, now.shear_rate_mean = step.shear_rate_mean;
-  now.flocculation_mean = experiment::mean_flocculation(body.points);
-  now.volume_change = experiment::volume_change(body.points);
+  now.flocculation_mean = mean_flocculation(pour);
+  now.volume_change = volume_change(pour);
   now.iterations = step.iterations;
   constexpr double lasts = 5.0;  // [s]
   const bool suffices = !now.head || *now.head <= scene.depth + scene.pipe.above - now.mouth;

@@ -20,6 +20,8 @@ constexpr double alternating_viscosity = 1000.0;
 StepSettings step_settings(const Scene& scene) {
   StepSettings settings = experiment::step_settings(scene.model);
   settings.moving_surface = true;
+  // By their points' weight columns of cells that hold some per cent more would sink, and the others rise, metres high.
+  settings.weight = WeightRule::balanced_inside;
   settings.particle_shifting.rigid_share = 0.1;  // the concrete rises as a plug for thousands of steps
   settings.alternating_viscosity = alternating_viscosity;
   settings.wall_law = scene.walls;
@@ -31,23 +33,27 @@ StepSettings step_settings(const Scene& scene) {
   return settings;
 }
 
-/// In a pause what the solver leaves of velocities must not carry points far: less of it, the stresses where the points are, and
-/// weights that the pressures balance (docs/theory/bored_pile.md, Rest).
+/// In a pause what the solver leaves of velocities must not carry points far (docs/theory/bored_pile.md, Rest).
 void settle_in_pauses(bool pauses, StepSettings& settings) {
   constexpr double resting_tolerance = 1e-4;
   settings.admm.tolerance = pauses ? resting_tolerance : StepSettings{}.admm.tolerance;
-  settings.balanced_weight = settings.cut_cell_rule = pauses;
+  settings.weight = pauses ? WeightRule::balanced : WeightRule::balanced_inside;
+  settings.cut_cell_rule = pauses;
 }
 
 /// A step of the pour. In a pause the concrete comes to rest, and then stands until the next load is placed.
 template <class Section>
 StepReport advance(const Scene& scene, const StepSettings& settings, Pour<Section>& pour) {
   constexpr double yields = 1e-3;  // share of the yield stress
-  if (stands(pour))
-    return stand_still(settings.fixed_dt.value_or(std::min(settings.time_left, settings.dt_longest)),
-                       pour.body);
+  if (stands(pour)) {
+    const double dt = settings.fixed_dt.value_or(std::min(settings.time_left, settings.dt_longest));
+    const StepReport rest = stand_still(dt, pour.body);
+    keep_foot(scene, rest, pour);
+    return rest;
+  }
   const StepReport step = implicit_step(pour.body, scene.model.law, settings);
   if (step.failed) return step;
+  keep_foot(scene, step, pour);
   if (!pour.pauses) let_in(scene, pour);
   const bool still = pour.pauses && is_below_yield(pour.body, scene.model.law, yields);
   pour.still_for = still ? pour.still_for + step.dt : 0.0;
@@ -57,9 +63,29 @@ StepReport advance(const Scene& scene, const StepSettings& settings, Pour<Sectio
 template <class Section>
 Frame frame_of(const Pour<Section>& pour) {
   Frame frame = experiment::frame_of(pour.body);
+  const Points<2>& foot = pour.foot.points;
+  for (std::size_t p = 0; p < foot.size(); ++p) {
+    frame.position.push_back(experiment::in_space<Section>(foot.x[p]));
+    frame.velocity.push_back({0.0, 0.0, 0.0});
+    frame.volume.push_back(foot.volume(p));
+    frame.pressure.push_back(pressure(foot.ln_J[p], pour.body.mix.K));
+    frame.shear_rate.push_back(0.0);
+  }
+  const auto append = [](const std::vector<double>& from, std::vector<double>& to) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  append(foot.lambda, frame.flocculation);
   frame.load = pour.load;
-  for (const double batched : pour.batched) frame.age.push_back(pour.body.time - batched);
+  append(pour.foot_load, frame.load);
+  for (const auto* times : {&pour.batched, &pour.foot_batched})
+    for (const double batched : *times) frame.age.push_back(pour.body.time - batched);
   return frame;
+}
+
+template <class Section>
+void archive_foot(Archive& archive, Pour<Section>& pour) {
+  archive(pour.foot, pour.foot_load, pour.foot_batched, pour.foot_level, pour.resting, pour.resting_for);
+  if (archive.reads()) stand_on(pour.foot, pour.body);
 }
 
 template <class Section>
@@ -93,11 +119,13 @@ Record run_section(const Scene& scene, const scene::Observer& observer) {
             return step;
           },
       .frame = [&] { return frame_of(pour); },
+      .tell = [&](bool, Checks&, Cost&) { take_foot_back(pour); },
       .state =
           [&](Archive& archive) {
             archive(body, pour.load, pour.batched, pour.inlet.face, pour.placed, pour.short_for,
                     pour.still_for, pour.wall_mean, pour.wall_max, pour.mouth_mean, record.series);
             for (Inlet::Column& column : pour.inlet.columns) archive(column.waiting);
+            archive_foot(archive, pour);
           }};
   experiment::run_experiment(
       flow, body,

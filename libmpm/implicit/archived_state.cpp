@@ -40,5 +40,6 @@ void visit(Archive& archive, ImplicitBody<Geometry>& body) {
 
 #define TREMIE_ARCHIVED_IN(Geometry) template void visit(Archive&, ImplicitBody<Geometry>&);
 TREMIE_IN_ALL_SPACES(TREMIE_ARCHIVED_IN)
+template void visit(Archive&, Points<2>&);
 
 }  // namespace tremie

@@ -12,4 +12,7 @@ namespace tremie {
 template <class Geometry>
 void visit(Archive& archive, ImplicitBody<Geometry>& body);
 
+template <int D>
+void visit(Archive& archive, Points<D>& points);
+
 }  // namespace tremie

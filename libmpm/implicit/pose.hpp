@@ -86,7 +86,7 @@ void set_wall_stresses(const WallLaw& law, double tau_0, YieldProblem<Geometry>&
 
 /// What the nodes' velocities become over dt by gravity alone.
 template <class Geometry>
-void add_gravity(ImplicitBody<Geometry>& body, bool balanced, const std::vector<Vec<Geometry::dim>>& v_old,
+void add_gravity(ImplicitBody<Geometry>& body, WeightRule rule, const std::vector<Vec<Geometry::dim>>& v_old,
                  double dt) {
   for (std::size_t i = 0; i < v_old.size(); ++i) body.nodes.v[i] = v_old[i] + dt * body.gravity;
   if constexpr (std::is_same_v<Geometry, ThreeD>) {
@@ -95,8 +95,9 @@ void add_gravity(ImplicitBody<Geometry>& body, bool balanced, const std::vector<
       if (body.nodes.mass[i] > 0.0)
         body.nodes.v[i] += dt * (weight[i] / body.nodes.mass[i] - 1.0) * body.gravity;
   } else if constexpr (requires { Geometry::up; }) {
-    if (!balanced) return;
-    const auto force = balanced_weights(body.grid, body.points, body.quadrature, body.gravity);
+    if (rule == WeightRule::points) return;
+    const auto force = balanced_weights(body.grid, body.points, body.quadrature, body.gravity,
+                                        rule == WeightRule::balanced_inside);
     for (std::size_t i = 0; i < v_old.size(); ++i)
       if (body.nodes.mass[i] > 0.0) body.nodes.v[i] = v_old[i] + dt / body.nodes.mass[i] * force[i];
   }
@@ -128,7 +129,7 @@ void pose(ImplicitBody<Geometry>& body, const YieldLaw& law, const StepSettings&
           const IndexMap<Geometry::dim>& old_nodes, double dt, std::optional<YieldProblem<Geometry>>& posed) {
   constexpr int D = Geometry::dim;
   body.v = v_old;
-  add_gravity(body, settings.balanced_weight, v_old, dt);
+  add_gravity(body, settings.weight, v_old, dt);
   posed.emplace(YieldProblem<Geometry>{
       body.grid, body.quadrature, body.nodes, dt, body.mix.mu, body.mix.K, {}, {}, {}, {}, {}, {}, {}});
   posed->eta += viscosity(

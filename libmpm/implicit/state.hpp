@@ -17,6 +17,10 @@
 
 namespace tremie {
 
+/// What a section's cells weigh: their points; inside the body what a full cell does, where its stresses are integrated; that
+/// everywhere.
+enum class WeightRule { points, balanced_inside, balanced };
+
 enum class YieldMethod { automatic, admm, newton };
 
 struct StepSettings {
@@ -40,8 +44,8 @@ struct StepSettings {
   bool cut_cell_rule =
       false;  ///< stresses of partly filled cells where the points are; in 3D films hold on their walls
   bool settle_on_floor = false;  ///< partly filled cells on the floor are full from below (mpm_step.md)
-  bool balanced_weight = false;  ///< gravity by the stresses' quadrature (cell_weights.hpp); sections alone
-  bool moving_surface = false;   ///< gravity where the step leaves the free surface
+  WeightRule weight = WeightRule::points;  ///< gravity on a section (cell_weights.hpp)
+  bool moving_surface = false;             ///< gravity where the step leaves the free surface
   double side_wall_distance = 0.0;  ///< of a width-averaged section [m]; 0: plane strain, no side walls
   double wall_gap = 0.0;            ///< how near a point may come to a rigid wall [m]
   double wall_penalty = 100.0;      ///< stiffness of a rigid wall, in m/dt

@@ -121,6 +121,36 @@ TEST(BoredPile, SurfaceGainsStrengthInAPause) {
   EXPECT_GT(result(outcome, "static_yield_stress_surface_Pa"), 50.0 + 60.0);
 }
 
+// Above a mouth that stays where it is concrete rises beside the pipe as in a long annulus: no ring of it sinks, and none is much
+// faster than the mean. A plug of Bingham concrete between walls H = 0.45 m apart at Bi = tau_0 H/(mu U) = 40 is 1.16 times as fast
+// as the mean U, by the closed form of a slit. Where columns of cells weighed what their points did, by some per cent too much or
+// too little, a jet of ten times the mean stood beside the pipe and the rest sank.
+TEST(BoredPile, RisesAsAPlug) {
+  constexpr int rings = 6;  // of cells of 75 mm
+  constexpr double inner = 0.15, outer = 0.6, rate = 27.0 / 3600.0,
+                   mean = rate / (std::numbers::pi * (outer * outer - inner * inner));
+  const Frame end =
+      bored_pile::run(bored_pile_scene({"mix.yield_stress=20 Pa", "pile.radius=0.6 m", "pile.depth=4 m",
+                                        "pipe.inner_radius=125 mm", "pipe.outer_radius=135 mm",
+                                        "pipe.above=4 m", "pipe.embedment=[\"0.2 m\", \"5 m\"]",
+                                        "test.rate=27 m3/h", "load[0].volume=2 m3", "load[1].volume=1 m3",
+                                        "load[1].pause=0 s", "load[2].volume=0.6 m3", "model.cell=75 mm"}))
+          .final_frame;
+  std::array<double, rings> flow{}, volume{};
+  for (std::size_t p = 0; p < end.position.size(); ++p) {
+    const double r = end.position[p][0], z = end.position[p][2];
+    if (z < 1.0 || z > 2.5 || r < inner) continue;
+    const auto ring = std::min<std::size_t>(rings - 1, static_cast<std::size_t>((r - inner) / 0.075));
+    flow[ring] += end.volume[p] * end.velocity[p][2], volume[ring] += end.volume[p];
+  }
+  for (std::size_t ring = 0; ring < rings; ++ring) {
+    const double speed = flow[ring] / volume[ring] / mean;
+    std::printf("ring %zu: %.2f of the mean speed\n", ring, speed);
+    EXPECT_GT(speed, ring == 0 || ring == rings - 1 ? 0.0 : 0.9);
+    EXPECT_LT(speed, 1.3);
+  }
+}
+
 // A table of a list is changed by its index: a longer pause before the second load, and nothing else.
 TEST(BoredPile, ALoadIsChangedByItsIndex) {
   const auto before = bored_pile_scene({}), after = bored_pile_scene({"load[1].pause=2 min"});

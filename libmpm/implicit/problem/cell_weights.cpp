@@ -75,12 +75,23 @@ std::vector<double> node_weights(const ActiveGrid<3>& grid, const Points<3>& poi
 
 template <class Geometry>
 std::vector<Vec<2>> balanced_weights(const ActiveGrid<2>& grid, const Points<2>& points,
-                                     const Quadrature<Geometry>& quadrature, const Vec<2>& gravity) {
+                                     const Quadrature<Geometry>& quadrature, const Vec<2>& gravity,
+                                     bool inside) {
   Eigen::VectorXd R = Eigen::VectorXd::Zero(grid.n_nodes() * 2);
   for (int c = 0; c < grid.n_cells(); ++c) {
     const Index<2>& cell = grid.cell_index[c];
+    const bool full = is_inside<2>(grid, cell);
+    if (inside && !full) {
+      for (int i = grid.cell_begin[c]; i < grid.cell_begin[c + 1]; ++i) {
+        const int p = grid.order[i];
+        const Stencil<2> st = stencil<2>(grid.axes, cell, local_coordinates<2>(grid.axes, cell, points.x[p]));
+        for (std::size_t k = 0; k < 9; ++k)
+          R.segment<2>(grid.cell_nodes[c][k] * 2) += points.mass[p] * st.N[k] * gravity;
+      }
+      continue;
+    }
     const CellMass of = mass_of_cell<2>(grid, points, c);
-    const double density = is_inside<2>(grid, cell) ? of.density : of.mass / quadrature.V_cell[c];
+    const double density = full ? of.density : of.mass / quadrature.V_cell[c];
     std::array<Vec<2>, 4> x;
     Vec<2> middle = Vec<2>::Zero();
     for (std::size_t k = 0; k < 4; ++k) {
@@ -103,7 +114,7 @@ std::vector<Vec<2>> balanced_weights(const ActiveGrid<2>& grid, const Points<2>&
 
 #define TREMIE_BALANCED_WEIGHTS_IN(Section)                                             \
   template std::vector<Vec<2>> balanced_weights(const ActiveGrid<2>&, const Points<2>&, \
-                                                const Quadrature<Section>&, const Vec<2>&);
+                                                const Quadrature<Section>&, const Vec<2>&, bool);
 TREMIE_IN_SECTIONS(TREMIE_BALANCED_WEIGHTS_IN)
 
 }  // namespace tremie

@@ -22,6 +22,7 @@ std::vector<double> node_weights(const ActiveGrid<3>& grid, const Points<3>& poi
 /// it falls with height as a column of the concrete does.
 template <class Geometry>
 std::vector<Vec<2>> balanced_weights(const ActiveGrid<2>& grid, const Points<2>& points,
-                                     const Quadrature<Geometry>& quadrature, const Vec<2>& gravity);
+                                     const Quadrature<Geometry>& quadrature, const Vec<2>& gravity,
+                                     bool inside);
 
 }  // namespace tremie

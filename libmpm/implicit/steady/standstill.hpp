@@ -30,6 +30,18 @@ bool is_below_yield(const ImplicitBody<Geometry>& body, const YieldLaw& law, dou
   return detail::max_speed(body.points) < detail::rate_at_rest * body.grid.cell_size_min();
 }
 
+/// Lets the structure of points at rest build up over dt. `mix_of(p)` is a point's mix.
+template <int D, class MixOf>
+void build_up_at_rest(double dt, const MixOf& mix_of, Points<D>& points) {
+#pragma omp parallel for schedule(static)
+  for (std::size_t p = 0; p < points.lambda.size(); ++p) {
+    const Mix& mix = mix_of(p);
+    points.lambda[p] = flocculation_step(points.lambda[p], *mix.thixotropy, mix.tau_0, 0.0, 0.0, dt,
+                                         [&](std::size_t i) -> double& { return points.lambda_parts[i][p]; });
+    points.gamma_dot[p] = 0.0;
+  }
+}
+
 /// Lets dt pass over a body that stands: lambda builds up, every point keeps its place, its pressure and its volume.
 template <class Geometry>
 StepReport stand_still(double dt, ImplicitBody<Geometry>& body) {
@@ -37,13 +49,7 @@ StepReport stand_still(double dt, ImplicitBody<Geometry>& body) {
   for (auto& v : points.v) v.setZero();
   for (auto& C : points.C) C.setZero();
   for (auto& v : body.v) v.setZero();
-#pragma omp parallel for schedule(static)
-  for (std::size_t p = 0; p < points.lambda.size(); ++p) {
-    const Mix& mix = body.mix_of(p);
-    points.lambda[p] = flocculation_step(points.lambda[p], *mix.thixotropy, mix.tau_0, 0.0, 0.0, dt,
-                                         [&](std::size_t i) -> double& { return points.lambda_parts[i][p]; });
-    points.gamma_dot[p] = 0.0;
-  }
+  build_up_at_rest(dt, [&](std::size_t p) -> const Mix& { return body.mix_of(p); }, points);
   body.shear_rate = body.time_error = 0.0;
   body.time += dt;
   return {.dt = dt, .converged = true};
