@@ -156,7 +156,9 @@ scene::SizeEstimate estimate_section(const Scene& scene) {
   e.steps = e.steps_expected =
       experiment::whole_steps(scene.model.time_step ? e.time_expected / *scene.model.time_step
                                                     : 1.5 * pile_volume(scene) / scene.rate / step);
-  e.point_step = 0.5e-6;  // of the points at the end, of which half are there in the mean
+  // Of the points at the end: half are there in the mean, and the foot (keep_foot()) is left out.
+  const double above = std::min(1.0, (scene.pipe.most + scene.radius) / scene.depth);
+  e.point_step = 0.4e-6 * above * (2.0 - above);
   return e;
 }
 
