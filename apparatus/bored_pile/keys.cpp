@@ -123,7 +123,7 @@ void check_embedment(const Values& values) {
   if (values.number("pipe.pull") > most * (1.0 + 1e-9))
     values.fail("pipe.pull",
                 fmt::format("leaves less than the least embedment; allowed: at most \"{}\", most less least",
-                            write_quantity(most, Dimension::length)));
+                            write_at_most(most, Dimension::length)));
 }
 
 /// A panel is a plane with a width. What a cage's long sides do lies in that plane.

@@ -36,7 +36,7 @@ void check_pile(const Values& values, const Scene& scene) {
         "pipe.outer_radius",
         fmt::format(
             "leaves less than two cells between pipe and pile; allowed: at most \"{}\" on these cells",
-            length(widest_pipe(scene))));
+            write_at_most(widest_pipe(scene), Dimension::length)));
   if (pipe.start + 4.0 * h_up > scene.depth)
     values.fail("pipe.start",
                 fmt::format("the mouth stands above the pile; allowed: less than \"{}\" on these cells",

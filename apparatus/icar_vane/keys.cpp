@@ -251,7 +251,7 @@ void check_cells(const Values& values, const Scene& scene) {
   if (across > gap || (!couette && up > gap))
     values.fail("model.cell",
                 fmt::format("is larger than the gap between vane and container; allowed: at most \"{}\"",
-                            write_quantity(gap, Dimension::length)));
+                            write_at_most(gap, Dimension::length)));
   if (with_ends(values)) {
     const double least =
         std::min({scene.vane.bottom_gap, scene.vane.cover, scene.vane.height, scene.vane.radius});
@@ -259,7 +259,7 @@ void check_cells(const Values& values, const Scene& scene) {
       values.fail(
           "model.cell",
           fmt::format("leaves less than two cells to the vane, its gap or its cover; allowed: at most \"{}\"",
-                      write_quantity(0.5 * least, Dimension::length)));
+                      write_at_most(0.5 * least, Dimension::length)));
     const double height = scene.vane.bottom_gap + scene.vane.height + scene.vane.cover;
     const double cells = R / across * height / across * two_pi * scene.vane.radius / scene.vane.blades / up;
     if (cells > most_cells_with_ends)

@@ -56,8 +56,8 @@ void settle(Values& values) {
   const double length = values.number("box.length"), width = values.number("box.width");
   const auto at_most = [&](const char* key, double most, Dimension dimension, const char* what) {
     if (values.number(key) > most)
-      values.fail(key, fmt::format("is more than {}; allowed: at most \"{}\"", what,
-                                   write_quantity(most, dimension)));
+      values.fail(
+          key, fmt::format("is more than {}; allowed: at most \"{}\"", what, write_at_most(most, dimension)));
   };
   at_most("test.volume", length * width * values.number("box.height"), Dimension::volume, "the box holds");
   at_most("test.pour_to", 0.5 * length, Dimension::length, "half of the box");

@@ -177,4 +177,11 @@ std::string write_quantity(double value, Dimension dimension) {
   return write_number(value) + " " + std::string(units(dimension).front().name);
 }
 
+std::string write_at_most(double value, Dimension dimension) {
+  if (!(value > 0.0)) return write_quantity(value, dimension);
+  const double digit = std::pow(10.0, std::floor(std::log10(value)) - 3.0);
+  return rounded(std::floor(value / digit * (1.0 + 1e-12)) * digit, 4) + " " +
+         std::string(units(dimension).front().name);
+}
+
 }  // namespace tremie::scene

@@ -57,6 +57,8 @@ double parse_quantity(std::string_view text, Dimension dimension,
 
 /// "54 Pa": the SI value in the SI unit, with the fewest digits that read back to the same double.
 std::string write_quantity(double value, Dimension dimension);
+/// The largest that is allowed, of a positive quantity: to four digits, rounded down.
+std::string write_at_most(double value, Dimension dimension);
 
 /// The fewest digits that read back to the same double.
 std::string write_number(double value);

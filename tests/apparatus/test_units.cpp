@@ -86,6 +86,9 @@ TEST(Units, AQuantityReadsBackBitForBit) {
 
 TEST(Units, PlainNumbersStayReadable) {
   EXPECT_EQ(write_quantity(1e6, Dimension::pressure), "1000000 Pa");
+  EXPECT_EQ(write_at_most(0.1 / 3.0, Dimension::length), "0.03333 m");
+  EXPECT_EQ(write_at_most(0.016, Dimension::length), "0.016 m");
+  EXPECT_EQ(write_at_most(0.0, Dimension::length), "0 m");
   EXPECT_EQ(write_quantity(0.005, Dimension::length), "0.005 m");
   EXPECT_EQ(write_number(1e-7), "1e-07");
 }

@@ -82,7 +82,7 @@ void check_cells(const Values& values, const Scene& scene) {
   if (across > most * (1.0 + 1e-9) || up > most * (1.0 + 1e-9))
     values.fail("model.cell",
                 fmt::format("is too large for the mouth, which needs {:g} cells; allowed: at most \"{}\"",
-                            least_across_mouth, write_quantity(most, Dimension::length)));
+                            least_across_mouth, write_at_most(most, Dimension::length)));
   const auto [n_across, n_up] = scene.model.points_per_cell;
   check_points(values, 0.5 * scene.shape.top / across * n_across * height(scene.shape) / up * n_up);
 }
