@@ -120,7 +120,11 @@ def pile(tremie):
             tables = run(tremie, pile_scene(setting, case), pathlib.Path(folder))
         series, wall = tables["timeseries"], tables["wall"]
         times = series["time_s"]
-        levels = [sum(three) / 3 for three in zip(*(series[f"level_{place}_m"] for place in ("at_pipe", "between", "at_wall")))]
+        # Of the three levels the mean over the area, by Simpson's rule: the surface is higher in the middle than at pipe and wall.
+        inner, outer = setting["geometry"]["pipe_outer_radius"], setting["geometry"]["pile_radius"]
+        shares = [inner / (3 * (inner + outer)), 2 / 3, outer / (3 * (inner + outer))]
+        three = zip(*(series[f"level_{place}_m"] for place in ("at_pipe", "between", "at_wall")))
+        levels = [sum(share * level for share, level in zip(shares, levels)) for levels in three]
         rise = [1e3 * (level - at(60.0, times, levels)) for level in levels]
         gradient = (at(0.6, wall["height_m"], wall["pressure_end_Pa"]) - at(1.0, wall["height_m"], wall["pressure_end_Pa"])) / 0.4e3
         return {"rise_mm": (times, rise), "gradient_kPa_per_m": ([times[-1]], [gradient])}
