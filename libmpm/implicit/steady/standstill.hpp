@@ -49,7 +49,8 @@ StepReport stand_still(double dt, ImplicitBody<Geometry>& body) {
   for (auto& v : points.v) v.setZero();
   for (auto& C : points.C) C.setZero();
   for (auto& v : body.v) v.setZero();
-  build_up_at_rest(dt, [&](std::size_t p) -> const Mix& { return body.mix_of(p); }, points);
+  build_up_at_rest(
+      dt, [&](std::size_t p) -> const Mix& { return body.mix_of(p); }, points);
   body.shear_rate = body.time_error = 0.0;
   body.time += dt;
   return {.dt = dt, .converged = true};
