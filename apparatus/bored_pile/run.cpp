@@ -20,8 +20,6 @@ constexpr double alternating_viscosity = 1000.0;
 StepSettings step_settings(const Scene& scene) {
   StepSettings settings = experiment::step_settings(scene.model);
   settings.moving_surface = true;
-  // By their points' weight columns of cells that hold some per cent more would sink, and the others rise, metres high.
-  settings.weight = WeightRule::balanced_inside;
   settings.particle_shifting.rigid_share = 0.1;  // the concrete rises as a plug for thousands of steps
   settings.alternating_viscosity = alternating_viscosity;
   settings.wall_law = scene.walls;
@@ -33,7 +31,8 @@ StepSettings step_settings(const Scene& scene) {
   return settings;
 }
 
-/// In a pause what the solver leaves of velocities must not carry points far (docs/theory/bored_pile.md, Rest).
+/// By their points' weight columns of cells that hold some per cent more would sink, and the others rise, metres high. In a pause
+/// what the solver leaves of velocities must not carry points far, either (docs/theory/bored_pile.md, Weight and Rest).
 void settle_in_pauses(bool pauses, StepSettings& settings) {
   constexpr double resting_tolerance = 1e-4;
   settings.admm.tolerance = pauses ? resting_tolerance : StepSettings{}.admm.tolerance;

@@ -6,10 +6,9 @@
 // yield solver leaves there of rates only carries points about. The floor rises to their top, and their points stand aside:
 // their structure builds up, and their pressure follows the weight above.
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
+#include <utility>
 #include <vector>
 
 #include "libmpm/implicit/archived_state.hpp"
