@@ -109,16 +109,17 @@ const std::vector<Reading<View>>& readings() {
   return table;
 }
 
-const std::vector<ColumnOf<AtWall>> wall_columns{
-    {"height_m", "height over the pile's base", [](const AtWall& w) { return w.height; }},
-    {"pressure_end_Pa", "pressure on the wall at the end", [](const AtWall& w) { return w.pressure_end; }},
-    {"pressure_max_Pa", "largest pressure on the wall", [](const AtWall& w) { return w.pressure_max; }},
-    {"pressure_hydrostatic_Pa", "pressure of concrete and fluid at rest",
-     [](const AtWall& w) { return w.hydrostatic; }},
-    {"flocculation_end", "flocculation state λ along the wall at the end",
-     [](const AtWall& w) { return w.flocculation; }},
-    {"age_end_min", "age of the concrete along the wall at the end",
-     [](const AtWall& w) { return minutes * w.age; }}};
+const TableOf<AtWall> wall{
+    "wall.csv",
+    {{"height_m", "height over the pile's base", [](const AtWall& w) { return w.height; }},
+     {"pressure_end_Pa", "pressure on the wall at the end", [](const AtWall& w) { return w.pressure_end; }},
+     {"pressure_max_Pa", "largest pressure on the wall", [](const AtWall& w) { return w.pressure_max; }},
+     {"pressure_hydrostatic_Pa", "pressure of concrete and fluid at rest",
+      [](const AtWall& w) { return w.hydrostatic; }},
+     {"flocculation_end", "flocculation state λ along the wall at the end",
+      [](const AtWall& w) { return w.flocculation; }},
+     {"age_end_min", "age of the concrete along the wall at the end",
+      [](const AtWall& w) { return minutes * w.age; }}}};
 
 std::string washed(const View& v) {
   if (!v.r.washed) return {};
@@ -187,7 +188,7 @@ scene::Outcome run_and_read(const Scene& scene, const RunOptions& options, const
   outcome.stage = stage_of(scene);
   outcome.axisymmetric = scene.width == 0.0;
   outcome.pictured = false;
-  outcome.tables = {{"wall.csv", columns_from(wall_columns, raw.results.wall)}};
+  outcome.tables = {table_from(wall, raw.results.wall)};
   outcome.charts = {
       {"level.svg",
        "Level",
@@ -229,7 +230,7 @@ std::vector<std::string> uses(const Scene& scene) {
 }  // namespace
 
 Apparatus apparatus() {
-  return make_apparatus<Scene>(apparatus_of(keys(), "bored pile", readings(), wall_columns), read_scene, uses,
+  return make_apparatus<Scene>(apparatus_of(keys(), "bored pile", readings(), wall), read_scene, uses,
                                run_and_read, estimate);
 }
 

@@ -163,6 +163,15 @@ void print_readings() {
   }
 }
 
+/// The columns of every apparatus' files, "apparatus TAB file TAB name TAB unit TAB words" a line.
+void print_columns() {
+  for (const scene::Apparatus& apparatus : scene::all_apparatus())
+    for (const scene::Described& column : apparatus.glossary)
+      if (!column.file.empty())
+        say("{}\t{}\t{}\t{}\t{}\n", apparatus.keys.name, column.file, column.name,
+            report::unit_of(column.name), report::words_of(column.name, apparatus.keys.name));
+}
+
 int parse_and_run(int argc, char** argv, const std::function<void(CLI::App&, int&)>& add) {
   CLI::App app{invitation, "tremie"};
   app.set_version_flag("--version", fmt::format("tremie {} ({}) for {}", version, commit, instructions));
@@ -176,6 +185,7 @@ int parse_and_run(int argc, char** argv, const std::function<void(CLI::App&, int
   };
   lists("--commands", "List the commands for other programs", [&app] { print_commands(app); });
   lists("--readings", "List the readings for other programs", print_readings);
+  lists("--columns", "List the columns of its files for other programs", print_columns);
   app.require_subcommand(1);
   int exit_code = done;
   add(app, exit_code);

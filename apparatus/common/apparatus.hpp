@@ -32,7 +32,7 @@ struct RunOptions {
   bool coarser = false;  ///< a run for an error estimate: its result is compared with nothing else
 };
 
-/// The functions take the apparatus' own scene as `read` returned it. Those after `uses` are empty for an
+/// The functions take the apparatus' own scene as `read` returned it. `estimate`, `model` and `threads` are empty for an
 /// apparatus without points (`tremie cell`).
 struct Apparatus {
   ApparatusKeys keys;

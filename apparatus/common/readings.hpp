@@ -46,17 +46,22 @@ struct Reading {
   std::vector<std::string> (*lines)(const View&) = {};  ///< on the screen in place of the usual line
 };
 
-/// A column of a table that goes over something else than time.
+/// A table that goes over something else than time, and its columns.
 template <class Row>
-struct ColumnOf {
-  std::string name, words;
-  double (*value)(const Row&);
+struct TableOf {
+  struct Column {
+    std::string name, words;
+    double (*value)(const Row&);
+  };
+  std::string file;  ///< "profile.csv"
+  std::vector<Column> columns;
 };
 
 /// A result or a column by its name, and what it means.
 struct Described {
   std::string name, words;
   bool is_result = false, measurable = false;
+  std::string file = {};  ///< where it is a column; empty: nowhere
 };
 
 /// A number that a person looks at first; `digits` behind the point with an error bar.
@@ -117,13 +122,13 @@ void read_into(const std::vector<Reading<View>>& table, const View& view, Outcom
 }
 
 template <class Row>
-std::vector<Column> columns_from(const std::vector<ColumnOf<Row>>& table, const std::vector<Row>& rows) {
-  std::vector<Column> columns;
-  for (const ColumnOf<Row>& c : table) {
-    columns.push_back({c.name, {}});
-    for (const Row& row : rows) columns.back().values.push_back(c.value(row));
+ResultTable table_from(const TableOf<Row>& table, const std::vector<Row>& rows) {
+  ResultTable filled{table.file, {}};
+  for (const auto& c : table.columns) {
+    filled.columns.push_back({c.name, {}});
+    for (const Row& row : rows) filled.columns.back().values.push_back(c.value(row));
   }
-  return columns;
+  return filled;
 }
 
 /// The headline numbers of a table, by rank.
@@ -140,11 +145,13 @@ std::vector<Headline> headlines_of(const std::vector<Reading<View>>& table) {
 
 template <class View>
 void describe(const std::vector<Reading<View>>& table, std::vector<Described>& all) {
-  for (const auto& row : table) all.push_back({row.name, row.words, row.value != nullptr, row.measurable});
+  for (const auto& row : table)
+    all.push_back(
+        {row.name, row.words, row.value != nullptr, row.measurable, row.at ? "timeseries.csv" : ""});
 }
 template <class Row>
-void describe(const std::vector<ColumnOf<Row>>& table, std::vector<Described>& all) {
-  for (const auto& row : table) all.push_back({row.name, row.words});
+void describe(const TableOf<Row>& table, std::vector<Described>& all) {
+  for (const auto& row : table.columns) all.push_back({row.name, row.words, false, false, table.file});
 }
 
 /// Names and words of an apparatus' tables, for the glossary and the reference.

@@ -273,19 +273,22 @@ const std::vector<Reading<View>>& readings() {
 }
 
 using P = ProfilePoint;
-const std::vector<ColumnOf<P>> profile_columns{
-    {"radius_mm", "", [](const P& p) { return p.radius * mm; }},
-    {"velocity_m_per_s", "", [](const P& p) { return p.velocity; }},
-    {"shear_rate_per_s", "", [](const P& p) { return p.shear_rate; }},
-    {"flocculation", "flocculation state λ", [](const P& p) { return or_nan(p.flocculation); }}};
-const std::vector<ColumnOf<CurvePoint>> curve_columns{
-    {"speed_rev_per_s", "", [](const CurvePoint& p) { return std::abs(p.speed); }},
-    {"torque_N_m", "", [](const CurvePoint& p) { return std::abs(p.torque); }}};
-const std::vector<ColumnOf<Sample>> record_columns{
-    {"time_s", "", [](S s) { return s.time; }}, {"torque_N_m", "", [](S s) { return std::abs(s.torque); }}};
+const TableOf<P> profile_table{
+    "profile.csv",
+    {{"radius_mm", "", [](const P& p) { return p.radius * mm; }},
+     {"velocity_m_per_s", "", [](const P& p) { return p.velocity; }},
+     {"shear_rate_per_s", "", [](const P& p) { return p.shear_rate; }},
+     {"flocculation", "flocculation state λ", [](const P& p) { return or_nan(p.flocculation); }}}};
+const TableOf<CurvePoint> curve_table{
+    "flow_curve.csv",
+    {{"speed_rev_per_s", "", [](const CurvePoint& p) { return std::abs(p.speed); }},
+     {"torque_N_m", "", [](const CurvePoint& p) { return std::abs(p.torque); }}}};
+const TableOf<Sample> record_table{
+    "torque.csv",
+    {{"time_s", "", [](S s) { return s.time; }}, {"torque_N_m", "", [](S s) { return std::abs(s.torque); }}}};
 
 ResultTable profile_of(const std::vector<ProfilePoint>& profile) {
-  ResultTable table{"profile.csv", columns_from(profile_columns, profile)};
+  ResultTable table = table_from(profile_table, profile);
   if (std::none_of(profile.begin(), profile.end(), [](const P& p) { return p.flocculation; }))
     table.columns.pop_back();
   return table;
@@ -297,9 +300,7 @@ constexpr double steady_enough = 0.02;
 /// The record as `tremie fit` reads it: magnitudes, and no reading before the vane has its speed and the concrete
 /// has followed it: a torque that accelerates the concrete is none of its rheology.
 ResultTable record_of(const Scene& scene, const Outcome& raw) {
-  if (!scene.speeds.empty()) {
-    return {"flow_curve.csv", columns_from(curve_columns, raw.results.flow_curve)};
-  }
+  if (!scene.speeds.empty()) return table_from(curve_table, raw.results.flow_curve);
   const double direction = scene.speed < 0.0 ? -1.0 : 1.0;
   std::vector<Sample> record;
   const auto steady = std::find_if(raw.series.begin(), raw.series.end(), [&](const Sample& s) {
@@ -308,7 +309,7 @@ ResultTable record_of(const Scene& scene, const Outcome& raw) {
   });
   std::copy_if(steady, raw.series.end(), std::back_inserter(record),
                [&](const Sample& s) { return s.speed == scene.speed && direction * s.torque > 0.0; });
-  return {"torque.csv", columns_from(record_columns, record)};
+  return table_from(record_table, record);
 }
 
 Chart torque_chart(const Results& r, bool constant_speed) {
@@ -487,7 +488,7 @@ std::vector<std::string> uses(const Scene& scene) {
 
 Apparatus apparatus() {
   return make_apparatus<Scene>(
-      apparatus_of(keys(), "vane", readings(), profile_columns, curve_columns, record_columns), read_scene,
+      apparatus_of(keys(), "vane", readings(), profile_table, curve_table, record_table), read_scene,
       uses, run_and_read, estimate);
 }
 

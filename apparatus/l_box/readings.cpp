@@ -150,9 +150,10 @@ const std::vector<Reading<View>>& readings() {
 }
 
 using Place = std::array<double, 2>;
-const std::vector<ColumnOf<Place>> profile_columns{
-    {"distance_mm", "distance from the gate", [](const Place& p) { return p[0] * mm; }},
-    {"depth_mm", "", [](const Place& p) { return p[1] * mm; }}};
+const TableOf<Place> profile{
+    "profile.csv",
+    {{"distance_mm", "distance from the gate", [](const Place& p) { return p[0] * mm; }},
+     {"depth_mm", "", [](const Place& p) { return p[1] * mm; }}}};
 
 /// The box seen from the side: column, channel, and the gate that rises.
 Stage stage_of(const Scene& scene) {
@@ -195,7 +196,7 @@ scene::Outcome run_and_read(const Scene& scene, const RunOptions& options, const
         "The box's side walls are left out, which makes the passing ratio too large: 0.72 for 0.59 at 50 Pa, "
         "0.56 for 0.37 at 75 Pa. model.space = \"plane_with_side_walls\" averages their drag.");
   outcome.stage = stage_of(scene);
-  outcome.tables = {{"profile.csv", columns_from(profile_columns, raw.results.profile)}};
+  outcome.tables = {table_from(profile, raw.results.profile)};
   outcome.charts = charts_of(scene.mix.thixotropy.has_value());
   outcome.pictured = false;
   return outcome;
@@ -222,7 +223,7 @@ std::vector<std::string> uses(const Scene& scene) {
 }  // namespace
 
 Apparatus apparatus() {
-  return make_apparatus<Scene>(apparatus_of(keys(), "L-box", readings(), profile_columns), read_scene, uses,
+  return make_apparatus<Scene>(apparatus_of(keys(), "L-box", readings(), profile), read_scene, uses,
                                run_and_read, estimate);
 }
 

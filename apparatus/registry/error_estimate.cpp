@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 namespace tremie::scene {
 namespace {
 
-constexpr double safety = 1.25, least_share = 1e-3;
+constexpr double safety = 1.25, least_share = 1e-3, doubtful_share = 0.1;
 /// Walls and free surfaces lie between the nodes: a higher order over three grids is luck.
 constexpr double highest_order = 1.0;
 /// A run's cost over the size of its cells: as many more steps, and points to the power of 1.2 in the plane.
@@ -33,17 +34,33 @@ double order_from(double ratio, const Coarsening& by) {
   return 0.5 * (low + high);
 }
 
-/// A coarser run shows its progress alone: its frames, and what it would be compared with, are nobody's.
-Outcome run_coarser(const Scene& scene, double ratio, const Observer& observer) {
+/// Such a run shows its progress alone: its frames, and what it would be compared with, are nobody's.
+Outcome run_with_cells(const Scene& scene, double ratio, const Observer& observer) {
   Observer quiet;
   quiet.on_progress = observer.on_progress;
   quiet.interrupted = observer.interrupted;
   return run(coarsened(scene, ratio), quiet, true);
 }
 
-std::string basis_of(const Headline& headline, const Extrapolation& e) {
-  return e.richardson ? fmt::format("{}: Richardson, order {:.1f}", headline.name, e.order)
-                      : fmt::format("{}: spread of three grids", headline.name);
+/// Outcomes of three grids, the finest first; the first or the second is the run that the bars are for.
+struct Grids {
+  const Outcome* finer = nullptr;
+  const Outcome *fine, *middle, *coarse;
+};
+
+/// Nothing where one of the grids does not read the number.
+std::optional<Extrapolation> extrapolate_of(const std::string& name, const Grids& grids,
+                                            const Coarsening& by) {
+  const auto f = find_number(*grids.fine, name), m = find_number(*grids.middle, name);
+  const auto other = find_number(grids.finer ? *grids.finer : *grids.coarse, name);
+  if (!f || !m || !other) return {};
+  return grids.finer ? extrapolate_with_finer(*other, *f, *m, by) : extrapolate(*f, *m, *other, by);
+}
+
+std::string basis_of(const Headline& headline, const Extrapolation& e, bool finer) {
+  return (e.richardson ? fmt::format("{}: Richardson, order {:.1f}", headline.name, e.order)
+                       : fmt::format("{}: spread of three grids", headline.name)) +
+         (finer ? ", one finer" : "");
 }
 
 }  // namespace
@@ -60,6 +77,16 @@ Extrapolation extrapolate(double fine, double middle, double coarse, const Coars
       e.error = safety * std::abs(near) / (std::pow(by.middle, std::min(e.order, highest_order)) - 1.0);
   }
   e.error = std::max(e.error, least_share * std::abs(fine));
+  return e;
+}
+
+bool is_doubtful(const Extrapolation& three, double fine) {
+  return !three.richardson && three.error > doubtful_share * std::abs(fine);
+}
+
+Extrapolation extrapolate_with_finer(double finer, double fine, double middle, const Coarsening& by) {
+  Extrapolation e = extrapolate(finer, fine, middle, {by.middle, by.middle * by.middle});
+  if (e.richardson) e.error += std::abs(finer - fine);
   return e;
 }
 
@@ -80,20 +107,27 @@ ErrorEstimate estimate_error(const Scene& scene, const Outcome& outcome, const O
   }
   const Coarsening by = coarsening_of(scene);
   try {
-    const Outcome middle = run_coarser(scene, by.middle, observer);
-    const Outcome coarse = run_coarser(scene, by.coarse, observer);
+    const Outcome middle = run_with_cells(scene, by.middle, observer);
+    const Outcome coarse = run_with_cells(scene, by.coarse, observer);
     estimate.cpu = middle.cost.cpu + coarse.cost.cpu;
     if (middle.status != Status::completed || coarse.status != Status::completed) {
       estimate.basis = "none: a coarser run did not come to its end";
       return estimate;
     }
-    for (const Headline& headline : scene.functions->headlines) {
-      const auto f = find_number(outcome, headline.name), m = find_number(middle, headline.name),
-                 c = find_number(coarse, headline.name);
-      if (!f || !m || !c) continue;
-      const Extrapolation e = extrapolate(*f, *m, *c, by);
-      estimate.bars.push_back({headline.name, e.error});
-      estimate.basis += (estimate.basis.empty() ? "" : "; ") + basis_of(headline, e);
+    Grids grids{nullptr, &outcome, &middle, &coarse};
+    const std::vector<Headline>& headlines = scene.functions->headlines;
+    const auto first = headlines.empty() ? std::nullopt : extrapolate_of(headlines.front().name, grids, by);
+    Outcome finer;
+    if (first && is_doubtful(*first, *find_number(outcome, headlines.front().name))) {
+      finer = run_with_cells(scene, 1.0 / by.middle, observer);
+      estimate.cpu += finer.cost.cpu;
+      if (finer.status == Status::completed) grids.finer = &finer;
+    }
+    for (const Headline& headline : headlines) {
+      const auto e = extrapolate_of(headline.name, grids, by);
+      if (!e) continue;
+      estimate.bars.push_back({headline.name, e->error});
+      estimate.basis += (estimate.basis.empty() ? "" : "; ") + basis_of(headline, *e, grids.finer);
     }
     if (estimate.bars.empty()) estimate.basis = "none: a coarser run does not reach what this one reads";
   } catch (const InputError& error) {
@@ -106,7 +140,7 @@ Choice choose_cells(const Scene& scene, double accuracy, const Observer& observe
   std::array<Outcome, 3> pilots;
   Choice choice;
   for (std::size_t i = 0; i < 3; ++i) {
-    pilots[i] = run_coarser(scene, 2.0 + static_cast<double>(i), observer);
+    pilots[i] = run_with_cells(scene, 2.0 + static_cast<double>(i), observer);
     choice.pilot_cpu += pilots[i].cost.cpu;
   }
   const auto headline = scene.functions->headlines.front();

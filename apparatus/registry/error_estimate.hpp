@@ -1,7 +1,7 @@
 #pragma once
 
 // How far a result may be from what finer cells and steps would give: the scene twice more, with cells and
-// steps that are larger by two factors.
+// steps that are larger by two factors; where those scatter, once more with smaller ones.
 
 #include <string>
 #include <vector>
@@ -26,11 +26,18 @@ struct Extrapolation {
 /// spread of the three. Never less than a thousandth of the value.
 Extrapolation extrapolate(double fine, double middle, double coarse, const Coarsening& by = {});
 
+/// Whether the three scatter by more than a tenth of the value: a coarse grid then misses what finer ones see, and its
+/// scatter says nothing about the fine one.
+bool is_doubtful(const Extrapolation& three, double fine);
+
+/// The bar about `fine` where a grid with cells `by.middle` times smaller takes the place of the coarsest.
+Extrapolation extrapolate_with_finer(double finer, double fine, double middle, const Coarsening& by = {});
+
 /// The same scene with cells and steps, fixed or chosen, `ratio` times as large.
 Scene coarsened(const Scene& scene, double ratio);
 
-/// The error bars of the outcome's headline numbers, and what they cost. Runs two coarser scenes. Empty, with
-/// the reason in `basis`, where those cannot be run.
+/// The error bars of the outcome's headline numbers, and what they cost. Runs two coarser scenes, and a finer one where the
+/// first number is doubtful. Empty, with the reason in `basis`, where those cannot be run.
 ErrorEstimate estimate_error(const Scene& scene, const Outcome& outcome, const Observer& observer = {});
 
 /// The size of cells that the accuracy wants, as a factor on the scene's: from runs at 2, 3 and 4 times its

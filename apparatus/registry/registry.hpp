@@ -50,6 +50,7 @@ Scene read(const std::filesystem::path& path, const std::vector<std::string>& ov
 Scene read_text(const std::string& text, const std::string& name,
                 const std::vector<std::string>& overrides = {}, const std::string& command = "run");
 
+/// OpenMP threads of the scene's run, at least 1; a scene that was read has one.
 void set_threads(Scene& scene, int threads);
 
 /// As many threads as pay for the scene's size on this machine.

@@ -26,7 +26,7 @@ constexpr double to_deviation = 1.0 / 1.96;
 /// The kinetics of one pair of runs, the rest as the mix has it.
 struct Variant {
   double a = of_the_mixes, k_factor = 1.0, gate = 0.0, A_thix_factor = 1.0;
-  bool friction = false;
+  bool friction = false, with_error = false;
 };
 struct MixData {
   double A_thix;  ///< Table 1 [Pa/s]
@@ -48,21 +48,26 @@ Ask ask(std::size_t mix, bool rested, const Variant& v) {
   if (v.friction)
     asked.scene +=
         fmt::format("[floor]\ncontact = \"friction\"\ncoefficient = {}\n", paper_mix[mix].friction);
-  asked.with_error = false;
+  asked.with_error = v.with_error;
   return asked;
 }
 
 using Losses = std::array<double, 3>;  ///< of Mixes A to C [mm]
 
-std::vector<Losses> losses_of(const std::vector<Variant>& variants, const Settings& settings) {
+/// The losses of each variant; those with an error have it in `errors`.
+std::vector<Losses> losses_of(const std::vector<Variant>& variants, const Settings& settings,
+                              Losses* errors = nullptr) {
   std::vector<Ask> asked;
   for (const Variant& v : variants)
     for (std::size_t mix = 0; mix < 3; ++mix)
       for (const bool rested : {false, true}) asked.push_back(ask(mix, rested, v));
   const auto readings = read_scenes(asked, settings);
   std::vector<Losses> losses(variants.size());
-  for (std::size_t i = 0; i < readings.size(); i += 2)
+  for (std::size_t i = 0; i < readings.size(); i += 2) {
     losses[i / 6][i / 2 % 3] = readings[i].value - readings[i + 1].value;
+    if (errors && variants[i / 6].with_error)
+      (*errors)[i / 2 % 3] = std::hypot(readings[i].error, readings[i + 1].error);
+  }
   return losses;
 }
 
@@ -154,8 +159,9 @@ std::string what_moves_them(const Settings& settings) {
 
 Section breakdown_of_pairs(const Settings& settings) {
   std::vector<Variant> variants;
-  for (const double a : exponents) variants.push_back({.a = a});
-  const auto losses = losses_of(variants, settings);
+  for (const double a : exponents) variants.push_back({.a = a, .with_error = a == of_the_mixes});
+  Losses errors{};
+  const auto losses = losses_of(variants, settings, &errors);
   draw(losses, settings.folder / "breakdown.svg");
   Section section{"breakdown", "Breakdown by time or by strain",
                   "dλ/dt = A_thix/τ0 − k γ̇^a λ without gate and slip, every other value as printed. k γ̇^a is "
@@ -170,7 +176,7 @@ Section breakdown_of_pairs(const Settings& settings) {
       Comparison c = measured;
       c.what = fmt::format("{}, a = {}", paper_mix[mix].name, a);
       c.predicted = loss(a);
-      c.predicted_error = NAN;
+      c.predicted_error = a == of_the_mixes ? errors[mix] : NAN;
       section.comparisons.push_back(c);
     }
     Comparison c = measured;

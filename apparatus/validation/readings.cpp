@@ -24,7 +24,11 @@ std::string read_one(const Ask& ask) {
   if (!ask.with_error) return nlohmann::json{fine, 0.0}.dump();
   const double middle = result_of(scene::coarsened(scene, by.middle), ask.result, true);
   const double coarse = result_of(scene::coarsened(scene, by.coarse), ask.result, true);
-  return nlohmann::json{fine, scene::extrapolate(fine, middle, coarse).error}.dump();
+  scene::Extrapolation e = scene::extrapolate(fine, middle, coarse);
+  if (scene::is_doubtful(e, fine))
+    e = scene::extrapolate_with_finer(result_of(scene::coarsened(scene, 1.0 / by.middle), ask.result, true),
+                                      fine, middle);
+  return nlohmann::json{fine, e.error}.dump();
 }
 
 }  // namespace

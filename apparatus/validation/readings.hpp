@@ -18,7 +18,7 @@ struct Ask {
 
 struct Reading {
   double value = 0.0;  ///< not-a-number where the run has no such number
-  double error = 0.0;  ///< half-width, from three grids
+  double error = 0.0;  ///< half-width, from three grids, one finer where coarse ones scatter
 };
 
 /// In the order of `asked`. Throws Interrupted.

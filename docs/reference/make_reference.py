@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """The reference, from the program itself: make_reference.py PROGRAM [--check].
 
-Writes scenes.md (what `tremie new` prints), commands.md (every command's --help) and results.md (`tremie --readings`: names, units and words of what
-every apparatus reads) beside this file. With --check nothing is
+Writes scenes.md (what `tremie new` prints), commands.md (every command's --help) and results.md (`tremie --readings` and `--columns`: names, units and words of what
+every apparatus reads and of its files' columns) beside this file. With --check nothing is
 written: exit 1 where a stored page differs from what the program says. A command that is not in this build has no help: its stored section is kept, unchecked."""
 import pathlib, re, subprocess, sys
 
@@ -52,9 +52,24 @@ def listed_readings():
     return apparatus
 
 
-def table(words, readings):
-    rows = "\n".join(f"| `{name}` | {unit} | {what} |" for name, unit, what in readings)
-    return f"## `results`: {words}\n\n| key | unit | what |\n|---|---|---|\n{rows}\n"
+def listed_columns():
+    """Of every apparatus the columns of its files, (name, unit, words) by file."""
+    columns = {}
+    for line in (says("--columns") or "").splitlines():
+        name, file, column, unit, words = line.split("\t")
+        columns.setdefault(name, {}).setdefault(file, []).append((column, "" if unit == "1" else unit, words))
+    return columns
+
+
+def rows(head, readings):
+    return f"| {head} | unit | what |\n|---|---|---|\n" + "\n".join(f"| `{name}` | {unit} | {what} |" for name, unit, what in readings) + "\n"
+
+
+def table(words, readings, files):
+    parts = [f"## `results`: {words}\n", rows("key", readings)]
+    for file, columns in files.items():
+        parts.append(rows(f"column of `{file}`", columns))
+    return "\n".join(parts)
 
 
 results_head = """# Every field of a result
@@ -82,7 +97,11 @@ A run fills a folder ([which files](../guide/slump_flow.md#what-a-run-leaves)); 
 | `series/NAME` | samples | the columns of `timeseries.csv`; `series/time_s` is their scale |
 | `frames/00000`, its attribute `time_s` | one number | [s] |
 | `frames/00000/position`, `velocity` | points, 3 | [m], [m/s] |
-| `frames/00000/volume`, `pressure`, `shear_rate`, `flocculation` | points | [m³], [Pa], [1/s], [1] |
+| `frames/00000/volume`, `pressure`, `shear_rate`, `flocculation` | points | [m³], [Pa], [1/s], [1]; what a scene does not have is left out |
+| `frames/00000/age`, `load`, of a pile | points | [s] since batching, number of the load |
+| `profile/NAME`, `torque/NAME`, `flow_curve/NAME`, `wall/NAME` | rows | the columns of that `.csv`; the first is their scale |
+
+Numbers are IEEE doubles. In three dimensions z is up. A section of a body of revolution is (radius, 0, height), a plane section (along, height, 0), a vane's section (x, y, 0). A point keeps its place in the order from frame to frame, but for concrete that enters or leaves; where a run chooses its frames by itself, every k-th point is written. `frames/*.vtp` have the same fields under the same names.
 
 `fit`, `estimate`, `study` and `calibrate` leave files of their own: what is in them is on their pages of the guide. A run that was cut short keeps its state in `.NAME.part/checkpoint` beside its folder, for the very build that wrote it: points, time, step, grid, the solver's stresses and rates, friction, bars' drag, and the apparatus' own series. The last step of a test is cut to end at `test.duration`. A finished result keeps the state before that step in `.for_longer`, from which `tremie resume DIR --until` goes on with whole steps. A run that was interrupted and resumed leaves the same bytes as one that was not.
 """
@@ -99,7 +118,7 @@ def scene_sections(names):
     return sections
 
 
-apparatus = listed_readings()
+apparatus, columns = listed_readings(), listed_columns()
 listed = says("--commands")
 commands = [line.split("\t")[0] for line in listed.splitlines()] if listed else []
 pages = {
@@ -111,7 +130,7 @@ pages = {
         "# Every command\n\nWhat `tremie COMMAND --help` prints.\n",
         [section("`tremie`", "text", says("--help") or "")]
         + [text for name in commands for text in command_section(name)]),
-    "results.md": (results_head, [table(*found) for found in apparatus.values()]),
+    "results.md": (results_head, [table(*found, columns.get(name, {})) for name, found in apparatus.items()]),
 }
 
 differ = False

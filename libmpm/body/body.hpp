@@ -16,7 +16,7 @@ namespace tremie {
 template <class Geometry>
 struct Body {
   static constexpr int D = Geometry::dim;
-  Mix mix;                          ///< where points differ in theirs: density, K and what scales tolerances
+  Mix mix;                          ///< of all points; with `mixes` it gives density, K and the scale of tolerances
   std::vector<Mix> mixes{};         ///< by Points::mix, of one density, K and kinetics; empty: mix
   Vec<D> gravity = Vec<D>::Zero();  ///< [m/s^2]
   Points<D> points;
@@ -29,8 +29,8 @@ struct Body {
 
   NodalState<D> nodes;             ///< of the last step, velocities at its start (implicit: with gravity)
   std::vector<Vec<D>> v;           ///< nodal velocities at the end of the last step [m/s]
-  double dissipation = 0.0;        ///< power of the stresses in the last step [W], if asked for
-  std::vector<Vec<D>> wall_force;  ///< of the flat walls on each node in the last step [N], if asked for
+  double dissipation = 0.0;        ///< power of the stresses in the last step [W; W/m], if asked for
+  std::vector<Vec<D>> wall_force;  ///< of the flat walls on each node in the last step [N; N/m], if asked for
 
   const Mix& mix_of(std::size_t p) const {
     return mixes.empty() ? mix : mixes[static_cast<std::size_t>(points.mix[p])];

@@ -27,7 +27,7 @@ using RigidWall = std::function<std::optional<WallView<D>>(const Vec<D>& x, doub
 /// Time in which an overlap with a wall is closed at the soonest [s].
 inline constexpr double contact_relaxation = 1e-3;
 
-/// How much stiffer than a step needs it a wall is that moves with `speed` [m/s]. What gives way a little in every
+/// Factor on the penalty of a wall that moves slowly, with `speed` [m/s]. What gives way a little in every
 /// step adds up for as long as the wall is passed: the slower it is, the less may go through in a step. The
 /// constants are calibrated: about a hundredth of the concrete goes through a cone lifted at 5 to 50 mm/s (lift.md).
 inline double slow_wall_factor(double speed) {

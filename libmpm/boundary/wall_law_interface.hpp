@@ -10,11 +10,16 @@
 //   follows_pressure   whether that depends on `pressing`; an implicit step then renews it from the reaction
 //   stress()           in place of yield_force(): the stress that the wall takes from what slides along it, on the area that
 //                      is wetted; implicit steps alone
-//   bears(pressure)    the largest shear stress that the wall takes under a pressure [Pa]
+//
+// so a law is yield + viscous u on the wetted area, or a yield force by the normal force alone: cohesion with friction, or a
+// viscous part that is not linear in u, has no place here. For checks of a run, not for its steps:
+//
+//   bears(pressure)    the largest shear stress that the wall takes from slow concrete under a pressure [Pa]
 //
 //   word               the word of a scene's `contact`
 //   use                what `tremie check` says of a floor that has it
-//   keys()             the keys beside `contact` that give its parameters, as yield laws have them
+//   keys()             the keys beside `contact` that give its parameters, as yield laws have them: "floor.…", which [walls]
+//                      read under their own name
 
 #include "libmpm/constitutive/laws/law_interface.hpp"
 #include "libmpm/grid/axis.hpp"

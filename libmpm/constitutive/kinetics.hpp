@@ -17,7 +17,7 @@
 
 namespace tremie {
 
-using Kinetics = std::variant<GatedKinetics,    // the first is the default of a scene
+using Kinetics = std::variant<GatedKinetics,    // Kinetics{} is the first; scenes default to the last
                               RousselKinetics,  //
                               PowerKinetics,    //
                               RatePowerKinetics>;

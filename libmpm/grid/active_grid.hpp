@@ -56,7 +56,7 @@ struct Block {
 };
 
 /// A thin wall on a face of the grid that is a repeated knot: the cells on its two sides share the nodes on the face
-/// alone, so that what these may not do nothing does anywhere on the wall. It stands where the coordinate of another
+/// alone, so that a velocity fixed at these nodes holds on the whole wall. It stands where the coordinate of another
 /// direction is within [from, to), and may grow or shrink there; normal to itself it does not move.
 template <int D>
 struct Sheet {

@@ -7,8 +7,9 @@
 
 namespace tremie {
 
-/// Stresses, rates and the wall terms stand by the cells and nodes that were active in the last step. A
-/// grid's axes and its blocks are the scene's; matrices and factors follow from the grid.
+/// Points, time, step length, stresses, rates and wall terms, by the cells and nodes that were active in the last step. Mix,
+/// gravity, the grid's axes and its blocks are not in it: set them as for the first step before reading back. Matrices and
+/// factors follow from the grid.
 template <class Geometry>
 void visit(Archive& archive, ImplicitBody<Geometry>& body);
 

@@ -17,9 +17,12 @@
 
 namespace tremie {
 
-/// What a section's cells weigh: their points; inside the body what a full cell does, where its stresses are integrated; that
-/// everywhere.
-enum class WeightRule { points, balanced_inside, balanced };
+/// What a section's cells weigh.
+enum class WeightRule {
+  points,           ///< what their points weigh
+  balanced_inside,  ///< cells inside the body what a full cell does, where its stresses are integrated; others their points
+  balanced          ///< every cell what a full one does
+};
 
 enum class YieldMethod { automatic, admm, newton };
 
@@ -31,16 +34,16 @@ struct StepSettings {
   ParticleShifting particle_shifting;
   std::optional<double> fixed_dt;  ///< [s]; empty: chosen at every step
   double dt_max = 0.1;             ///< [s]
-  double time_error = 0.0;         ///< a step beyond dt_max may err by so much, in cells; 0: none goes beyond
-  double dt_longest = 1.0;         ///< of those [s]
+  double time_error = 0.0;         ///< local error allowed to steps longer than dt_max, in cells; 0: none is longer
+  double dt_longest = 1.0;         ///< the longest such step [s]
   double time_left = 1e300;        ///< no step goes beyond it [s]
   double cfl = 0.6;                ///< largest move in a step, in cells
   double growth = 1.3;             ///< largest ratio of successive steps
   double detached = 0.0;     ///< share of the points that may be drops in the air (detached_particles.hpp)
   WallLaw wall_law;          ///< along faces of FaceKind::wall_law
   bool keep_forces = false;  ///< fill Body::wall_force and Body::dissipation
-  double boundary_stiffness = 1000.0;  ///< of walls inside the grid, in m/dt
-  double alternating_viscosity = 0.0;  ///< zeta of yield_problem.hpp, in eta
+  double boundary_stiffness = 1000.0;  ///< of walls inside the grid, in nodal mass over dt
+  double alternating_viscosity = 0.0;  ///< zeta of yield_problem.hpp, over the cell's viscosity
   bool cut_cell_rule =
       false;  ///< stresses of partly filled cells where the points are; in 3D films hold on their walls
   bool settle_on_floor = false;  ///< partly filled cells on the floor are full from below (mpm_step.md)
@@ -48,7 +51,7 @@ struct StepSettings {
   bool moving_surface = false;             ///< gravity where the step leaves the free surface
   double side_wall_distance = 0.0;  ///< of a width-averaged section [m]; 0: plane strain, no side walls
   double wall_gap = 0.0;            ///< how near a point may come to a rigid wall [m]
-  double wall_penalty = 100.0;      ///< stiffness of a rigid wall, in m/dt
+  double wall_penalty = 100.0;      ///< stiffness of a rigid wall, in nodal mass over dt
 };
 
 /// A body with what its implicit steps carry over from one to the next.
@@ -69,10 +72,10 @@ struct ImplicitBody : Body<Geometry> {
 };
 
 struct StepReport {
-  double dt = 0.0;
+  double dt = 0.0;  ///< [s]
   bool converged = false;
   bool failed = false;  ///< the velocities are not finite or run away: the points were left where they were
-  int iterations = 0;   ///< linear solves
+  int iterations = 0;            ///< linear solves
   double max_speed = 0.0;        ///< of the points [m/s]
   double bulk_speed = 0.0;       ///< of all but the fastest half percent of the points [m/s]
   double shear_rate_mean = 0.0;  ///< volume mean [1/s]

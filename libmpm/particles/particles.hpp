@@ -8,7 +8,8 @@
 
 namespace tremie {
 
-/// Material points as a structure of arrays, SI units. What a material does not have is an empty array.
+/// Material points as a structure of arrays, SI units. What a material does not have is an empty array. Masses and volumes are
+/// those of the geometry: of the whole ring (Axisymmetric), per metre of width (PlaneStrain) or of height (Couette, Polar).
 template <int D>
 struct Points {
   std::vector<Vec<D>> x;          ///< position [m]
@@ -17,7 +18,7 @@ struct Points {
   std::vector<double> mass;       ///< [kg]
   std::vector<double> V0;         ///< stress-free volume [m^3]
   std::vector<double> ln_J;       ///< ln(V / V0)
-  std::vector<double> lambda;     ///< flocculation state; empty without thixotropy
+  std::vector<double> lambda;     ///< flocculation state [1]; empty without thixotropy
   std::vector<double> gamma_dot;  ///< shear rate of the last step [1/s]; empty where nothing needs it
   std::vector<std::vector<double>> lambda_parts;  ///< whose sum lambda is; none where it is one number
   std::vector<int> mix;                           ///< of Body::mixes; empty where all are of one
@@ -53,7 +54,8 @@ void shrink(Points<D>& points) {
   for (std::vector<double>& part : points.lambda_parts) part.shrink_to_fit();
 }
 
-/// Adds a point at rest.
+/// Adds a point at rest: its mass [kg], stress-free volume [m^3] and ln(V/V0). lambda, gamma_dot, lambda_parts and mix are the
+/// caller's to fill (experiment::rest in apparatus/run/body_readings.hpp fills the first three).
 template <int D>
 void add_point(Points<D>& points, const Vec<D>& x, double mass, double V0, double ln_J) {
   points.x.push_back(x);

@@ -63,7 +63,7 @@ const std::vector<FitOption>& fit_options() {
              {6, "yield_stress_Pa"}),
       number("plastic_viscosity", &O::plastic_viscosity, "Pa.s", "Plastic viscosity, if known: \"35.8 Pa.s\"",
              {7, "plastic_viscosity_Pa_s"}),
-      word("kinetics", &O::kinetics, words_of_kinetics(), "Kinetics of the flocculation state",
+      word("kinetics", &O::kinetics, words_of_kinetics(), "Kinetics of the flocculation state (default: auto)",
            {8, "kinetics"}),
       word("law", &O::law, words_of_laws(),
            "Law of a flow curve (default: bingham; with --protocol auto); auto: both are compared",

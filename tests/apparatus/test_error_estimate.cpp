@@ -50,6 +50,24 @@ TEST(Extrapolation, TakesTheSpreadWhereNoOrderIsSeen) {
 // Three equal readings are no proof of an exact one: a thousandth stays.
 TEST(Extrapolation, IsNeverNothing) { EXPECT_DOUBLE_EQ(extrapolate(500.0, 500.0, 500.0).error, 0.5); }
 
+// 431, 432 and 300 mm: the coarsest grid misses what the others see. A finer one, 433 mm, takes its place: 1.25 times the
+// spread of 433, 431 and 432.
+TEST(Extrapolation, DoubtsACoarseGridThatStandsAlone) {
+  EXPECT_TRUE(is_doubtful(extrapolate(431.0, 432.0, 300.0), 431.0));
+  EXPECT_FALSE(is_doubtful(extrapolate(431.0, 432.0, 425.0), 431.0));
+  EXPECT_DOUBLE_EQ(extrapolate_with_finer(433.0, 431.0, 432.0).error, 1.25 * 2.0);
+}
+
+// A power law over h/1.5, h and 1.5 h: the bar about the value on h holds all of its error.
+TEST(Extrapolation, StandsAboutTheScenesOwnGrid) {
+  const auto f = [](double h) { return 100.0 - 3.0 * std::pow(h, 0.8); };
+  const Extrapolation e = extrapolate_with_finer(f(1.0 / 1.5), f(1.0), f(1.5));
+  EXPECT_TRUE(e.richardson);
+  EXPECT_NEAR(e.order, 0.8, 1e-6);
+  EXPECT_GE(e.error, 3.0);
+  EXPECT_LE(e.error, 1.25 * 3.0);
+}
+
 Scene coarse_slump() {
   return read_text(
       "apparatus = \"slump_flow\"\nmix = \"mix_c\"\n[test]\nduration = \"0.2 s\"\nlift_speed = \"instant\"\n"

@@ -57,6 +57,8 @@ py::dict dict_of(Frame& frame) {
     d["flocculation"] = py::none();
   else
     d["flocculation"] = array_of(std::move(frame.flocculation));
+  if (!frame.age.empty()) d["age_s"] = array_of(std::move(frame.age));
+  if (!frame.load.empty()) d["load"] = array_of(std::move(frame.load));
   return d;
 }
 

@@ -23,8 +23,9 @@
 //   dual_limit(gamma_dot, tau_y) the stress |s| that Newton's dual may carry, at most what keeps its tangent positive:
 //                               secant^2 / (|slope| gamma_dot); tau_y will do where f has no viscous part, f elsewhere
 //                               [Pa]
-//   newtonian()                 its share in the mix's mu: 0 unless it is Bingham in other words, with no viscous part
-//                               left in f (Reiner-Riwlin's formulas then hold) [Pa s]
+//   newtonian()                 the plastic viscosity that a law gives to the mix's mu because it is Bingham with other
+//                               parameters (Herschel-Bulkley with n = 1: k); f then keeps no viscous part, and
+//                               Reiner-Riwlin's formulas hold. 0 for every other law, and for Bingham itself [Pa s]
 //   viscosity(gamma_dot, tau_y) (f - tau_y) / gamma_dot where f has a viscous part beyond mu, 0 else; for the stress
 //                               scale of ADMM and the drag of side walls and bars [Pa s]
 //   largest_secant(tau_y)       over the shear rates of a test, for the explicit step's limit; infinite where there is

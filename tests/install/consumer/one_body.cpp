@@ -14,7 +14,7 @@ int main() {
   body.mix = {.density = 2400.0, .tau_0 = 50.0, .mu = 30.0};
   body.gravity = {0.0, -g};
   body.grid.axes[0] = {.h = 0.005, .low = FaceKind::no_slip};       // x: the wall at 0
-  body.grid.axes[1] = {.h = 0.01, .periodic = true, .n_cells = 4};  // z: goes on for ever
+  body.grid.axes[1] = {.h = 0.01, .periodic = true, .n_cells = 4};  // y: goes on for ever
   seed_box<PlaneStrain>(
       {0.0, 0.0}, {d, height}, {32, 16}, body.mix.density, body.mix.K, [](const auto&) { return true; },
       [](const auto&) { return 0.0; }, body.points);
