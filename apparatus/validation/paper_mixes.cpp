@@ -45,9 +45,9 @@ std::string findings_of(const Section& section) {
 Section paper_mixes(const Settings& settings) {
   Section section{
       "mixes", "Mixes A to C, fresh and after 240 s",
-      "Every value as the paper (Wilkes, Kumar and Biscontin) prints it, its kinetics included; in the "
-      "last six rows Tremie's default kinetics. Cone at 15 cm/s. Their rate exponent was chosen with these "
-      "losses in view; nothing else is fitted."};
+      "Every value as the paper (Wilkes, Kumar and Biscontin) prints it, its kinetics included. Cone "
+      "at 15 cm/s, read after 30 s. In the last six rows Tremie's default kinetics, whose rate exponent was "
+      "chosen with these losses in view; nothing else is fitted."};
   std::vector<Ask> asked;
   const std::vector<std::string> as_printed{"mix.thixotropy.kinetics=gated"};
   for (const Floor& floor : {Floor{"no slip", false}, Floor{"friction", true}})

@@ -356,19 +356,27 @@ std::vector<DecayFit> fit_candidates(const Readings& r, FitInput in) {
   if (!in.choose_kinetics) return {fit_decay(r, in)};
   std::vector<DecayFit> fits;
   std::string failure;
-  for_each_kinetics([&](const auto& k) {
-    in.kinetics = k;
-    // without a rest nothing is known to build up, and Roussel's equation is the gated one
-    if (k.decay_fit.needs_speeds || (k.decay_fit.needs_rest && !in.rest)) return;
-    if (r.size() <= 2u + !in.tau_0 + !in.mu + k.decay_fit.free_exponent) return;
-    try {
-      fits.push_back(fit_decay(r, in));
-    } catch (const std::runtime_error& error) {
-      failure = error.what();
-    }
-  });
-  if (fits.empty()) throw std::runtime_error(failure);
+  const auto fit_all = [&](bool of_several_speeds) {
+    for_each_kinetics([&](const auto& k) {
+      in.kinetics = k;
+      if (k.decay_fit.needs_speeds != of_several_speeds) return;
+      // without a rest nothing is known to build up, and Roussel's equation is the gated one
+      if (k.decay_fit.needs_rest && !in.rest) return;
+      if (r.size() <= 2u + !in.tau_0 + !in.mu + k.decay_fit.free_exponent) return;
+      try {
+        fits.push_back(fit_decay(r, in));
+      } catch (const std::runtime_error& error) {
+        failure = error.what();
+      }
+    });
+  };
+  fit_all(false);
   start_from_contained(r, in, fits);
+  // One speed tells the rate of the others alone: they are asked where breakdown by strain has another shape.
+  if (std::none_of(fits.begin(), fits.end(),
+                   [&](const DecayFit& f) { return misfit_of(r, f.fit, "").empty(); }))
+    fit_all(true);
+  if (fits.empty()) throw std::runtime_error(failure);
   return fits;
 }
 

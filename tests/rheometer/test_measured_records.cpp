@@ -229,6 +229,30 @@ TEST(FitTorqueDecay, ChoosesTheKineticsAndIsNotMovedByTheLastDigitOfTheSpeed) {
   }
 }
 
+// The default kinetics of a scene break structure down by k gamma_dot^a with a = 0.1: at one speed an exponential, which
+// kinetics by strain miss. At 0.25 rev/s the rate in the sheared layer lies between 1 and 10 1/s, k gamma_dot^a between
+// 0.334 and 0.42 1/s.
+TEST(FitTorqueDecay, ReadsTheRateOfBreakdownByTime) {
+  RatePowerKinetics by_time;
+  by_time.breakdown = 0.334, by_time.rate_exponent = 0.1;
+  const CouetteFlow flow{mix_a, {1.3, by_time, lambda_0}, omega, {}};
+  TorqueRecord record;
+  record.kind = RecordKind::torque_decay;
+  record.time = even_times(150, 20.0);
+  record.torque = thixotropic_couette(flow, record.time).torque;
+  finish(record, 0.005, 7);
+  FitInput in = automatic();
+  in.tau_0 = 54.0, in.mu = 35.8;
+  const FitResult f = fit(record, in);
+  EXPECT_EQ(f.model, "rate_power");
+  EXPECT_TRUE(f.reasons.empty());
+  EXPECT_FALSE(f.alpha.has_value());
+  ASSERT_TRUE(f.breakdown_rate.has_value());
+  EXPECT_GT(f.breakdown_rate->value, 0.33);
+  EXPECT_LT(f.breakdown_rate->value, 0.43);
+  EXPECT_TRUE(inside(f.static_yield_stress, 366.0));
+}
+
 TEST(VaneEnds, TheTextbookAndATable) {
   EXPECT_NEAR(textbook_end_factor({}), 1.0 + 2.0 * 0.0635 / (3.0 * 0.127), 1e-12);
   const std::string table =
