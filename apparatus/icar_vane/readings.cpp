@@ -488,8 +488,8 @@ std::vector<std::string> uses(const Scene& scene) {
 
 Apparatus apparatus() {
   return make_apparatus<Scene>(
-      apparatus_of(keys(), "vane", readings(), profile_table, curve_table, record_table), read_scene,
-      uses, run_and_read, estimate);
+      apparatus_of(keys(), "vane", readings(), profile_table, curve_table, record_table), read_scene, uses,
+      run_and_read, estimate);
 }
 
 }  // namespace tremie::icar_vane

@@ -16,8 +16,8 @@ namespace tremie {
 template <class Geometry>
 struct Body {
   static constexpr int D = Geometry::dim;
-  Mix mix;                          ///< of all points; with `mixes` it gives density, K and the scale of tolerances
-  std::vector<Mix> mixes{};         ///< by Points::mix, of one density, K and kinetics; empty: mix
+  Mix mix;                   ///< of all points; with `mixes` it gives density, K and the scale of tolerances
+  std::vector<Mix> mixes{};  ///< by Points::mix, of one density, K and kinetics; empty: mix
   Vec<D> gravity = Vec<D>::Zero();  ///< [m/s^2]
   Points<D> points;
   ActiveGrid<D> grid;

@@ -19,9 +19,9 @@ namespace tremie {
 
 /// What a section's cells weigh.
 enum class WeightRule {
-  points,           ///< what their points weigh
+  points,  ///< what their points weigh
   balanced_inside,  ///< cells inside the body what a full cell does, where its stresses are integrated; others their points
-  balanced          ///< every cell what a full one does
+  balanced  ///< every cell what a full one does
 };
 
 enum class YieldMethod { automatic, admm, newton };
@@ -34,11 +34,11 @@ struct StepSettings {
   ParticleShifting particle_shifting;
   std::optional<double> fixed_dt;  ///< [s]; empty: chosen at every step
   double dt_max = 0.1;             ///< [s]
-  double time_error = 0.0;         ///< local error allowed to steps longer than dt_max, in cells; 0: none is longer
-  double dt_longest = 1.0;         ///< the longest such step [s]
-  double time_left = 1e300;        ///< no step goes beyond it [s]
-  double cfl = 0.6;                ///< largest move in a step, in cells
-  double growth = 1.3;             ///< largest ratio of successive steps
+  double time_error = 0.0;   ///< local error allowed to steps longer than dt_max, in cells; 0: none is longer
+  double dt_longest = 1.0;   ///< the longest such step [s]
+  double time_left = 1e300;  ///< no step goes beyond it [s]
+  double cfl = 0.6;          ///< largest move in a step, in cells
+  double growth = 1.3;       ///< largest ratio of successive steps
   double detached = 0.0;     ///< share of the points that may be drops in the air (detached_particles.hpp)
   WallLaw wall_law;          ///< along faces of FaceKind::wall_law
   bool keep_forces = false;  ///< fill Body::wall_force and Body::dissipation
@@ -75,7 +75,7 @@ struct StepReport {
   double dt = 0.0;  ///< [s]
   bool converged = false;
   bool failed = false;  ///< the velocities are not finite or run away: the points were left where they were
-  int iterations = 0;            ///< linear solves
+  int iterations = 0;   ///< linear solves
   double max_speed = 0.0;        ///< of the points [m/s]
   double bulk_speed = 0.0;       ///< of all but the fastest half percent of the points [m/s]
   double shear_rate_mean = 0.0;  ///< volume mean [1/s]
