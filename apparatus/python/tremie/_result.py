@@ -32,7 +32,7 @@ class Result:
     #: other tables by file name: "profile.csv", "fit.csv", "study.csv"
     tables: dict[str, Columns] = field(default_factory=dict)
     #: the points over time where they were asked for: "time_s", "position_m" (n, 3), "velocity_m_per_s" (n, 3),
-    #: "volume_m3", "pressure_Pa", "shear_rate_per_s", "flocculation" (None without thixotropy)
+    #: "volume_m3", "pressure_Pa", "shear_rate_per_s", "flocculation" (None without thixotropy); of a pile "age_s" and "load"
     frames: list[dict[str, Any]] = field(default_factory=list)
     #: the resolved scene as TOML, every value in SI
     scene: str = ""
