@@ -153,11 +153,14 @@ std::string too_old(const View& v) {
 
 std::vector<std::string> remarks_of(const View& v) {
   std::vector<std::string> remarks;
-  if (v.r.stopped_at)
-    remarks.push_back(
-        fmt::format("The head does not suffice: the pour stops at a level of {:.2f} m, where the pipe's top "
-                    "(pipe.above) is too low.",
-                    *v.r.stopped_at));
+  if (v.r.stopped_at && !v.series.empty())
+    remarks.push_back(fmt::format(
+        "The pour stops at a level of {:.2f} m: at its full rate {}, and the pipe's top (pipe.above) "
+        "gives {:.1f} m. A slower restart needs less.",
+        *v.r.stopped_at,
+        v.r.head_needed ? fmt::format("it needs a head of {:.1f} m above the mouth", *v.r.head_needed)
+                        : "no head pushes it",
+        v.scene.depth + v.scene.pipe.above - v.series.back().mouth));
   double volume = 0.0;
   for (const Load& load : v.scene.loads) volume += load.volume;
   if (v.r.placed < 0.999 * volume && !v.r.stopped_at && !ended_early(v.status))
