@@ -61,6 +61,12 @@ def listed_columns():
     return columns
 
 
+def shared_columns(columns):
+    """Those that most apparatus have in their series, in the same words."""
+    series = [files.get("timeseries.csv", []) for files in columns.values()]
+    return [column for column in max(series, key=len, default=[]) if 2 * sum(column in other for other in series) > len(series)]
+
+
 def rows(head, readings):
     return f"| {head} | unit | what |\n|---|---|---|\n" + "\n".join(f"| `{name}` | {unit} | {what} |" for name, unit, what in readings) + "\n"
 
@@ -68,7 +74,7 @@ def rows(head, readings):
 def table(words, readings, files):
     parts = [f"## `results`: {words}\n", rows("key", readings)]
     for file, columns in files.items():
-        parts.append(rows(f"column of `{file}`", columns))
+        parts.append(rows(f"column of `{file}`", [column for column in columns if column not in shared]))
     return "\n".join(parts)
 
 
@@ -119,6 +125,9 @@ def scene_sections(names):
 
 
 apparatus, columns = listed_readings(), listed_columns()
+shared = shared_columns(columns)
+series_section = ("## Columns that most `timeseries.csv` have\n\nThe tables below leave them out; a file has those that apply to its test.\n\n"
+                  + rows("column", shared))
 listed = says("--commands")
 commands = [line.split("\t")[0] for line in listed.splitlines()] if listed else []
 pages = {
@@ -130,7 +139,7 @@ pages = {
         "# Every command\n\nWhat `tremie COMMAND --help` prints.\n",
         [section("`tremie`", "text", says("--help") or "")]
         + [text for name in commands for text in command_section(name)]),
-    "results.md": (results_head, [table(*found, columns.get(name, {})) for name, found in apparatus.items()]),
+    "results.md": (results_head, [series_section] + [table(*found, columns.get(name, {})) for name, found in apparatus.items()]),
 }
 
 differ = False
