@@ -2,6 +2,7 @@
 add_library(tremie_flags INTERFACE)
 target_include_directories(tremie_flags INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
                                                   $<INSTALL_INTERFACE:include/tremie>)
+target_compile_features(tremie_flags INTERFACE cxx_std_20)
 target_compile_options(tremie_flags INTERFACE
   "$<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wshadow;-Wconversion;-Werror>"
   -fno-math-errno

@@ -133,7 +133,7 @@ frames = false
 
 /// Spread length at rest of a volume in a box of width W [m]: floor and side walls hold l (1 + 2 h/W) of h dh/dx, as in Roussel
 /// (2007). `plug`: with the normal stress of the plug, which stands at yield as it is stretched: (h - b) for h, and a front of
-/// height 2 b. Without side walls b is pi l/2 (docs/tutorials/first_apparatus_test.md); walls at their yield stress leave pi/4 of
+/// height 2 b. Without side walls b is pi l/2 (docs/tutorials/first_apparatus.md); walls at their yield stress leave pi/4 of
 /// it (docs/theory/floor.md).
 double length_at_rest(double tau_0, bool plug, double volume = 6e-3, double W = 0.2) {
   constexpr int n = 4000;

@@ -33,7 +33,7 @@ double mean_depth(const View& j) {
 /// Between the floor that holds it and its free surface a body of a cell has no rows of cells to shear: its spread is
 /// up to 20 % off (three_d.md), of one without a yield stress, which nothing else holds, still at its last cell but one.
 /// From 1.2 cells on a mix with a yield stress is within 5.3 %, by implicit steps in three dimensions from 1.5 on (6.3 % at
-/// 1.2, three_d.md). One that slides over its floor is within 5 % from 1.1 cells on (90 bodies in cells 0.4 to 4 times as high
+/// 1.2). One that slides over its floor is within 5 % from 1.1 cells on (90 bodies in cells 0.4 to 4 times as high
 /// as wide), 50 % off at 0.6.
 std::string too_thin(const View& j) {
   const double depth = mean_depth(j);
@@ -167,7 +167,7 @@ std::string no_number(const View& v) {
 
 /// Concrete that presses on the cone for long goes through its wall, and the opening under a rim that has not
 /// risen by a cell is none to the grid. Where a twentieth has by then, t500 is 6 % early; a fiftieth moves it by
-/// less than 2 % (lift.md).
+/// less than 2 %.
 std::string went_through_the_cone(const View& j) {
   constexpr double most = 0.02;
   const auto& through = j.r.through_the_cone;
