@@ -42,6 +42,17 @@ Outcome run_with_cells(const Scene& scene, double ratio, const Observer& observe
   return run(coarsened(scene, ratio), quiet, true);
 }
 
+/// Finer cells may be more than a scene allows; the bar then comes from the coarser grids.
+Outcome run_on_finer_grid(const Scene& scene, double ratio, const Observer& observer) {
+  try {
+    return run_with_cells(scene, ratio, observer);
+  } catch (const InputError&) {
+    Outcome none;
+    none.status = Status::interrupted;
+    return none;
+  }
+}
+
 /// Outcomes of three grids, the finest first; the first or the second is the run that the bars are for.
 struct Grids {
   const Outcome* finer = nullptr;
@@ -119,7 +130,7 @@ ErrorEstimate estimate_error(const Scene& scene, const Outcome& outcome, const O
     const auto first = headlines.empty() ? std::nullopt : extrapolate_of(headlines.front().name, grids, by);
     Outcome finer;
     if (first && is_doubtful(*first, *find_number(outcome, headlines.front().name))) {
-      finer = run_with_cells(scene, 1.0 / by.middle, observer);
+      finer = run_on_finer_grid(scene, 1.0 / by.middle, observer);
       estimate.cpu += finer.cost.cpu;
       if (finer.status == Status::completed) grids.finer = &finer;
     }

@@ -73,9 +73,7 @@ Section stiff_mixes(const Settings& settings) {
     closed += fmt::format("{}{:.0f}", closed.empty() ? "" : ", ", uniaxial_slump(tau_0));
   section.findings.push_back(fmt::format(
       "Tremie is near the closed form of a yielding cone (Schowalter and Christensen, uniaxial strength √3 "
-      "τ0): {} mm. The BTRHEOM reads higher than others, and rheometers differ by factors: no verdict. "
-      "Slumps with ICAR and ConTec yield stresses (Hočevar et al., Građevinar 65 (2013); Laskar, Materials "
-      "Research 12 (2009) 75) were not available as tables.",
+      "τ0): {} mm. The BTRHEOM reads higher than others, and rheometers differ by factors: no verdict.",
       closed));
   return section;
 }

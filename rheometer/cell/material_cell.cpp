@@ -22,7 +22,9 @@ long steps_in(const MaterialCell& cell, const ShearSegment& s, double total) {
   const double count = static_cast<double>(cell.history.size());
   const double n =
       cell.time_step ? s.duration / *cell.time_step : std::max(2000.0 * s.duration / total, 400.0 / count);
-  if (n > 1e7) throw std::invalid_argument("the time step makes more than 10 million steps of one segment");
+  if (n > 1e7)
+    throw std::invalid_argument(
+        "model.time_step: too small: a segment of the history takes more than 10 million steps");
   return std::max(1L, static_cast<long>(std::ceil(n * (1.0 - 1e-12))));
 }
 
