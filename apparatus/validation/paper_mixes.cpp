@@ -34,8 +34,9 @@ std::string findings_of(const Section& section) {
     most_short = std::max(most_short, fresh.measured - fresh.predicted);
   }
   return fmt::format(
-      "A prediction's ± includes cells and steps alone; 10 % of the yield stress moves a spread by 2 %. "
-      "Fresh spreads without slip are {:.0f} to {:.0f} mm short. With α = 0.01 rest takes {:.0f} to {:.0f} "
+      "A prediction's ± includes cells and steps alone; 10 % of the yield stress moves a spread by 2 to 3 %. "
+      "By the paper's kinetics fresh spreads without slip are {:.0f} to {:.0f} mm short. With α = 0.01 rest "
+      "takes {:.0f} to {:.0f} "
       "mm; the laboratory lost 15 to 20.",
       least_short, most_short, least_lost, most_lost);
 }

@@ -109,8 +109,48 @@ A run fills a folder ([which files](../guide/slump_flow.md#what-a-run-leaves)); 
 
 Numbers are IEEE doubles. In three dimensions z is up. A section of a body of revolution is (radius, 0, height), a plane section (along, height, 0), a vane's section (x, y, 0). A point keeps its place in the order from frame to frame, but for concrete that enters or leaves; where a run chooses its frames by itself, every k-th point is written. `frames/*.vtp` have the same fields under the same names.
 
-`fit`, `estimate`, `study` and `calibrate` leave files of their own: what is in them is on their pages of the guide. A run that was cut short keeps its state in `.NAME.part/checkpoint` beside its folder, for the very build that wrote it: points, time, step, grid, the solver's stresses and rates, friction, bars' drag, and the apparatus' own series. The last step of a test is cut to end at `test.duration`. A finished result keeps the state before that step in `.for_longer`, from which `tremie resume DIR --until` goes on with whole steps. A run that was interrupted and resumed leaves the same bytes as one that was not.
+`estimate`, `study` and `calibrate` leave files of their own: what is in them is on their pages of the guide. A run that was cut short keeps its state in `.NAME.part/checkpoint` beside its folder, for the very build that wrote it: points, time, step, grid, the solver's stresses and rates, friction, bars' drag, and the apparatus' own series. The last step of a test is cut to end at `test.duration`. A finished result keeps the state before that step in `.for_longer`, from which `tremie resume DIR --until` goes on with whole steps. A run that was interrupted and resumed leaves the same bytes as one that was not.
 """
+fit_section = """## `results`: `tremie fit`
+
+Each parameter is an object with `value` and `ci95`, the ends of its 95 % interval, or null where the record does not tell it.
+
+| key | unit | what |
+|---|---|---|
+| `kind` |  | `flow_curve`, `torque_decay`, `tribometer`, `protocol`, `replicates` or `protocol_replicates` |
+| `yield_stress_Pa`, `plastic_viscosity_Pa_s` | Pa, Pa s | dynamic yield stress, plastic viscosity |
+| `consistency_Pa_s_n`, `flow_index` | Pa s^n | Herschel-Bulkley |
+| `static_yield_stress_Pa` | Pa | (1 + λ) τ0 at the start of a decay |
+| `flocculation_start` |  | λ at the start of a decay |
+| `structuration_rate_Pa_per_s` | Pa/s | A_thix |
+| `alpha`, `exponent` |  | breakdown by strain, exponent of λ |
+| `breakdown_rate_per_s` | 1/s | k γ̇^a at this speed; of a protocol k |
+| `rate_exponent` |  | a |
+| `interface_yield_stress_Pa`, `interface_viscosity_Pa_s_per_m` | Pa, Pa s/m | τ_i, k_i of a smooth wall |
+| `model`, `models`, `choice` |  | the law or kinetics chosen, all that were fitted with their scatter, and why |
+| `alpha_apparent`, `alpha_apparent_basis` |  | exponent of the decay over a nominal shear rate, and by which |
+| `plug`, `plug_below_rev_per_s`, `sheared_radius_mm` |  | whether a plug remains, below which speed; how far concrete shears |
+| `relative_scatter`, `residual_correlation`, `effective_readings` |  | of the readings about the fit |
+| `points_used`, `points_dropped`, `points_dropped_count` |  | readings, and those left out |
+| `notes`, `understood` |  | what to know; how the file was read |
+| `geometry`, `ends`, `blades` |  | geometry, and corrections with what they move |
+
+`--protocol` has besides:
+
+| key | unit | what |
+|---|---|---|
+| `sections[]` |  | of each: `kind`, lines, `start_s`, `duration_s`, `speed_rev_per_s` or `shear_rate_per_s`, `rest_before_s`, `start_up`, `decay`, `loop_area_…`, `fit` (as above), `notes`, `reasons` |
+| `flow_curve_section` |  | number of the flow curve that counts for the others |
+| `static_yield_stress_without_rest_Pa` | Pa | where the line of the peaks begins |
+| `structuration.rest_s`, `structuration.static_yield_stress_Pa` | s, Pa | rests and their static yield stresses |
+| `structuration.rate_by_flow_curve_Pa_per_s` | Pa/s | A_thix without the viscous part of the peaks |
+| `structuration.saturation` |  | `static_yield_stress_end_Pa`, `time_s`: growth that ends |
+| `structuration.forecasts[]` |  | each rest forecast by the shorter ones |
+| `breakdown.half_times[]`, `breakdown.modes`, `breakdown.models[]`, `breakdown.choice` |  | half times by section, modes for a scene, laws compared |
+| `mean`, `mean_of_sections` |  | of replicates |
+"""
+
+
 def scene_sections(names):
     """What `tremie new` prints of each, a table that stood before in the same words named alone."""
     first, sections = {}, []
@@ -139,7 +179,7 @@ pages = {
         "# Every command\n\nWhat `tremie COMMAND --help` prints.\n",
         [section("`tremie`", "text", says("--help") or "")]
         + [text for name in commands for text in command_section(name)]),
-    "results.md": (results_head, [series_section] + [table(*found, columns.get(name, {})) for name, found in apparatus.items()]),
+    "results.md": (results_head, [series_section] + [table(*found, columns.get(name, {})) for name, found in apparatus.items()] + [fit_section]),
 }
 
 differ = False
