@@ -53,7 +53,7 @@ std::string head(const std::vector<Section>& sections, double wall_seconds) {
       "`validation.csv`.\n\n**{} of {} met, {} missed, {} without a verdict.** ± is half of a 95 % interval. "
       "Met: the difference is within the combined interval (root of the sum of squares). A row whose "
       "computed "
-      "± exceeds the measured one decides nothing and is not counted as met. Rows by the default kinetics or "
+      "± exceeds the measured one has no verdict. Rows by the default kinetics or "
       "by a = 0.1 use an exponent that was chosen with them in view.\n\n",
       wall_seconds, met, met + missed + open, missed, open);
 }

@@ -135,6 +135,8 @@ Each parameter is an object with `value` and `ci95`, the ends of its 95 % interv
 | `notes`, `understood` |  | what to know; how the file was read |
 | `geometry`, `ends`, `blades` |  | geometry, and corrections with what they move |
 
+`fit.csv` holds the readings beside the fitted torques; of a protocol `sections.csv` has a row for each section, with `fit_PARAMETER`, `…_low` and `…_high`.
+
 `--protocol` has besides:
 
 | key | unit | what |
