@@ -27,7 +27,7 @@ std::string interval_text(const Estimated& p) {
 const char* told_in_words(const std::string& told) {
   return told == "identified" ? "identified"
          : told == "bound"    ? "only bound: the interval is wide or lies at an end of the range"
-                              : "not told: nearly all of the range is as likely";
+                              : "not identifiable: nearly all of the range is equally likely";
 }
 
 /// Cells along an unknown: those of the quadrature where it is a grid, so that no cell is empty by chance.

@@ -14,7 +14,7 @@ struct Checkpoints {
   std::function<bool()> due;                       ///< asked between two steps
   std::function<void(const VisitState&)> keep;     ///< writes the state
   std::function<void(const VisitState&)> restore;  ///< reads one to go on from; empty: from the start
-  /// Writes the last state that the test's end has no part in, for a longer test to go on from; empty: nobody wants it.
+  /// Writes the last state that does not depend on the test's end, from which a longer test can continue; empty: not kept.
   std::function<void(const VisitState&)> keep_for_longer = {};
 };
 

@@ -94,8 +94,8 @@ Rows<View> only_where(bool (*applies)(const View&), Rows<View> rows) {
   return rows;
 }
 
-/// The outcome of a run, with what its table reads, and what was asked of which mix. Without thixotropy there is no word to
-/// say of a rest.
+/// The outcome of a run: the readings of its table, the mix's name and the test in words. The rest is omitted for a mix
+/// without thixotropy.
 template <class View>
 Outcome outcome_of(const std::vector<Reading<View>>& table, const View& view, const std::string& mix_name,
                    const std::string& test) {

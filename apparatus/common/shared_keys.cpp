@@ -83,7 +83,7 @@ Section material_section(const std::string& bulk_modulus) {
            .help = "of the measured slump flows"},
           {.name = "measured_on",
            .kind = Kind::text,
-           .help = "the concrete that slump_flow_0 and slump_flow_240 are of, where it is not this one"},
+           .help = "concrete on which slump_flow_0 and slump_flow_240 were measured, if not this one"},
           {.name = "friction_coefficient",
            .kind = Kind::number,
            .range = between(0.0, 10.0),

@@ -46,7 +46,7 @@ struct Measured {
   // [measured], which wins over the mix's:
   std::optional<double> spread = {}, spread_tolerance = {};  ///< [m]
   std::optional<double> t500 = {};                           ///< [s]
-  /// The concrete that slump_flow_0 and slump_flow_240 are of, where it is not this one; empty: they are of this one.
+  /// Concrete on which slump_flow_0 and slump_flow_240 were measured, if not this one; empty: this one.
   std::string on = {};
   std::string licence = {};  ///< of the mix's numbers
 };

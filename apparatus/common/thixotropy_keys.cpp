@@ -87,13 +87,15 @@ Section thixotropy_section() {
   keys.push_back(choice);
   for (const Key& key : of_kinetics)
     if (key.only_with) keys.push_back(key);
-  keys.push_back({.name = "modes",
-                  .kind = Kind::number,
-                  .range = not_negative,
-                  .shape = Shape::pairs,
-                  .only_with = Condition{"kinetics", {std::string(RatePowerKinetics::word)}},
-                  .example = "[[0.6, 1.0], [0.3, 0.1], [0.1, 0.01]]",
-                  .help = "share of lambda and of A_thix, factor on k, of each; one where it is left out"});
+  keys.push_back(
+      {.name = "modes",
+       .kind = Kind::number,
+       .range = not_negative,
+       .shape = Shape::pairs,
+       .only_with = Condition{"kinetics", {std::string(RatePowerKinetics::word)}},
+       .example = "[[0.6, 1.0], [0.3, 0.1], [0.1, 0.01]]",
+       .help =
+           "[share, factor] of each mode: share of lambda and of A_thix, factor on k; one mode if left out"});
   keys.push_back({.name = "layer",
                   .range = positive,
                   .example = "5 mm",

@@ -237,16 +237,14 @@ void check_localisation(const Scene& scene, Outcome& outcome) {
   if (!width || outcome.series.back().time < settled) return;
   if (layer > 0.0 && layer < cells_of_layer * cell)
     outcome.checks.reasons.push_back(fmt::format(
-        "mix.thixotropy.layer is {:.3g} cells: the fall of the torque hangs on the cells below {:g}; "
+        "mix.thixotropy.layer is {:.3g} cells: below {:g} cells the torque decay depends on the grid; "
         "use model.cell = \"{:.3g} mm\" or less",
         layer / cell, cells_of_layer, 1e3 * layer / cells_of_layer));
   if (layer == 0.0 && *width < cells_of_width * cell)
     outcome.checks.reasons.push_back(
-        fmt::format("the rested concrete is sheared {:.2g} mm wide at the vane, {:.2g} cells: below {:g} the "
-                    "fall of the torque "
-                    "hangs on the cells; give a length of the material, mix.thixotropy.layer, or model.cell "
-                    "= \"{:.2g} mm\" "
-                    "or less",
+        fmt::format("the sheared layer at the vane is {:.2g} mm thick, {:.2g} cells: below {:g} cells the "
+                    "torque decay depends on the grid; give a length of the material, "
+                    "mix.thixotropy.layer, or model.cell = \"{:.2g} mm\" or less",
                     1e3 * *width, *width / cell, cells_of_width, 1e3 * *width / cells_of_width));
 }
 
@@ -345,7 +343,7 @@ std::vector<std::string> localisation_use(const Scene& scene) {
   lines.push_back(layer > 0.0 ? fmt::format("breakdown: by the mean shear rate over {:g} mm, {:.2g} cells",
                                             1e3 * layer, layer / cell)
                               : "breakdown: by the shear rate at the point; below one cell of sheared width "
-                                "the torque's fall hangs on the cells (mix.thixotropy.layer)");
+                                "the torque decay depends on the grid (mix.thixotropy.layer)");
   return lines;
 }
 

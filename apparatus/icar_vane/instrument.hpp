@@ -21,7 +21,7 @@ std::string progress_text(const Sample& sample);
 /// empty where it is nothing that breakdown narrows: without breakdown, by Roussel's power of the rate, a regularised law.
 std::optional<double> sheared_width(const Scene& scene);
 
-/// What `tremie check` says of it: where the fall of the torque hangs on the cells.
+/// What `tremie check` says of it: where the torque decay depends on the grid.
 std::vector<std::string> localisation_use(const Scene& scene);
 
 /// Fills the results from the series, and adds the reasons why they are not to be trusted.

@@ -112,8 +112,8 @@ std::vector<std::string> torque_lines(const View& v) {
   const double share = v.r.torque_peak != 0.0 ? v.r.inertia_at_peak / v.r.torque_peak : 0.0;
   if (v.scene.speeds.empty() && share > told_inertia)
     lines.push_back(fmt::format(
-        "                {:.0f} % of the peak accelerate the concrete: what is read off the peak is so "
-        "much too large",
+        "                {:.0f} % of the peak accelerate the concrete: values read from the peak are too "
+        "large by this share",
         100.0 * share));
   return lines;
 }

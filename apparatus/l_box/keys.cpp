@@ -37,12 +37,11 @@ Section test_section() {
 }
 
 Section walls_section() {
-  return {
-      .name = "walls",
-      .help =
-          "Of the floor, the ends, the side walls and the column's front wall. Along the gate the concrete "
-          "slips where they hold it.",
-      .keys = contact_keys(false)};
+  return {.name = "walls",
+          .help =
+              "Contact of the floor, ends, side walls and the column's front wall. With \"no_slip\" the gate "
+              "itself is frictionless.",
+          .keys = contact_keys(false)};
 }
 
 bool in_the_plane(const Values& values) { return values.word("model.space").starts_with("plane"); }

@@ -31,9 +31,9 @@ std::string wrong_level(const boxes::View& j) {
   const bool too_level = drop < least * bed && bed - drop > in_ratio * r.h1;
   if (!too_level && !stopped_early) return {};
   return fmt::format(
-      "the bed {} H1 - H2 = {:.2g} mm, and its yield stress holds {:.2g} mm: {}use model.space "
+      "H1 - H2 {} {:.2g} mm, but this yield stress sustains {:.2g} mm: {}use model.space "
       "= \"plane_with_side_walls\" for such fluid mixes",
-      stopped_early ? "stopped at" : "has levelled to", 1e3 * drop, 1e3 * (stopped_early ? right : bed),
+      stopped_early ? "stopped at" : "fell to", 1e3 * drop, 1e3 * (stopped_early ? right : bed),
       stopped_early ? "cells at the channel's end are not full; " : "");
 }
 

@@ -140,7 +140,7 @@ ErrorEstimate estimate_error(const Scene& scene, const Outcome& outcome, const O
       estimate.bars.push_back({headline.name, e->error});
       estimate.basis += (estimate.basis.empty() ? "" : "; ") + basis_of(headline, *e, grids.finer);
     }
-    if (estimate.bars.empty()) estimate.basis = "none: a coarser run does not reach what this one reads";
+    if (estimate.bars.empty()) estimate.basis = "none: a coarser run does not reach this reading";
   } catch (const InputError& error) {
     estimate.basis = fmt::format("none: {}", error.what());
   }

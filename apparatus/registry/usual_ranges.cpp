@@ -125,9 +125,8 @@ std::string softness(const Values& values) {
     const double weight = values.number("mix.density") * gravity * h, lost = -std::expm1(-weight / K);
     if (!(lost > most)) return {};
     return fmt::format(
-        "mix.bulk_modulus: {} kPa is soft: {} m of concrete weigh {} kPa, which takes {} % of the volume "
-        "at the foot; "
-        "{} kPa: 1 %",
+        "mix.bulk_modulus: {} kPa is soft: {} m of concrete exert {} kPa and compress the foot by {} %; "
+        "{} kPa limits this to 1 %",
         rounded(1e-3 * K, 3), rounded(h, 3), rounded(1e-3 * weight, 3), rounded(100.0 * lost, 2),
         rounded(0.1 * weight, 1));
   }

@@ -34,7 +34,7 @@ void judge(const Body<Geometry>& body, double start_mass, Checks& checks, Cost& 
 /// more.
 void judge_volume(double at_start, Checks& checks);
 
-/// The largest change of a body's volume in a run [1]: so soft that its weight squeezes it is no concrete.
+/// Largest relative change of a body's volume in a run [1]; a body that its own weight compresses further is not concrete.
 struct Squeeze {
   double most = 0.0;
   double at = 0.0;  ///< [s]

@@ -94,7 +94,7 @@ std::string judged(const cone::View& v) {
   if (!cone::is_abrams(scene.cone))
     return "Not the Abrams cone of EN 12350: its spread has no class, and no accepted range.";
   if (kept_its_shape(r, scene.cone))
-    return "It kept the cone's shape: too stiff for a slump flow, which has nothing to read from it.";
+    return "It kept the cone's shape: too stiff for a slump flow, so there is no spread to read.";
   const std::string slump = slump_class_of(v);
   if (is_stiff(v))
     return fmt::format("{}; too stiff for the classes of self-compacting concrete and for tremie concrete.",
@@ -119,7 +119,7 @@ constexpr const char* why_it_may_differ =
     "meet "
     "the measurements.";
 
-/// Whether t500, or that there is none, hangs on the last millimetres: below 514 mm estimates from a t500 end too.
+/// Whether t500, or its existence, depends on the last millimetres: below 514 mm estimates from a t500 end too.
 bool near_500(const cone::Scene& scene, const Results& r) {
   return stopped(r) && cone::is_abrams(scene.cone, true) && std::abs(r.spread - 0.5) < 0.014;
 }
@@ -146,9 +146,8 @@ std::vector<std::string> remarks_on(const cone::Scene& scene, const std::optiona
     remarks.push_back(why_it_may_differ);
   else
     remarks.push_back(
-        "Not compared with a measurement. With a rheometer's values the spreads of three measured concretes "
-        "were computed 5 to 12 % short fresh, and some 40 % after 240 s of rest; values estimated from a "
-        "spread leave that difference out.");
+        "Not compared with a measurement. For three measured concretes, a rheometer's values gave spreads "
+        "5 to 12 % too small when fresh. Values estimated from a spread avoid this difference.");
   const auto alpha = scene.mix.thixotropy ? destructuration(scene.mix.thixotropy->kinetics) : std::nullopt;
   if (scene.rest > 0.0 && alpha && !(measured && measured->on.empty()))
     remarks.push_back(
@@ -160,13 +159,13 @@ std::vector<std::string> remarks_on(const cone::Scene& scene, const std::optiona
         "The spread is wider than the standard's plate of 900 mm: a laboratory would see it run off.");
   if (hangs_on_the_lift(scene))
     remarks.push_back(
-        "A small cone's spread depends on its lift (10 Pa, 0.3 Pa·s in the Haegermann cone: 291 mm where it "
-        "is gone at once, 278 at 15 cm/s, 249 at 1 cm/s): "
-        "give test.lift_speed as it was done.");
+        "A small cone's spread depends on its lift (10 Pa, 0.3 Pa·s in the Haegermann cone: 291 mm if "
+        "removed instantaneously, 278 at 15 cm/s, 249 at 1 cm/s): set test.lift_speed to that of the "
+        "experiment.");
   if (near_500(scene, r))
     remarks.push_back(
-        "The spread ends so near to 500 mm that t500, or whether there is one, hangs on its last "
-        "millimetres: finer cells may change it by a third.");
+        "The spread is so close to 500 mm that t500, or its existence, depends on the last millimetres: "
+        "finer cells may change t500 by a third.");
   return remarks;
 }
 

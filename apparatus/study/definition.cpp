@@ -125,9 +125,9 @@ void refuse_what_never_runs(const Definition& study) {
     } catch (const scene::InputError& error) {
       if (why.empty()) why = error.what();
     }
-  throw scene::InputError(
-      fmt::format("{}: the base scene takes no row of this study; at the middle of its ranges:\n{}",
-                  study.file.string(), why));
+  throw scene::InputError(fmt::format(
+      "{}: no row of this study that was tried is a valid scene; the row at mid-range fails with:\n{}",
+      study.file.string(), why));
 }
 
 }  // namespace

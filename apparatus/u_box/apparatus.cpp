@@ -68,12 +68,11 @@ void settle(Values& values) {
 }
 
 ApparatusKeys keys() {
-  const Section walls{
-      .name = "walls",
-      .help =
-          "Of the floor, the ends, the side walls and the wall between the compartments. Along "
-          "the gate the concrete slips where they hold it.",
-      .keys = contact_keys(false)};
+  const Section walls{.name = "walls",
+                      .help =
+                          "Contact of the floor, ends, side walls and the wall between the compartments. "
+                          "With \"no_slip\" the gate itself is frictionless.",
+                      .keys = contact_keys(false)};
   const Section model = model_section({"plane_with_side_walls", "plane"},
                                       {.cell = "10 mm",
                                        .points_per_cell = "8",

@@ -27,7 +27,7 @@ def write(name, head, rows):
 
 
 def errors():
-    """Spread after 20 s, cone gone at once, no thixotropy, against finite elements."""
+    """Spread after 20 s, cone removed instantaneously, no thixotropy, against finite elements."""
     peers = list(csv.DictReader(open(here / "peers.csv")))
     truth = {row["mix"]: float(row["spread_mm"]) for row in peers if row["program"] == "finite elements"}
     alone = ["test.lift_speed=instant", "mix.thixotropy=false", "test.duration=20 s"]

@@ -11,7 +11,7 @@
 
 namespace tremie {
 
-/// What a moving rigid wall is to a place near it.
+/// A moving rigid wall as seen from a point near it.
 template <int D>
 struct WallView {
   double gap = 0.0;  ///< signed distance, positive in the concrete [m]
@@ -27,8 +27,8 @@ using RigidWall = std::function<std::optional<WallView<D>>(const Vec<D>& x, doub
 /// Time in which an overlap with a wall is closed at the soonest [s].
 inline constexpr double contact_relaxation = 1e-3;
 
-/// Factor on the penalty of a wall that moves slowly, with `speed` [m/s]. What gives way a little in every
-/// step adds up for as long as the wall is passed: the slower it is, the less may go through in a step. The
+/// Factor on the contact penalty of a wall that moves with `speed` [m/s]; it rises as the wall slows down. Penetration adds up
+/// over the steps in which the wall passes, so a slower wall, which takes more steps, must let less through in each. The
 /// constants are calibrated: about a hundredth of the concrete goes through a cone lifted at 5 to 50 mm/s (lift.md).
 inline double slow_wall_factor(double speed) {
   constexpr double fast = 0.15, most = 100.0;  // [m/s], [1]

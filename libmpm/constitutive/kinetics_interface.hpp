@@ -50,7 +50,7 @@ constexpr LawKey<K> destructuration_key() {
           "",
           "0.01",
           "",
-          "alpha; 0.01 is the paper's, measured spreads after a rest want 1 or more",
+          "alpha; the paper uses 0.01, spreads measured after a rest imply 1 or more",
           0.0,
           unbounded,
           false};

@@ -84,8 +84,8 @@ bool belongs_to_kinetics(const FitParameter& p) {
 }
 
 void withdraw(const FitParameter& p, const Variant& variant, const FitResult& other, FitResult& result) {
-  result.notes.push_back(p.name + ": hangs on how the decay was recorded: with " + variant.name +
-                         " the kinetics " + other.model + " are chosen; this record does not tell it");
+  result.notes.push_back(p.name + ": depends on how the decay was recorded: with " + variant.name +
+                         " the kinetics " + other.model + " are chosen; not identifiable from this record");
   (result.*p.member).reset();
 }
 
@@ -95,12 +95,11 @@ void widen(const FitParameter& p, const Spread& spread, FitResult& result) {
   const Interval wide{std::min(spread.low, e->ci95->low), std::max(spread.high, e->ci95->high)};
   const bool holds = wide.high - e->value < e->value && e->value < 2.0 * wide.low;
   const std::string goes = text_of(
-      "%s: hangs on how the decay was recorded: %.3g, and from %.3g to %.3g with the clock moved or rows "
-      "left "
-      "out (furthest: %s)",
+      "%s: depends on how the decay was recorded: %.3g here, %.3g to %.3g with the clock shifted or rows "
+      "left out (furthest: %s)",
       p.name.c_str(), e->value, spread.low, spread.high, spread.furthest);
-  result.notes.push_back(goes +
-                         (holds ? "; its interval is widened by that" : "; this record does not tell it"));
+  result.notes.push_back(
+      goes + (holds ? "; its interval is widened by that" : "; not identifiable from this record"));
   if (holds)
     e->ci95 = wide;
   else

@@ -142,7 +142,7 @@ inline ShownUnits shown_units(bool sheared_evenly) {
 
 /// The note of a fit without corrections for the vane's ends and blades.
 inline constexpr const char* taken_for_a_cylinder =
-    "the vane is taken for a cylinder without ends: a real one reads some 17 % too much yield stress so; "
+    "the vane is treated as a cylinder without ends, which overestimates the yield stress by some 17 %; "
     "tremie fit --ends computed --blades computed corrects both";
 
 /// Fits the record by its kind. Throws std::invalid_argument, with what is needed, for a record or an input

@@ -207,7 +207,7 @@ void report_parameters(const Readings& r, const Identified& identified, const Fi
     result.A_thix = identified(lambda_0 * tau_0 / *in.rest, {lambda_0 / *in.rest, 0, tau_0 / *in.rest, 0, 0},
                                std::max(lambda_0 * tau_0, 0.5 * tau_0) / *in.rest);
   const auto note = [&](const std::optional<ParameterEstimate>& e, const char* name, const char* why) {
-    if (!e) result.notes.push_back(std::string(name) + ": the record cannot tell it" + why);
+    if (!e) result.notes.push_back(std::string(name) + ": not identifiable from this record" + why);
   };
   note(result.tau_0, "yield_stress", " at one speed together with the others; --yield-stress gives it");
   if (!in.curve)
@@ -220,9 +220,8 @@ void report_parameters(const Readings& r, const Identified& identified, const Fi
     note(result.alpha, "alpha", "");
   if (by_time)
     result.notes.push_back(
-        "rate_exponent: one speed does not tell it; breakdown_rate is k gamma_dot^a at this one. tremie fit "
-        "--protocol "
-        "takes decays at two speeds");
+        "rate_exponent: not identifiable from one speed; breakdown_rate is k gamma_dot^a at this one. tremie "
+        "fit --protocol takes decays at two speeds");
   if (power) note(result.exponent, "exponent", "");
   if (in.rest)
     note(result.A_thix, "structuration_rate", "");
@@ -401,7 +400,7 @@ void withdraw(FitResult& result) {
   const auto forget = [&](std::optional<ParameterEstimate>& e, const std::string& name) {
     if (!e || e->given) return;
     e.reset();
-    result.notes.push_back(name + ": a model that does not fit does not tell it");
+    result.notes.push_back(name + ": not identifiable from a model that does not fit");
   };
   for (const FitParameter& p : parameters_of(result))
     if (p.member) forget(result.*p.member, p.name);

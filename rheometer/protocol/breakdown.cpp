@@ -220,9 +220,8 @@ Breakdown breakdown_of(const std::vector<Fall>& all, const Instrument& instrumen
   }
   if (std::any_of(whole.begin(), whole.end(), [](const Fall& f) { return f.compliance > 0.0; }))
     b.notes.push_back(
-        "breakdown_rate: by plastic shear rates: to the vane's speed in a start-up comes the elastic turn "
-        "that "
-        "its torque gives back while it falls");
+        "breakdown_rate: by plastic shear rates: the vane's speed in a start-up plus the elastic rotation "
+        "released as the torque falls");
   Falls falls{rows_of(whole, shear_rate), {}, {}, 0.0};
   const bool two_speeds = has_two_speeds(falls.rows.shear_rate);
   if (!two_speeds)

@@ -108,9 +108,8 @@ class Reader {
       if (options_.blades) {
         if (!law_ && !input_.mu)
           throw BladesRefused(
-              "the blades' part of the peak hangs on the plastic viscosity: it needs a flow curve in the "
-              "record, or "
-              "--plastic-viscosity");
+              "the blades' part of the peak depends on the plastic viscosity: it needs a flow curve in the "
+              "record, or --plastic-viscosity");
         const double mu = law_ ? viscosity_for_blades(*law_) : *input_.mu;
         peak = torque_of_cylinder(*options_.blades, input_.instrument, mu, omega, s.peak_torque);
         s.static_yield_stress = shear_stress_at(input_.instrument.vane_radius, peak, input_.instrument);
@@ -138,7 +137,7 @@ class Reader {
       reading.reasons.push_back(
           "--law " + in.law +
           ": no flow curve of the record tells all parameters of a law, and a decay at one speed "
-          "tells but a yield stress and a plastic viscosity; --law bingham reads it so");
+          "gives only a yield stress and a plastic viscosity; --law bingham reads it so");
       return;
     } else if (has_curve_ && !(in.tau_0 && in.mu)) {
       reading.notes.push_back(

@@ -96,7 +96,7 @@ StartUpReading read_start_up(const ProtocolRecord& r, const Section& s, const In
     reading.static_yield_stress = shear_stress_at(in.vane_radius, reading.peak_torque, in);
     if (times_are_rounded(r, s.begin, peak))
       notes.push_back(
-          "shear_modulus: several rows share one time, so that the rise over the angle is not told");
+          "shear_modulus: several rows share one time, so the rise over the angle is not identifiable");
     else
       reading.rise = rise(r, s.begin, peak),
       reading.shear_modulus = modulus(reading.rise, in, options, notes);

@@ -114,7 +114,7 @@ bool has_decimal_comma(const std::vector<NumberCell>& column, const Evidence& ow
   if (own.point && own.comma)
     refuse(name, own.point->line > own.comma->line ? *own.point : *own.comma,
            on_line(*own.point) + " has a decimal point, " + on_line(*own.comma) +
-               " a decimal comma: a column has one form; mend the one that is wrong");
+               " a decimal comma: a column has one form; correct the wrong one");
   if (own.point || own.comma) return own.comma != nullptr;
   if (!own.ambiguous) return false;
   if (std::any_of(column.begin(), column.end(), has_long_whole_part))

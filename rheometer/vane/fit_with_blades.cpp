@@ -21,7 +21,8 @@ void refuse_other_law(const FitResult& fit) {
 double viscosity_of(const FitResult& fit) {
   if (fit.mu && fit.mu->value > 0.0) return fit.mu->value;
   throw BladesRefused(
-      "the blades' part hangs on the plastic viscosity, which this record does not tell; give it");
+      "the blades' part depends on the plastic viscosity, which is not identifiable from this record; "
+      "give it");
 }
 
 /// A viscosity to start from. What the blades take of the torques can hide that the material is a Bingham one.
@@ -71,8 +72,8 @@ VaneFit fit_with_blades(const TorqueRecord& record, const FitInput& input, const
   const std::optional<double> known = known_viscosity(input);
   if (!known && record.kind != RecordKind::flow_curve)
     throw BladesRefused(
-        "the blades' part hangs on the plastic viscosity, which a record at one speed hardly tells; give "
-        "--plastic-viscosity, of a flow curve");
+        "the blades' part depends on the plastic viscosity, hardly identifiable from a record at one speed; "
+        "give --plastic-viscosity, from a flow curve");
   double mu = known ? *known : first_viscosity(record, input);
   for (int turn = 0; turn < 30; ++turn) {
     TorqueRecord cylinder = record;
@@ -107,7 +108,7 @@ FitResult noted_fit_with_blades(const TorqueRecord& record, const FitInput& in, 
   note_beyond_blades(record, in, table, vane.fit);
   if (vane.fit.alpha && !vane.fit.alpha->given)
     vane.fit.notes.push_back(
-        "alpha: with blades it reads some 30 % too small, more than its interval: what stands between the "
+        "alpha: with blades it reads some 30 % too small, more than its interval: the concrete between the "
         "blades is not broken down; without --blades the two errors nearly cancel");
   return vane.fit;
 }

@@ -73,9 +73,8 @@ const std::vector<FitOption>& fit_options() {
              {13, "critical_shear_rate_per_s"}),
       flag("protocol", &O::protocol, "Read every section of a record with time, speed and torque"),
       flag("elastic", &O::elastic,
-           "With --protocol: k and a by plastic shear rates, as material that is elastic below its yield "
-           "stress "
-           "flows on while its torque falls"),
+           "With --protocol: fit k and a to plastic shear rates, for material that is elastic below its "
+           "yield stress"),
       number("instrument_compliance", &O::instrument_compliance, "rad/(N.m)",
              "Rotation of the instrument by its own torque: \"0.02 rad/(N.m)\"", {},
              OptionRange::not_negative),

@@ -203,8 +203,8 @@ void judge(const Rows& rows, const LeastSquaresFit& fit, const Parameters& p, Fi
   const double slowest = *std::min_element(fit.fitted.begin(), fit.fitted.end());
   if (rows.several_heights && p[at_end_torque] < -0.2 * slowest)
     result.reasons.push_back(
-        "the torque falls to less than nothing at no fill height: are the heights in the order of the "
-        "records?");
+        "the torque extrapolated to zero fill height is negative: does --fill-height follow the order of "
+        "the records?");
 }
 
 }  // namespace
@@ -242,7 +242,7 @@ FitResult fit_tribometer(const std::vector<TribometerSeries>& series, const FitI
                        ? fitting::estimate(p[k], variance, fit.degrees_of_freedom, k == 0 ? stress : p[k])
                        : std::nullopt;
     set_value(result, row, e);
-    if (!e) result.notes.push_back(row.name + ": the record cannot tell it");
+    if (!e) result.notes.push_back(row.name + ": not identifiable from this record");
   }
   return result;
 }

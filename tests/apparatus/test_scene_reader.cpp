@@ -66,7 +66,7 @@ TEST(SceneReader, TheDefaultsOfEveryApparatusAreUsual) {
 
 // 2400 kg/m3 times 9.81 m/s2 times 0.3 m are 7.06 kPa: 1 - exp(-7.06/50) = 13.2 %; below 2 % nothing is said.
 TEST(SceneReader, WhatASoftMixLosesByItsWeightIsNoted) {
-  EXPECT_EQ(notes_with({"mix.bulk_modulus=50 kPa"}, "takes 13 % of the volume at the foot"), 1);
+  EXPECT_EQ(notes_with({"mix.bulk_modulus=50 kPa"}, "compress the foot by 13 %"), 1);
   EXPECT_EQ(notes_with({"mix.bulk_modulus=400 kPa"}, "bulk_modulus"), 0);
   EXPECT_EQ(notes_with({"preset=paper"}, "33.3 kPa is soft"), 1);
 }

@@ -42,14 +42,14 @@ def main():
     print(setting["title"])
     met = missing = 0
     for (name, quantity, at), value, row, within in compare(expected, given):
-        told = f"{name:>8} {quantity:>18} at {at:<6g} expected {row['value']:8.2f} ± {row['uncertainty']:<5.2f}"
+        told = f"{name:>8} {quantity:>21} at {at:<6g} expected {row['value']:8.2f} ± {row['uncertainty']:<5.2f}"
         if value is None:
             missing += 1
             print(f"{told} not given")
             continue
         met += within
-        away = 100 * (value / row["value"] - 1)
-        print(f"{told} given {value:8.2f} {away:+6.2f} %  {'ok' if within else 'OUTSIDE: ± %g allowed' % row['allowed']}")
+        away = f"{100 * (value / row['value'] - 1):+6.2f} %" if row["value"] else f"{value:+6.2f}"
+        print(f"{told} given {value:8.2f} {away}  {'ok' if within else 'OUTSIDE: ± %g allowed' % row['allowed']}")
     for key in unknown:
         print("not a figure of this kit:", *key)
     compared = len(expected) - missing

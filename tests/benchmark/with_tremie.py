@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""The kit's cases by Tremie, each checked by check.py: with_tremie.py TREMIE CHANNEL_PROFILE.
+"""The kit's cases by Tremie, each checked by check.py: with_tremie.py TREMIE CHANNEL_PROFILE CAVITY_PROFILE.
 
-TREMIE is the program; CHANNEL_PROFILE is built from channel_profile.cpp. Scenes are made from the case files alone."""
+TREMIE is the program; the others are built from channel_profile.cpp and cavity_profile.cpp. Scenes are made from the case
+files alone."""
 import csv
 import pathlib
 import subprocess
@@ -140,6 +141,26 @@ def channel(profile):
     return by_case("channel", readings)
 
 
+def vortex(ys, vs):
+    """Where the velocity is 0 below the lid [mm], and the flow below [mm2/s]."""
+    i = next(i for i in range(len(vs) - 2, 0, -1) if vs[i] < 0)
+    height = ys[i] + (ys[i + 1] - ys[i]) * vs[i] / (vs[i] - vs[i + 1])
+    areas = [(y1 - y0) * (v0 + v1) / 2 for y0, y1, v0, v1 in zip(ys[:i], ys[1:], vs, vs[1:])]
+    return 1e3 * height, -1e3 * (sum(areas) + (height - ys[i]) * vs[i] / 2)
+
+
+def cavity(program):
+    def readings(setting, case):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "profile.csv"
+            file.write_text(subprocess.run([program, str(case["yield_stress"]), "32"], check=True, capture_output=True, text=True).stdout)
+            ys, vs = columns_of(file).values()
+        height, flow = vortex(ys, vs)
+        return {"velocity_mm_per_s": (ys, vs), "vortex_height_mm": ([0.0, 1.0], [height, height]), "vortex_flow_mm2_per_s": ([0.0, 1.0], [flow, flow])}
+
+    return by_case("cavity", readings)
+
+
 def check(name, rows, folder):
     file = pathlib.Path(folder) / f"{name}.csv"
     with open(file, "w", newline="") as stream:
@@ -160,11 +181,11 @@ def refuses(folder):
 
 
 def main():
-    tremie, channel_profile = sys.argv[1:3]
+    tremie, channel_profile, cavity_profile = sys.argv[1:4]
     with tempfile.TemporaryDirectory() as folder:
         profile = pathlib.Path(folder) / "profile.csv"
         profile.write_text(subprocess.run([channel_profile], check=True, capture_output=True, text=True).stdout)
-        codes = [check("channel", channel(profile), folder), check("cone", cone(tremie), folder), check("l_box", l_box(tremie), folder),
+        codes = [check("channel", channel(profile), folder), check("cavity", cavity(cavity_profile), folder), check("cone", cone(tremie), folder), check("l_box", l_box(tremie), folder),
                  check("funnel", funnel(tremie), folder), check("pile", pile(tremie), folder)]
         if not refuses(folder):
             codes.append(1)

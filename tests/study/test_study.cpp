@@ -91,7 +91,7 @@ TEST_F(Study, BadInputSaysWhereAndWritesNothing) {
   EXPECT_NE(with("\"20 Pa\"", "\"-20 Pa\"").find("out of range"), std::string::npos);
   EXPECT_NE(with("levels", "level").find("nearest: levels"), std::string::npos);
   EXPECT_NE(with("\"test.rest\"\nvalues = [\"0 s\", \"60 s\"]", "\"floor.coefficient\"\nvalues = [0.3, 0.4]")
-                .find("takes no row"),
+                .find("no row of this study"),
             std::string::npos);
 }
 

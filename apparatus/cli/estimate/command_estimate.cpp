@@ -67,7 +67,7 @@ void print_text(const EstimateOptions& o, const estimate::Measured& m, const est
   answer("");
   print_interval("yield stress", e.tau_0, "Pa", "not in the table");
   print_interval("plastic viscosity", e.mu, "Pa.s",
-                 o.t500.empty() ? "takes --t500" : "not told by this t500");
+                 o.t500.empty() ? "needs --t500" : "not identifiable from this t500");
   if (!m.t500 && !m.mu) say("{:<24} --plastic-viscosity narrows the yield stress\n", "");
   if (m.spread) {
     say("{:<24} {} Pa (thin layer at rest, Roussel and Coussot)\n", "by the closed forms",
@@ -81,7 +81,7 @@ void print_text(const EstimateOptions& o, const estimate::Measured& m, const est
   add(m.spread.has_value(), "spread", 1e3 * m.spread_error, "mm");
   add(m.slump.has_value(), "slump", 1e3 * m.slump_error, "mm");
   add(m.t500.has_value(), "t500", m.t500_error, "s");
-  say("{:<24} 95 %; {:.0f} kg/m3{} (one standard error), at rest, a floor that holds\n", "intervals",
+  say("{:<24} 95 %; {:.0f} kg/m3{} (one standard error), at rest, floor without slip\n", "intervals",
       m.density, read);
 }
 

@@ -16,7 +16,7 @@ using scene::rounded;
 void print_estimate(const std::string& name, const std::optional<ParameterEstimate>& e,
                     const std::string& unit) {
   if (!e)
-    say("{:<22} not told by this record\n", name);
+    say("{:<22} not identifiable from this record\n", name);
   else if (e->given)
     say("{:<22} {} {} (given)\n", name, rounded(e->value, 4), unit);
   else if (!e->ci95)

@@ -12,7 +12,7 @@ namespace tremie::cli {
 namespace {
 
 std::string number(const std::optional<double>& v, const char* unit) {
-  return v ? fmt::format("{} {}", scene::rounded(*v, 4), unit) : "not told";
+  return v ? fmt::format("{} {}", scene::rounded(*v, 4), unit) : "not identifiable";
 }
 
 /// "tau_0 54 [53, 55] Pa; ", nothing where the section does not tell it.

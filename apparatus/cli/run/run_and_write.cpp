@@ -54,10 +54,10 @@ void note_accuracy(const report::RunRequest& request, scene::Outcome& outcome) {
   const auto* value = std::get_if<double>(scene::find_result(outcome, error.bars.front().name));
   const double reached = error.bars.front().error / std::abs(*value);
   if (reached > accuracy_of(request.accuracy))
-    outcome.checks.reasons.push_back(
-        fmt::format("the accuracy of {} was not reached: {} is good to {:.2g} %; half of its cells "
-                    "(model.cell) or a looser accuracy",
-                    request.accuracy, error.bars.front().name, 100.0 * reached));
+    outcome.checks.reasons.push_back(fmt::format(
+        "the accuracy of {} was not reached: {} is accurate to {:.2g} %: halve model.cell, or give a "
+        "looser --accuracy",
+        request.accuracy, error.bars.front().name, 100.0 * reached));
 }
 
 /// A run that an interrupt ended is described as it stands.

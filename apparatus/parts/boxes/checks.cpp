@@ -66,9 +66,8 @@ std::string walls_carry_the_column(const View& j) {
   const double along = s.box.column_length / *std::max_element(s.model.cell.begin(), s.model.cell.end());
   if (along >= cells_along_a_carried_column) return {};
   return fmt::format(
-      "the column's walls carry {:.2g} of its weight, and {:.2g} cells along it do not resolve what is "
-      "sheared "
-      "beside them: H1 may be 5 to 20 % too large; use model.cell = \"{:.2g} mm\" or less",
+      "the column's walls carry {:.2g} of its weight, and {:.2g} cells along it do not resolve the "
+      "sheared layer beside them: H1 may be 5 to 20 % too large; use model.cell = \"{:.2g} mm\" or less",
       carried, along, 1e3 * s.box.column_length / cells_along_a_carried_column);
 }
 

@@ -126,9 +126,8 @@ std::string slow_lift_over_a_slippery_floor(const View& j) {
   const double risen = *j.scene.lift_speed * std::sqrt(2.0 * j.scene.cone.height / gravity);
   if (holds > 2.0 * j.scene.mix.tau_0 || j.scene.model.cell[1] <= risen) return {};
   return fmt::format(
-      "the cone is lifted so slowly over a floor along which the concrete slides that its rim passes {:.2g} "
-      "cells in a free "
-      "fall from its height, less than 1: a smaller model.cell upwards, or a faster test.lift_speed",
+      "the lift is too slow for a sliding floor: the rim rises {:.2g} cells in the time of a free fall from "
+      "the cone's height, less than 1: use a smaller model.cell upwards, or a faster test.lift_speed",
       risen / j.scene.model.cell[1]);
 }
 

@@ -49,16 +49,15 @@ std::string lost_volume(const View& v) {
   constexpr double most = 0.01;
   if (!(std::abs(v.r.volume_error) > most)) return {};
   return fmt::format(
-      "what has left and what is left differ by {:+.2g} % from the funnel's volume, more than {:g} %: a "
-      "larger "
-      "mix.bulk_modulus or a smaller model.cell",
+      "discharged plus remaining volume differs by {:+.2g} % from the initial volume, more than {:g} %: "
+      "use a larger mix.bulk_modulus or a smaller model.cell",
       100.0 * v.r.volume_error, 100.0 * most);
 }
 
 std::string no_number(const View& v) {
   return std::isfinite(v.r.emptied) && std::isfinite(v.r.volume_error)
              ? std::string{}
-             : "what has left the funnel is not a finite number";
+             : "the discharged volume is not a finite number";
 }
 
 }  // namespace

@@ -75,7 +75,7 @@ Rows<View> course_rows() {
            .value = [](V v) { return number(v.r.volume); },
            .lines =
                [](V v) { return std::vector{fmt::format("volume          {:.2f} l", 1e3 * v.r.volume)}; }},
-          {"volume_error", "volume that has left and that is left, over that at the start, less 1",
+          {"volume_error", "relative volume error: (discharged + remaining)/initial − 1",
            [](V v) { return number(v.r.volume_error); }}},
       motion_columns<View>(), step_columns<View>());
 }
@@ -85,7 +85,7 @@ namespace {
 std::vector<std::string> uses(const Scene& scene) {
   std::vector<std::string> lines{flocculation_use(scene.mix)};
   lines.push_back("walls: " + word(scene.walls));
-  lines.push_back("mouth: open at once; the concrete falls freely below it");
+  lines.push_back("mouth: opens instantaneously; the concrete falls freely below it");
   if (scene.shape.depth > 0.0)
     lines.push_back(scene.model.space == SpaceKind::plane
                         ? "side walls: left out (model.space = \"plane\")"

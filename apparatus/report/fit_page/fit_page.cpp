@@ -25,7 +25,7 @@ std::string line_of(const FitResult& fit) {
 }
 
 std::string value_text(const std::optional<ParameterEstimate>& e) {
-  if (!e) return "not told by this record";
+  if (!e) return "not identifiable from this record";
   return e->given ? scene::rounded(e->value, 4) + " (given)" : with_interval(*e, 4);
 }
 
@@ -188,10 +188,9 @@ std::string trust_text(const FitResult& fit) {
       "Intervals "
       "hold 95 %.",
       fit.readings, left_out(fit), 100.0 * fit.scatter,
-      pattern ? fmt::format(
-                    ", and successive ones go together (correlation {:.2f}): to that size the model leaves "
-                    "something out, or the record is smoothed.",
-                    fit.correlation)
+      pattern ? fmt::format(", and successive residuals are correlated ({:.2f}): the model may miss an "
+                            "effect of this size, or the record is smoothed.",
+                            fit.correlation)
               : ".");
 }
 

@@ -9,6 +9,7 @@
 #include <ctime>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <vector>
 
 #include "libmpm/io/write_error.hpp"
@@ -24,15 +25,15 @@ constexpr const char* crate_file = "ro-crate-metadata.json";
 
 Json reference(const std::string& id) { return {{"@id", id}}; }
 
-/// The day of publication, "2026-11-26"; empty where SOURCE_DATE_EPOCH states none.
-std::string publication_date() {
+/// The seconds since 1970 that SOURCE_DATE_EPOCH states; nothing where it is not set or no such number.
+std::optional<std::time_t> stated_time() {
   const char* text = std::getenv("SOURCE_DATE_EPOCH");
   if (!text || !*text) return {};
   char* end = nullptr;
   const long long seconds = std::strtoll(text, &end, 10);
   constexpr long long last = 253402300799;  // of the year 9999
   if (*end != '\0' || seconds < 0 || seconds > last) return {};
-  return fmt::format("{:%Y-%m-%d}", fmt::gmtime(static_cast<std::time_t>(seconds)));
+  return static_cast<std::time_t>(seconds);
 }
 
 /// The media type of a file, and what a result calls it.
@@ -140,10 +141,10 @@ void add_run(const Crate& crate, const Json& files, Json& root, Json& graph) {
 }  // namespace
 
 std::string write_crate(const fs::path& folder, const Crate& crate) {
-  const std::string date = publication_date();
+  const std::optional<std::time_t> stated = stated_time();
   Json root{{"@id", "./"}, {"@type", "Dataset"}, {"name", crate.name}};
   add_if_given(root, "description", crate.description);
-  add_if_given(root, "datePublished", date);
+  root["datePublished"] = fmt::format("{:%Y-%m-%d}", fmt::gmtime(stated.value_or(std::time(nullptr))));
   Json others = Json::array();
   root["hasPart"] = add_parts(folder, "", others);
   add_mix(crate, root, others);
@@ -157,10 +158,11 @@ std::string write_crate(const fs::path& folder, const Crate& crate) {
   for (const Json& entity : others) graph.push_back(entity);
   const Json document{{"@context", "https://w3id.org/ro/crate/1.1/context"}, {"@graph", graph}};
   io::write_text(folder / crate_file, document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
-  if (!date.empty()) return {};
+  const char* text = std::getenv("SOURCE_DATE_EPOCH");
+  if (stated || !text || !*text) return {};
   return fmt::format(
-      "{}: RO-Crate requires the day of publication (datePublished); SOURCE_DATE_EPOCH states none",
-      crate_file);
+      "{}: datePublished is today: SOURCE_DATE_EPOCH=\"{}\" is no number of seconds since 1970", crate_file,
+      text);
 }
 
 }  // namespace tremie::report

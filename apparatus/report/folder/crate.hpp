@@ -19,9 +19,9 @@ struct Crate {
 };
 
 /// Describes all files of a folder but hidden ones and a checkpoint. The same files and the same Crate give the same
-/// bytes: sizes and times, which differ between two runs of a scene, are left out. RO-Crate requires a date of
-/// publication: it is that of SOURCE_DATE_EPOCH in the environment [seconds since 1970]. Returns a note where there is
-/// none. Throws io::WriteError.
+/// bytes on one day: sizes and times, which differ between two runs of a scene, are left out. The day of publication, which
+/// RO-Crate requires, is that of SOURCE_DATE_EPOCH in the environment [seconds since 1970], otherwise today (UTC). Returns a
+/// note where SOURCE_DATE_EPOCH is no such number. Throws io::WriteError.
 std::string write_crate(const std::filesystem::path& folder, const Crate& crate);
 
 }  // namespace tremie::report

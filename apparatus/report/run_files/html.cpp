@@ -64,7 +64,8 @@ Trust trust_of(const scene::Outcome& o) {
     trust.text = fmt::format("The error of cells and steps is the ± above ({}). ",
                              basis_in_words(*o.error, o.apparatus));
   else if (o.has_points)
-    trust.text = "The error of cells and steps was not estimated; --with-error does. ";
+    trust.text =
+        "The discretisation error (cells and time steps) was not estimated; --with-error estimates it. ";
   if (o.has_points)
     trust.text += fmt::format("The concrete's volume changed by {:+.2g} %; {}; {}.", 100.0 * c.volume_change,
                               c.unconverged_steps == 0 ? fmt::format("all {} steps converged", o.cost.steps)

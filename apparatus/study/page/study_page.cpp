@@ -32,7 +32,7 @@ std::string what_matters(const Definition& study, const ResultIndices& one) {
     if (parts.size() < 4)
       parts.push_back(fmt::format("{} {}", study.factors[i].key,
                                   percent(one.indices[i].total, one.indices[i].total_error)));
-  return fmt::format("{}, share of its variance that a factor has a part in: {}.", words_of(one.result),
+  return fmt::format("{}, total-effect share of each factor in its variance: {}.", words_of(one.result),
                      fmt::join(parts, ", "));
 }
 
@@ -155,9 +155,9 @@ std::string study_html(const Definition& study, const Design& design, const Coll
   add_figures(study, design, collected, indices, page);
   for (const ResultIndices& one : indices) page.grids.push_back(index_table(study, one));
   if (auto ranges = range_table(study, design, collected); !ranges.rows.empty()) page.grids.push_back(ranges);
-  page.words = {"First order: the share of a result's variance that goes away once the factor is known.",
-                "Total: the share that is left while the factor alone is not known; more than first order "
-                "where it interacts with others."};
+  page.words = {"First order: share of the variance removed, on average, by fixing the factor.",
+                "Total: share that remains when all other factors are fixed; above first order where it "
+                "interacts with others."};
   page.made = report::facts_of_this_run(command);
   page.scene = study.resolved_base, page.scene_words = "The base scene, every value in SI";
   return to_html(page);

@@ -54,7 +54,7 @@ Case extremes_case(Depth depth) {
                           table_cell(v.why)});
   }
   table.text = fmt::format(
-      "{} scenes in {:.0f} s of CPU: {} right, {} marked as not to be trusted (exit 3), {} refused (exit 2), "
+      "{} scenes in {:.0f} s of CPU: {} right, {} flagged as untrusted (exit 3), {} refused (exit 2), "
       "{} stopped after {:g} s, {} wrong without saying so. The reading is the spread in mm or the torque in "
       "N m.",
       cases.size(), cpu, count[Ending::right], count[Ending::flagged], count[Ending::no_meaning],

@@ -102,7 +102,7 @@ void add_explicit_schemes(Depth depth, Problem& one) {
 Problem slump(Depth depth) {
   Problem one{
       .name = "slump_mix_c",
-      .title = "Mix C, the cone gone at once",
+      .title = "Mix C, cone removed instantaneously",
       .equation = "exact Bingham, 130 Pa and 30.2 Pa·s, no slip, with inertia",
       .reference = "body-fitted Lagrangian finite elements, ± 2 mm of 445 (± 0.4 %)",
       .norm = "largest relative error of the spread at 1, 2, 3, 5, 10 and 20 s",

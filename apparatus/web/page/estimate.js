@@ -23,7 +23,7 @@ async function estimateFor({spread_mm, t500_s = NaN, spread_error_mm = 15, t500_
 }
 
 function intervalText(word, interval, unit) {
-  if (!interval) return `${word}: not told by this`;
+  if (!interval) return `${word}: not identifiable from these values`;
   const [low, high] = interval.ci95.map((value) => written(value, 3));
   return `${word} ${written(interval.value, 3)} ${unit}, 95 % between ${low} and ${high}`;
 }
@@ -32,7 +32,7 @@ function showEstimate({results, checks}, hasT500) {
   const lines = [[intervalText("Yield stress", results.yield_stress_Pa, "Pa"), ""]];
   lines.push(
       hasT500 ? [intervalText("Plastic viscosity", results.plastic_viscosity_Pa_s, "Pa·s"), ""] :
-                ["Plastic viscosity: takes t500", "note"]);
+                ["Plastic viscosity: needs t500", "note"]);
   checks.reasons.forEach((reason) => lines.push([`Not to be trusted: ${reason}`, "bad"]));
   lines.push(["For a lift of 15 cm/s, of concrete that builds up nothing while it flows: what its rest built up is in the yield stress.", "note"]);
   byId("estimate-answer").replaceChildren(...lines.map(([text, kind]) => element("li", {class: kind}, text)));

@@ -106,19 +106,16 @@ void report_band(const FittedLaw& f, const FitInput& input, FitResult& result) {
     result.curve.standard_error.push_back(std::sqrt(variance_of_torque(f, omega, input.instrument)));
 }
 
-/// "consistency, flow_index: the record cannot tell them" of those of the law's parameters behind the yield stress that it
-/// does not tell.
+/// Notes "consistency, flow_index: not identifiable from this record" for the law's parameters after the yield stress that have
+/// no value.
 void note_unidentifiable(const FittedLaw& f, FitResult& result) {
   std::string names;
-  std::size_t missing = 0;
   const auto& parameters = f.law->parameters;
   for (std::size_t k = 1; k < parameters.size(); ++k) {
     if (!(f.all[k] > 0.0) || value_of(result, parameters[k].row)) continue;
     names += (names.empty() ? "" : ", ") + parameters[k].row.name;
-    ++missing;
   }
-  if (missing > 0)
-    result.notes.push_back(names + ": the record cannot tell " + (missing > 1 ? "them" : "it"));
+  if (!names.empty()) result.notes.push_back(names + ": not identifiable from this record");
 }
 
 void report_covariance(const FittedLaw& f, FitResult& result) {
@@ -157,7 +154,7 @@ void report_parameters(const Readings& r, const FittedLaw& f, const FitInput& in
   if (degrees <= 0.0)
     result.notes.push_back(
         "as many readings as parameters: the curve passes through all, and no interval can be told");
-  if (!result.tau_0) result.notes.push_back("yield_stress: the record cannot tell it");
+  if (!result.tau_0) result.notes.push_back("yield_stress: not identifiable from this record");
   note_unidentifiable(f, result);
 }
 
@@ -177,8 +174,7 @@ void withdraw(const FittedLaw& f, const FitInput& input, FitResult& result) {
     names += (names.empty() ? "" : ", ") + p.row.name;
   }
   result.plug_below.reset();
-  result.notes.push_back(names + ": a model that does not fit does not tell " +
-                         (names.find(',') == std::string::npos ? "it" : "them"));
+  result.notes.push_back(names + ": not identifiable from a model that does not fit");
 }
 
 void require_flow_curve(const Readings& r, const FitInput& input) {
@@ -251,12 +247,13 @@ FitResult fit_by_law(const TorqueRecord& record, const FitInput& input, std::opt
   report_band(f, input, result);
   if (f.all[1] <= 0.0)
     result.notes.push_back(
-        "plastic_viscosity: the torque does not rise with the speed, so the record cannot tell it");
+        "plastic_viscosity: the torque does not rise with the speed, so it is not identifiable from this "
+        "record");
   for (const std::string& why : reasons_of(r, f)) result.reasons.push_back(why);
   better = better_law(r, input, f, !result.reasons.empty());
   if (better) {
     result.law_in_doubt = true;
-    result.notes.push_back("yield_stress: hangs on the law: " + better->words + "; --law " +
+    result.notes.push_back("yield_stress: depends on the law: " + better->words + "; --law " +
                            better->fitted.law->name);
   }
   if (!result.reasons.empty()) withdraw(f, input, result);
