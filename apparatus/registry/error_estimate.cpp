@@ -43,13 +43,11 @@ Outcome run_with_cells(const Scene& scene, double ratio, const Observer& observe
 }
 
 /// Finer cells may be more than a scene allows; the bar then comes from the coarser grids.
-Outcome run_on_finer_grid(const Scene& scene, double ratio, const Observer& observer) {
+std::optional<Outcome> run_on_finer_grid(const Scene& scene, double ratio, const Observer& observer) {
   try {
     return run_with_cells(scene, ratio, observer);
   } catch (const InputError&) {
-    Outcome none;
-    none.status = Status::interrupted;
-    return none;
+    return {};
   }
 }
 
@@ -128,11 +126,11 @@ ErrorEstimate estimate_error(const Scene& scene, const Outcome& outcome, const O
     Grids grids{nullptr, &outcome, &middle, &coarse};
     const std::vector<Headline>& headlines = scene.functions->headlines;
     const auto first = headlines.empty() ? std::nullopt : extrapolate_of(headlines.front().name, grids, by);
-    Outcome finer;
+    std::optional<Outcome> finer;
     if (first && is_doubtful(*first, *find_number(outcome, headlines.front().name))) {
       finer = run_on_finer_grid(scene, 1.0 / by.middle, observer);
-      estimate.cpu += finer.cost.cpu;
-      if (finer.status == Status::completed) grids.finer = &finer;
+      if (finer) estimate.cpu += finer->cost.cpu;
+      if (finer && finer->status == Status::completed) grids.finer = &*finer;
     }
     for (const Headline& headline : headlines) {
       const auto e = extrapolate_of(headline.name, grids, by);

@@ -156,7 +156,7 @@ def cavity(program):
             file.write_text(subprocess.run([program, str(case["yield_stress"]), "32"], check=True, capture_output=True, text=True).stdout)
             ys, vs = columns_of(file).values()
         height, flow = vortex(ys, vs)
-        return {"velocity_mm_per_s": (ys, vs), "vortex_height_mm": ([0.0, 1.0], [height, height]), "vortex_flow_mm2_per_s": ([0.0, 1.0], [flow, flow])}
+        return {"velocity_mm_per_s": (ys, vs), "vortex_height_mm": ([0.0], [height]), "vortex_flow_mm2_per_s": ([0.0], [flow])}
 
     return by_case("cavity", readings)
 
