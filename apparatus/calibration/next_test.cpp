@@ -31,7 +31,7 @@ std::vector<Candidate> candidates() {
                     15.0,
                     0.0});
   list.push_back({"slump flow", "slump_flow", {"test.rest=0 s"}, "t500_s", "s", 0.2, 0.0});
-  list.push_back({"L-box", "l_box", {"model.cell=20 mm"}, "passing_ratio", "", 0.03, 0.0});
+  list.push_back({"L-box", "l_box", {"model.cell=15 mm"}, "passing_ratio", "", 0.03, 0.0});
   for (const char* rest : {"60", "240"})
     list.push_back({"vane, peak",
                     "icar_vane",
